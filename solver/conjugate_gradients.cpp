@@ -1,0 +1,61 @@
+#include "solver/conjugate_gradients.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include "solver/kernels.hpp"
+
+namespace drape::solver {
+
+ConjugateGradients::ConjugateGradients(std::unique_ptr<Preconditioner> preconditioner, std::vector<Pin> filtered,
+                                       int max_iterations, Work& work)
+    : preconditioner_(std::move(preconditioner)),
+      filtered_(std::move(filtered)),
+      max_iterations_(max_iterations),
+      work_(work) {}
+
+void ConjugateGradients::analyze(const SparseMatrix& A) {
+  preconditioner_->analyze(A);
+  for (Vectors* field : {&z_, &p_, &q_}) field->setZero(A.rows(), 3);
+}
+
+Outcome ConjugateGradients::factor(const SparseMatrix& A) {
+  ++work_.factorizations;
+  return preconditioner_->factor(A);
+}
+
+LinearResult ConjugateGradients::solve(const SparseMatrix& A, Vectors& r, Vectors& d, double target) {
+  const auto n = A.rows();
+  d.setZero();
+  double rz = 0;
+  double norm = r.norm();
+  for (int k = 0;; ++k) {
+    if (!std::isfinite(norm)) return {Outcome::not_finite, k};
+    if (norm <= target) return {Outcome::success, k};
+    if (k == max_iterations_) return {Outcome::not_converged, k};
+
+    const double previous = rz;
+    rz = preconditioner_->apply(r, z_);
+    if (!filtered_.empty()) {
+      filter(filtered_, z_);
+      rz = r.cwiseProduct(z_).sum();
+    }
+    if (k == 0)
+      p_ = z_;
+    else
+      p_ = z_ + (rz / previous) * p_;
+    double pq = multiply(A, p_, q_);
+    if (!filtered_.empty()) {
+      filter(filtered_, q_);
+      pq = p_.cwiseProduct(q_).sum();
+    }
+    ++work_.cg_iterations;
+    ++work_.products;
+    ++work_.preconditioner;
+    work_.bytes += multiply_bytes(A) + preconditioner_->bytes() + vector_bytes(n, 9);
+    if (std::isfinite(pq) && pq <= 0) return {Outcome::breakdown, k};
+    norm = std::sqrt(advance(rz / pq, p_, q_, d, r));
+  }
+}
+
+}  // namespace drape::solver

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "solver/methods.hpp"
+
+namespace drape::solver {
+
+/// Advances one ODE by one method. A step that fails leaves time and state as they were.
+class Integrator {
+ public:
+  /// Allocates all that steps need. Prescribed velocities are set in the initial state.
+  Integrator(const SplitOde& ode, const Method& method, const Options& options, State y0, double t0 = 0);
+  Integrator(const Integrator&) = delete;
+  Integrator& operator=(const Integrator&) = delete;
+
+  /// One step of size h > 0; two-step methods take the size of the step before into account.
+  StageResult step(double h);
+
+  double time() const { return step_.t; }
+  const State& state() const { return step_.now.y; }
+  const Options& options() const { return options_; }
+
+ private:
+  const Options options_;
+  const Method& method_;
+  std::optional<StageSolver> stage_;
+  Step step_;
+  double h_before_ = 0;
+  std::int64_t &steps_, &rejected_;
+};
+
+/// An accepted step as an observer sees it.
+struct StepReport {
+  double t;  ///< [s], at its end
+  double h;  ///< [s]
+  int updates;
+  int cg_iterations;
+  const State& y;
+};
+using Observer = std::function<void(const StepReport&)>;
+
+/// How a run ended.
+struct RunResult {
+  Outcome outcome = Outcome::success;
+  std::string message;        ///< why it did not reach its end; empty if it did
+  double last_good_time = 0;  ///< [s]
+  int steps = 0;
+  int rejected_steps = 0;
+};
+
+/// Runs to t_end with steps of h, the last one clipped. With step control a failing step is cut and tried again, and h
+/// follows the number of updates; without, the run ends where a step fails. Throws std::invalid_argument unless h > 0.
+RunResult integrate(Integrator& integrator, double t_end, double h, const Observer& observer = {});
+
+}  // namespace drape::solver

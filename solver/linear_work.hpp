@@ -1,0 +1,22 @@
+#pragma once
+
+#include "solver/work.hpp"
+
+namespace drape::solver {
+
+/// The counters of the linear algebra, in one place because the stage solver and conjugate gradients share them.
+struct LinearWork {
+  explicit LinearWork(Work& work)
+      : updates(work.counter("updates", "linear systems solved, one an update of the fixed-point loop")),
+        cg_iterations(work.counter("cg_iterations", "iterations of conjugate gradients")),
+        products(work.counter("matrix_products", "products of a scalar matrix with an N x 3 vector field")),
+        preconditioner(work.counter("preconditioner_applications", "applications of the preconditioner")),
+        builds(work.counter("matrix_builds", "assemblies of the constant matrix A")),
+        factorizations(work.counter("factorizations", "factorizations of A, complete or incomplete")),
+        entries(work.counter("matrix_entries", "entries of A")),
+        bytes(work.counter("linear_bytes", "bytes that the linear algebra moved, every array counted once a pass")) {}
+
+  std::int64_t &updates, &cg_iterations, &products, &preconditioner, &builds, &factorizations, &entries, &bytes;
+};
+
+}  // namespace drape::solver

@@ -1,0 +1,18 @@
+#include "solver/methods.hpp"
+
+namespace drape::solver {
+
+// A v1 = M (c1 v0 − c2 v₋₁) + c3 h K (c1 x0 − c2 x₋₁) + c3 h f̂,   x1 = c3 h v1 + c1 x0 − c2 x₋₁,
+// A = M − (c3 h)² K − c3 h D,   f̂ = (1 + w) f_expl(x0, v0) − w f_expl(x₋₁, v₋₁)   [Etzmuß 2002, (3.29)–(3.31)]
+// The thesis prints f̂ = 2 f0 − f₋₁, which is right for w = 1 only.
+void sbdf2(Step& s) {
+  if (s.w == 0) return imex_midpoint(s);  // a first step of second order
+  const auto [c1, c2, c3] = bdf2_coefficients(s.w);
+  s.ax = c1 * s.y0().x - c2 * s.ym1().x;
+  s.av = c1 * s.y0().v - c2 * s.ym1().v;
+  s.f_hat = (1 + s.w) * s.explicit_force(s.now, s.t) - s.w * s.explicit_force(s.before, s.t - s.h / s.w);
+  s.y1().v = s.y0().v;  // predictor (3.32)
+  s.accept(s.stage->solve_linear({c3 * s.h, s.t + s.h, s.ax, s.av}, s.f_hat, s.y1()));
+}
+
+}  // namespace drape::solver

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string_view>
+
+#include "solver/preconditioner.hpp"
+
+namespace drape::solver {
+
+/// Step control by loop iterations [Etzmuß 2002, 3.4.3]: the step shrinks by `factor` when a step took more than
+/// `max_updates` or did not converge, and grows by it after fewer than `min_updates`.
+struct StepControl {
+  int min_updates = 0;
+  int max_updates = 0;  ///< 0: constant steps
+  double factor = 1.5;
+
+  bool enabled() const { return max_updates > 0; }
+};
+
+/// Choices of whoever runs a method. Tolerances are relative to |b|, the right-hand side of the step's linear system.
+struct Options {
+  double loop_tolerance = 1e-5;  ///< of the fixed-point loop: |b(x, v) − A v| ≤ η |b|
+  double cg_tolerance = 1e-4;    ///< of a linear solve; inside the loop never looser than half the loop's
+  int max_updates = 2000;        ///< fixed-point updates a stage before it counts as not converged
+  int max_cg_iterations = 5000;  ///< iterations a linear solve before it counts as not converged
+  double verlet_fraction = 0.9;  ///< sub-step of `verlet` as a fraction of its stability limit
+  StepControl control;
+  const LinearSolver* linear_solver = &linear_solvers().front();
+};
+
+}  // namespace drape::solver

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string_view>
+
+#include "solver/outcome.hpp"
+#include "solver/state.hpp"
+
+namespace drape::solver {
+
+/// Approximates the inverse of a symmetric positive definite scalar matrix that acts on all three coordinates alike.
+class Preconditioner {
+ public:
+  virtual ~Preconditioner() = default;
+
+  /// Prepares for a matrix with the pattern of all later ones.
+  virtual void analyze(const SparseMatrix& A) = 0;
+
+  /// Prepares for the values of A. `breakdown` if a pivot is not positive.
+  virtual Outcome factor(const SparseMatrix& A) = 0;
+
+  /// z ≈ A⁻¹ r; r, z: N × 3. Returns <r, z>.
+  virtual double apply(const Vectors& r, Vectors& z) = 0;
+
+  /// Bytes that one application moves at least.
+  virtual std::int64_t bytes() const = 0;
+};
+
+/// A linear solver of the constant matrix: conjugate gradients with one of these preconditioners.
+struct LinearSolver {
+  std::string_view name;
+  std::string_view description;
+  std::unique_ptr<Preconditioner> (*make)();
+};
+
+/// All linear solvers; the first is the default.
+std::span<const LinearSolver> linear_solvers();
+
+std::unique_ptr<Preconditioner> make_incomplete_cholesky();
+std::unique_ptr<Preconditioner> make_cholesky();
+
+}  // namespace drape::solver

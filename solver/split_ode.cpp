@@ -1,0 +1,19 @@
+#include "solver/split_ode.hpp"
+
+namespace drape::solver {
+
+double kinetic_energy(const SplitOde& ode, const Vectors& v) { return 0.5 * ode.mass.dot(v.rowwise().squaredNorm()); }
+
+void prescribe(const std::vector<Pin>& pins, Vectors& v) {
+  for (const Pin& pin : pins)
+    for (int c = 0; c < 3; ++c)
+      if (pin.fixed[c]) v(pin.particle, c) = pin.velocity[c];
+}
+
+void filter(const std::vector<Pin>& pins, Vectors& r) {
+  for (const Pin& pin : pins)
+    for (int c = 0; c < 3; ++c)
+      if (pin.fixed[c]) r(pin.particle, c) = 0;
+}
+
+}  // namespace drape::solver

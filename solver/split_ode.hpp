@@ -1,0 +1,56 @@
+#pragma once
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "solver/state.hpp"
+#include "solver/work.hpp"
+
+namespace drape::solver {
+
+/// A particle some of whose coordinates move with a prescribed velocity instead of obeying the equation of motion.
+struct Pin {
+  int particle = 0;
+  std::array<bool, 3> fixed{true, true, true};
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< [m/s], used in the fixed directions
+
+  bool all() const { return fixed[0] && fixed[1] && fixed[2]; }
+};
+
+/// The split equation of motion  M dv/dt = K x + D v + f_expl(t, x, v),  dx/dt = v   [Etzmuß 2002, (3.20)].
+///
+/// Forces are in newtons: the densities of the thesis times the area of a particle's dual cell, so that M, K and D are
+/// symmetric. K and D are scalar: one N × N matrix serves all three coordinates. The functions *set* their result (N × 3).
+struct SplitOde {
+  Eigen::VectorXd mass;    ///< N, [kg], positive
+  SparseMatrix stiffness;  ///< K, N × N, symmetric negative semidefinite, [N/m]
+  SparseMatrix damping;    ///< D, N × N, symmetric negative semidefinite, [N s/m]; no entries if there is none
+  std::vector<Pin> pins;   ///< at most one for a particle
+
+  using Force = std::function<void(double t, const Vectors& x, const Vectors& v, Vectors& f)>;
+  Force force;           ///< K x + D v + f_expl
+  Force explicit_force;  ///< f_expl
+
+  /// Potential energy [J] of the conservative forces.
+  std::function<double(double t, const Vectors& x)> potential_energy;
+
+  /// ∂f/∂x and ∂f/∂v of the whole force, 3N × 3N; coordinate c of particle i has the index 3i + c.
+  std::function<void(double t, const Vectors& x, const Vectors& v, SparseMatrix& df_dx, SparseMatrix& df_dv)> jacobian;
+
+  std::shared_ptr<Work> work = std::make_shared<Work>();
+
+  int particles() const { return static_cast<int>(mass.size()); }
+};
+
+/// Kinetic energy ½ Σ m v² [J].
+double kinetic_energy(const SplitOde& ode, const Vectors& v);
+
+/// Sets the prescribed velocities in v.
+void prescribe(const std::vector<Pin>& pins, Vectors& v);
+
+/// Sets the pinned coordinates of a residual, force or acceleration to zero.
+void filter(const std::vector<Pin>& pins, Vectors& r);
+
+}  // namespace drape::solver

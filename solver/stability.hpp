@@ -1,0 +1,19 @@
+#pragma once
+
+#include "solver/split_ode.hpp"
+
+namespace drape::solver {
+
+/// The stiffest time scales of the equation of motion, linearised.
+struct Spectrum {
+  double omega_squared = 0;  ///< largest |eigenvalue| of M⁻¹ ∂f/∂x over the free coordinates [1/s²]
+  double decay = 0;          ///< largest |eigenvalue| of M⁻¹ ∂f/∂v over the free coordinates [1/s]
+};
+
+/// Estimates the spectrum at a state by power iteration, 1 % to the safe side. Allocates.
+Spectrum spectrum(const SplitOde& ode, double t, const State& y);
+
+/// The largest stable step of the method `verlet` for the mode x'' = −ω² x − c x' [s]; infinite if both vanish.
+double verlet_limit(const Spectrum& spectrum);
+
+}  // namespace drape::solver

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <Eigen/Sparse>
+
+namespace drape::solver {
+
+/// One vector in R³ per particle: N × 3, row by row, so that a particle's coordinates are neighbours in memory.
+using Vectors = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
+
+/// Compressed rows. Scalar matrices are N × N and act on all three coordinates alike; Jacobians are 3N × 3N.
+using SparseMatrix = Eigen::SparseMatrix<double, Eigen::RowMajor, int>;
+
+/// Positions x [m] and velocities v [m/s] of all particles.
+struct State {
+  Vectors x;
+  Vectors v;
+};
+
+}  // namespace drape::solver

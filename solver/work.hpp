@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <string>
+#include <string_view>
+
+namespace drape::solver {
+
+/// Counts what a run did, one counter per kind of work. Every kind that could occur is registered with 0 before the run, so
+/// that "skipped" is a recorded number. Counters are exact and repeatable where times are not.
+class Work {
+ public:
+  struct Kind {
+    std::string name;         ///< for example "cg_iterations" or "force/tension"
+    std::string description;  ///< what one count stands for
+    std::int64_t count = 0;
+  };
+
+  Work() = default;
+  Work(const Work&) = delete;  // callers keep references to the counters
+  Work& operator=(const Work&) = delete;
+
+  /// Registers a kind (once; later calls return the same counter). The reference stays valid as long as this object.
+  std::int64_t& counter(std::string_view name, std::string_view description);
+
+  /// The count of a kind. Throws std::out_of_range if it was never registered.
+  std::int64_t count(std::string_view name) const;
+
+  const std::deque<Kind>& kinds() const { return kinds_; }
+
+ private:
+  std::deque<Kind> kinds_;
+};
+
+}  // namespace drape::solver
