@@ -1,0 +1,153 @@
+#include "model/cloth.hpp"
+
+#include <fmt/format.h>
+
+#include "model/normals.hpp"
+
+namespace drape::model {
+namespace {
+
+/// A term with the counter of its evaluations.
+struct CountedTerm {
+  Term term;
+  std::int64_t* evaluations;
+};
+
+/// The forces of one compiled scene with the memory they need.
+class Forces {
+ public:
+  Forces(const Sheet& sheet, solver::Work& work, Plan& plan);
+
+  void force(double t, const Vectors& x, const Vectors& v, Vectors& f, bool whole);
+  double energy(const Vectors& x) const;
+  void jacobian(double t, const Vectors& x, const Vectors& v, SparseMatrix& df_dx, SparseMatrix& df_dv);
+  SparseMatrix scalar_matrix(std::function<void(std::vector<Eigen::Triplet<double>>&)> Term::*part) const;
+
+ private:
+  Configuration configuration(double t, const Vectors& x, const Vectors& v);
+
+  std::vector<CountedTerm> terms_;
+  Vectors constant_, normals_;
+  Normals vertex_normals_;
+  bool needs_normals_ = false;
+  std::int64_t &forces_, &explicit_forces_, &jacobians_, &normal_evaluations_;
+};
+
+Forces::Forces(const Sheet& sheet, solver::Work& work, Plan& plan)
+    : constant_(Vectors::Zero(sheet.grid.particles(), 3)),
+      vertex_normals_(sheet.grid),
+      forces_(work.counter("forces", "evaluations of the whole force")),
+      explicit_forces_(work.counter("explicit_forces", "evaluations of the explicit part of the force")),
+      jacobians_(work.counter("jacobians", "evaluations of the exact Jacobian")),
+      normal_evaluations_(work.counter("normals", "evaluations of all vertex normals")) {
+  for (const TermKind& kind : term_kinds()) {
+    const std::string name(kind.name);
+    std::int64_t& evaluations = work.counter("force/" + name, "evaluations of: " + std::string(kind.description));
+    std::optional<Term> term = kind.make(sheet);
+    if (!term) continue;
+    plan.terms.push_back(name);
+    needs_normals_ = needs_normals_ || term->needs_normals;
+    if (term->constant.size() > 0) {
+      constant_ += term->constant;
+      ++evaluations;
+    }
+    terms_.push_back({std::move(*term), &evaluations});
+  }
+  if (needs_normals_) normals_.resize(sheet.grid.particles(), 3);
+  plan.normals = needs_normals_;
+}
+
+Configuration Forces::configuration(double t, const Vectors& x, const Vectors& v) {
+  if (needs_normals_) {
+    vertex_normals_.evaluate(x, normals_);
+    ++normal_evaluations_;
+  }
+  return {t, x, v, normals_};
+}
+
+void Forces::force(double t, const Vectors& x, const Vectors& v, Vectors& f, bool whole) {
+  ++(whole ? forces_ : explicit_forces_);
+  const Configuration c = configuration(t, x, v);
+  f = constant_;
+  for (const auto& [term, evaluations] : terms_) {
+    const auto& part = whole ? term.force : term.explicit_force;
+    if (!part) continue;
+    part(c, f);
+    ++*evaluations;
+  }
+}
+
+double Forces::energy(const Vectors& x) const {
+  double energy = 0;
+  for (const auto& [term, evaluations] : terms_)
+    if (term.energy) energy += term.energy(x);
+  return energy;
+}
+
+void Forces::jacobian(double t, const Vectors& x, const Vectors& v, SparseMatrix& df_dx, SparseMatrix& df_dv) {
+  ++jacobians_;
+  const Configuration c = configuration(t, x, v);
+  JacobianEntries entries;
+  for (const auto& [term, evaluations] : terms_)
+    if (term.jacobian) term.jacobian(c, entries);
+  for (const auto& [matrix, triplets] : {std::pair{&df_dx, &entries.dx}, {&df_dv, &entries.dv}}) {
+    matrix->resize(x.size(), x.size());
+    matrix->setFromTriplets(triplets->begin(), triplets->end());
+  }
+}
+
+SparseMatrix Forces::scalar_matrix(std::function<void(std::vector<Eigen::Triplet<double>>&)> Term::*part) const {
+  std::vector<Eigen::Triplet<double>> entries;
+  for (const auto& [term, evaluations] : terms_)
+    if (term.*part) (term.*part)(entries);
+  SparseMatrix matrix(constant_.rows(), constant_.rows());
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  return matrix;
+}
+
+Eigen::VectorXd masses(const Sheet& sheet) {
+  Eigen::VectorXd mass(sheet.grid.particles());
+  for (int b = 0; b < sheet.grid.nv; ++b)
+    for (int a = 0; a < sheet.grid.nu; ++a) mass[sheet.grid.index(a, b)] = sheet.material.density * sheet.grid.dual_area(a, b);
+  return mass;
+}
+
+int count_fixed(const std::vector<solver::Pin>& pins) {
+  int count = 0;
+  for (const solver::Pin& pin : pins) count += pin.fixed[0] + pin.fixed[1] + pin.fixed[2];
+  return count;
+}
+
+}  // namespace
+
+Cloth compile(const Scene& scene) {
+  Cloth cloth;
+  solver::SplitOde& ode = cloth.ode;
+  const auto forces = std::make_shared<Forces>(scene.sheet, *ode.work, cloth.plan);
+  ode.mass = masses(scene.sheet);
+  ode.pins = pins(scene);
+  ode.stiffness = forces->scalar_matrix(&Term::stiffness);
+  ode.damping = forces->scalar_matrix(&Term::damping);
+  ode.force = [forces](double t, const Vectors& x, const Vectors& v, Vectors& f) { forces->force(t, x, v, f, true); };
+  ode.explicit_force = [forces](double t, const Vectors& x, const Vectors& v, Vectors& f) { forces->force(t, x, v, f, false); };
+  ode.potential_energy = [forces](double, const Vectors& x) { return forces->energy(x); };
+  ode.jacobian = [forces](double t, const Vectors& x, const Vectors& v, SparseMatrix& df_dx, SparseMatrix& df_dv) {
+    forces->jacobian(t, x, v, df_dx, df_dv);
+  };
+  cloth.start = start(scene);
+  solver::prescribe(ode.pins, cloth.start.v);
+  cloth.plan.particles = ode.particles();
+  cloth.plan.pinned_dofs = count_fixed(ode.pins);
+  cloth.plan.stiffness_entries = static_cast<int>(ode.stiffness.nonZeros());
+  cloth.plan.damping_entries = static_cast<int>(ode.damping.nonZeros());
+  return cloth;
+}
+
+std::string to_string(const Plan& plan) {
+  return fmt::format("{} particles, {} of {} degrees of freedom pinned; forces: {}; normals: {}; entries of K: {}, of D: {}",
+                     plan.particles, plan.pinned_dofs, 3 * plan.particles,
+                     plan.terms.empty() ? "none" : fmt::format("{}", fmt::join(plan.terms, ", ")), plan.normals ? "yes" : "no",
+                     plan.stiffness_entries, plan.damping_entries);
+}
+
+}  // namespace drape::model

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "model/scene.hpp"
+
+namespace drape::model {
+
+/// What exists in a compiled scene, decided once: the rest costs nothing.
+struct Plan {
+  std::vector<std::string> terms;  ///< forces with nonzero coefficients
+  bool normals = false;            ///< whether any of them asks for normals
+  int particles = 0;
+  int pinned_dofs = 0;  ///< of 3N
+  int stiffness_entries = 0, damping_entries = 0;
+};
+
+/// A scene ready to be integrated.
+struct Cloth {
+  solver::SplitOde ode;
+  solver::State start;
+  Plan plan;
+};
+
+/// Compiles a scene: only forces with nonzero coefficients are built, and normals only if one of these asks for them.
+Cloth compile(const Scene& scene);
+
+/// The plan in one line, for people.
+std::string to_string(const Plan& plan);
+
+}  // namespace drape::model

@@ -1,0 +1,39 @@
+#include "model/edges.hpp"
+
+#include <algorithm>
+
+namespace drape::model {
+
+std::vector<Edge> edges(const Grid& grid) {
+  const double lu = grid.spacing_u(), lv = grid.spacing_v();
+  std::vector<Edge> all;
+  for (int b = 0; b < grid.nv; ++b)
+    for (int a = 0; a + 1 < grid.nu; ++a)
+      all.push_back({grid.index(a, b), grid.index(a + 1, b), true, lu, Grid::dual_width(b, grid.nv) * lv});
+  for (int b = 0; b + 1 < grid.nv; ++b)
+    for (int a = 0; a < grid.nu; ++a)
+      all.push_back({grid.index(a, b), grid.index(a, b + 1), false, lv, Grid::dual_width(a, grid.nu) * lu});
+  return all;
+}
+
+EdgeSweep::EdgeSweep(const Grid& grid) : pull_(3 * static_cast<std::size_t>(grid.nu)) {
+  const std::vector<Edge> all = edges(grid);
+  for (const Edge& edge : all) widths_.push_back(edge.width);
+  const double* width = widths_.data();
+  const auto add_line = [&](int i, int j, int count, bool weft) {
+    if (count == 0) return;
+    lines_.push_back({i, j, count, weft, width});
+    width += count;
+  };
+  for (int b = 0; b < grid.nv; ++b) add_line(grid.index(0, b), grid.index(1, b), grid.nu - 1, true);
+  for (int b = 0; b + 1 < grid.nv; ++b) add_line(grid.index(0, b), grid.index(0, b + 1), grid.nu, false);
+}
+
+void add_spring(std::vector<Eigen::Triplet<double>>& entries, int i, int j, double weight) {
+  entries.emplace_back(i, i, -weight);
+  entries.emplace_back(j, j, -weight);
+  entries.emplace_back(i, j, weight);
+  entries.emplace_back(j, i, weight);
+}
+
+}  // namespace drape::model

@@ -1,0 +1,107 @@
+#include <array>
+#include <memory>
+
+#include "model/cells.hpp"
+
+namespace drape::model {
+namespace {
+
+/// An edge of a cell with its strain ε = |p|/l − 1 and strain rate.
+struct Strained {
+  EdgeEnds ends;
+  double length;
+  double r;           ///< |p|
+  Eigen::Vector3d n;  ///< p°
+  Eigen::Vector3d q;  ///< ṗ
+  double strain, rate;
+
+  Strained(const Configuration& c, EdgeEnds edge, double l) : ends(edge), length(l), q(difference(c.v, edge)) {
+    const Eigen::Vector3d p = difference(c.x, edge);
+    r = p.norm();
+    n = p / r;
+    strain = r / l - 1;
+    rate = q.dot(n) / l;
+  }
+};
+
+/// The edges of a cell in two pairs: those along u and those along v. Each pair pulls with the other's mean strain.
+struct Pairs {
+  std::array<Strained, 2> u, v;
+
+  Pairs(const Configuration& c, const Cell& cell, double lu, double lv)
+      : u{Strained(c, cell.lower(), lu), Strained(c, cell.upper(), lu)},
+        v{Strained(c, cell.left(), lv), Strained(c, cell.right(), lv)} {}
+};
+
+/// Half the pull of an edge of length l is C12 times a quarter of the cell's area, over l.
+struct Moduli {
+  double elastic, viscous;  ///< C12 l_u l_v/4, d12 l_u l_v/4
+
+  double stress(const std::array<Strained, 2>& other) const {
+    return elastic * (other[0].strain + other[1].strain) + viscous * (other[0].rate + other[1].rate);
+  }
+};
+
+void add_forces(const Moduli& moduli, const std::array<Strained, 2>& pair, const std::array<Strained, 2>& other, Vectors& f) {
+  const double stress = moduli.stress(other);
+  for (const Strained& edge : pair) add_pull(f, edge.ends, stress / edge.length * edge.n);
+}
+
+void add_jacobians(const Moduli& moduli, const std::array<Strained, 2>& pair, const std::array<Strained, 2>& other,
+                   JacobianEntries& entries) {
+  const auto dx = [&](int i, int j, const Eigen::Matrix3d& block) { entries.add_dx(i, j, block); };
+  const auto dv = [&](int i, int j, const Eigen::Matrix3d& block) { entries.add_dv(i, j, block); };
+  const double stress = moduli.stress(other);
+  for (const Strained& p : pair) {
+    const Eigen::Matrix3d turn = (Eigen::Matrix3d::Identity() - p.n * p.n.transpose()) / p.r;
+    add_edge_pair(dx, p.ends, p.ends, stress / p.length * turn);
+    for (const Strained& s : other) {
+      const Eigen::Vector3d strain_by_s = s.n / s.length;
+      const Eigen::Vector3d rate_by_s = (s.q - s.q.dot(s.n) * s.n) / (s.r * s.length);
+      add_edge_pair(dx, p.ends, s.ends,
+                    p.n / p.length * (moduli.elastic * strain_by_s + moduli.viscous * rate_by_s).transpose());
+      if (moduli.viscous != 0) add_edge_pair(dv, p.ends, s.ends, moduli.viscous * p.n / p.length * strain_by_s.transpose());
+    }
+  }
+}
+
+}  // namespace
+
+/// Transverse contraction σ11 = C12 ε22 + d12 ε̇22, σ22 = C12 ε11 + d12 ε̇11 [Etzmuß 2002, (2.22)] in the consistent form
+/// E = Σ_cells C12 l_u l_v ½(ε_lower + ε_upper) ½(ε_left + ε_right). Algorithm 5 as printed is half a cell off.
+std::optional<Term> make_contraction(const Sheet& sheet) {
+  const Material& m = sheet.material;
+  if (m.contraction == 0 && m.contraction_damping == 0) return {};
+  if (sheet.grid.nu < 2 || sheet.grid.nv < 2) return {};  // a chain has no cells
+  const double lu = sheet.grid.spacing_u(), lv = sheet.grid.spacing_v();
+  const Moduli moduli{m.contraction * lu * lv / 4, m.contraction_damping * lu * lv / 4};
+  const auto all = std::make_shared<const std::vector<Cell>>(cells(sheet.grid));
+
+  Term term;
+  term.force = [=](const Configuration& c, Vectors& f) {
+    for (const Cell& cell : *all) {
+      const Pairs pairs(c, cell, lu, lv);
+      add_forces(moduli, pairs.u, pairs.v, f);
+      add_forces(moduli, pairs.v, pairs.u, f);
+    }
+  };
+  term.explicit_force = term.force;
+  term.energy = [=](const Vectors& x) {
+    double energy = 0;
+    const auto strain = [&](EdgeEnds edge, double l) { return difference(x, edge).norm() / l - 1; };
+    for (const Cell& cell : *all)
+      energy += moduli.elastic * (strain(cell.lower(), lu) + strain(cell.upper(), lu)) *
+                (strain(cell.left(), lv) + strain(cell.right(), lv));
+    return energy;
+  };
+  term.jacobian = [=](const Configuration& c, JacobianEntries& entries) {
+    for (const Cell& cell : *all) {
+      const Pairs pairs(c, cell, lu, lv);
+      add_jacobians(moduli, pairs.u, pairs.v, entries);
+      add_jacobians(moduli, pairs.v, pairs.u, entries);
+    }
+  };
+  return term;
+}
+
+}  // namespace drape::model

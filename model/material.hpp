@@ -1,0 +1,45 @@
+#pragma once
+
+namespace drape::model {
+
+/// A modulus with a value in the weft (u) and one in the warp (v) direction.
+struct WeftWarp {
+  double weft = 0;
+  double warp = 0;
+
+  bool any() const { return weft != 0 || warp != 0; }
+};
+
+enum class DampingForm {
+  linear,     ///< d/l² (v_j − v_i), also transversally: the form that the integrators of chapter 3 treat implicitly
+  projected,  ///< d/l² <v_j − v_i, (x_j − x_i)°> (x_j − x_i)°, the viscous stress of the model
+};
+
+enum class ShearForm {
+  conservative,  ///< W = ½ G <s_u, s_v>², consistent at borders
+  printed,       ///< Algorithm 2 of the thesis: wide stencil, unit vectors; not the gradient of an energy
+};
+
+enum class BendForm {
+  membrane,  ///< second order [Etzmuß 2002, (2.24)]; always projected onto the normal
+  plate,     ///< fourth order [Etzmuß 2002, (2.26)]
+};
+
+/// Elastic moduli and their viscous counterparts (Kelvin–Voigt). Zero: the force does not exist.
+struct Material {
+  double density = 1;  ///< ρ [kg/m²]
+  WeftWarp tension;    ///< k1, k2 [N/m]
+  WeftWarp damping;    ///< d1, d2 [N s/m]
+  DampingForm damping_form = DampingForm::linear;
+  double shear = 0;          ///< G [N/m]
+  double shear_damping = 0;  ///< dG [N s/m]
+  ShearForm shear_form = ShearForm::conservative;
+  double contraction = 0;          ///< C12 [N/m]
+  double contraction_damping = 0;  ///< d12 [N s/m]
+  WeftWarp bend;                   ///< B1, B2: [N/m] for the membrane, [N m] for the plate
+  WeftWarp bend_damping;           ///< dB1, dB2: [N s/m] or [N m s]
+  BendForm bend_form = BendForm::plate;
+  bool bend_projected = true;  ///< plate only: forces along the vertex normal (the thesis) or in all directions
+};
+
+}  // namespace drape::model

@@ -1,0 +1,104 @@
+#include "model/scene.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <map>
+#include <stdexcept>
+
+namespace drape::model {
+namespace {
+
+using Place = bool (*)(const Grid& grid, int a, int b);
+
+struct NamedPlace {
+  const char* name;
+  Place contains;
+};
+
+constexpr auto left = [](const Grid&, int a, int) { return a == 0; };
+constexpr auto right = [](const Grid& grid, int a, int) { return a == grid.nu - 1; };
+constexpr auto lower = [](const Grid&, int, int b) { return b == 0; };
+constexpr auto upper = [](const Grid& grid, int, int b) { return b == grid.nv - 1; };
+
+constexpr NamedPlace places[] = {
+    {"left edge", left},
+    {"right edge", right},
+    {"lower edge", lower},
+    {"upper edge", upper},
+    {"border", [](const Grid& g, int a, int b) { return left(g, a, b) || right(g, a, b) || lower(g, a, b) || upper(g, a, b); }},
+    {"corners",
+     [](const Grid& g, int a, int b) { return (left(g, a, b) || right(g, a, b)) && (lower(g, a, b) || upper(g, a, b)); }},
+    {"upper corners", [](const Grid& g, int a, int b) { return (left(g, a, b) || right(g, a, b)) && upper(g, a, b); }},
+    {"all", [](const Grid&, int, int) { return true; }},
+};
+
+std::vector<int> pinned_particles(const Grid& grid, const PinRule& rule) {
+  std::vector<int> found;
+  if (rule.where.empty()) {
+    for (const auto& [a, b] : rule.particles) found.push_back(grid.index(a, b));
+    return found;
+  }
+  const auto place = std::ranges::find(places, rule.where, [](const NamedPlace& p) { return std::string(p.name); });
+  if (place == std::end(places)) throw std::invalid_argument("no place called '" + rule.where + "' to pin");
+  for (int b = 0; b < grid.nv; ++b)
+    for (int a = 0; a < grid.nu; ++a)
+      if (place->contains(grid, a, b)) found.push_back(grid.index(a, b));
+  return found;
+}
+
+}  // namespace
+
+const std::vector<std::string>& pin_places() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all;
+    for (const NamedPlace& place : places) all.emplace_back(place.name);
+    return all;
+  }();
+  return names;
+}
+
+std::vector<solver::Pin> pins(const Scene& scene) {
+  std::map<int, solver::Pin> merged;
+  for (const PinRule& rule : scene.pins)
+    for (const int i : pinned_particles(scene.sheet.grid, rule)) {
+      solver::Pin& pin = merged.try_emplace(i, solver::Pin{i, {false, false, false}}).first->second;
+      for (int c = 0; c < 3; ++c) {
+        if (!rule.directions[c]) continue;
+        pin.fixed[c] = true;
+        pin.velocity[c] = rule.velocity[c];
+      }
+    }
+  std::vector<solver::Pin> all;
+  for (const auto& [particle, pin] : merged) all.push_back(pin);
+  return all;
+}
+
+solver::State start(const Scene& scene) {
+  solver::State y;
+  y.x = scene.sheet.grid.parameters();
+  y.x.col(0) *= scene.start.stretch.weft;
+  y.x.col(1) *= scene.start.stretch.warp;
+  if (scene.start.plane == Plane::vertical) y.x.col(1).swap(y.x.col(2));
+  y.v = scene.start.velocity.transpose().replicate(y.x.rows(), 1);
+  return y;
+}
+
+double size(const Scene& scene) { return std::max(scene.sheet.grid.size_u, scene.sheet.grid.size_v); }
+
+double numerical_stiffness(const Scene& scene, double h) {
+  const auto& [grid, material, gravity] = scene.sheet;
+  const double lu = grid.spacing_u(), lv = grid.spacing_v();
+  return h * h / material.density * std::max(material.tension.weft / (lu * lu), material.tension.warp / (lv * lv));
+}
+
+double stiffness_to_damping(const Scene& scene, double h) {
+  const auto& [k, d] = std::tie(scene.sheet.material.tension, scene.sheet.material.damping);
+  const auto ratio = [h](double modulus, double damping) {
+    if (modulus == 0) return 0.0;
+    return damping == 0 ? std::numeric_limits<double>::infinity() : h * modulus / damping;
+  };
+  return std::max(ratio(k.weft, d.weft), ratio(k.warp, d.warp));
+}
+
+}  // namespace drape::model

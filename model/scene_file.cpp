@@ -1,0 +1,156 @@
+#include "model/scene_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include "model/scene_keys.hpp"
+
+namespace drape::model {
+namespace {
+
+/// Origins of the keys that did not come from the file.
+using Origins = std::map<std::string, std::string>;
+
+toml::table parse(std::string_view text, std::string_view origin) {
+  try {
+    return toml::parse(text);
+  } catch (const toml::parse_error& error) {
+    throw SceneError(fmt::format("{}:{}: {}", origin, error.source().begin.line, error.description()));
+  }
+}
+
+/// The value of an override: TOML if it is TOML, else a bare word.
+toml::table parse_value(const Override& change) {
+  try {
+    return toml::parse("value = " + change.value);
+  } catch (const toml::parse_error&) {
+    toml::table table;
+    table.insert("value", change.value);
+    return table;
+  }
+}
+
+void apply(toml::table& root, const Override& change) {
+  toml::table* table = &root;
+  std::string_view rest = change.key;
+  for (auto dot = rest.find('.'); dot != std::string_view::npos; dot = rest.find('.')) {
+    const std::string_view section = rest.substr(0, dot);
+    if (!table->contains(section)) table->insert(section, toml::table{});
+    table = table->get_as<toml::table>(section);
+    if (table == nullptr) throw SceneError(fmt::format("--set {}: '{}' is not a section", change.key, section));
+    rest.remove_prefix(dot + 1);
+  }
+  table->insert_or_assign(rest, *parse_value(change).get("value"));
+}
+
+/// All keys that stand in the file, as paths. Sections are opened, other tables are values.
+void collect(const toml::table& table, const std::string& prefix, std::map<std::string, const toml::node*>& found) {
+  for (const auto& [key, node] : table) {
+    const std::string path = prefix + std::string(key.str());
+    const bool section =
+        std::ranges::any_of(scene_key_table(), [&](const SceneKey& known) { return known.path.starts_with(path + "."); });
+    if (section && node.is_table())
+      collect(*node.as_table(), path + ".", found);
+    else
+      found.emplace(path, &node);
+  }
+}
+
+void check_known(const std::map<std::string, const toml::node*>& found, const std::string& origin, const Origins& origins) {
+  for (const auto& [path, node] : found) {
+    if (std::ranges::find(scene_key_table(), path, &SceneKey::path) != scene_key_table().end()) continue;
+    const std::string section = path.substr(0, path.find('.') + 1);
+    std::vector<std::string_view> choices;
+    for (const SceneKey& known : scene_key_table())
+      if (section.empty() || known.path.starts_with(section)) choices.push_back(known.path);
+    if (choices.empty())
+      for (const SceneKey& known : scene_key_table()) choices.push_back(known.path);
+    const auto changed = origins.find(path);
+    throw SceneError(fmt::format("{}: unknown key '{}': expected one of {}",
+                                 place(changed == origins.end() ? origin : changed->second, *node), path,
+                                 fmt::join(choices, ", ")));
+  }
+}
+
+/// Rules that no single key can break.
+void check_together(const Scene& scene, const std::string& origin) {
+  const Material& m = scene.sheet.material;
+  const Grid& grid = scene.sheet.grid;
+  const auto fail = [&](std::string_view what) { throw SceneError(fmt::format("{}: {}", origin, what)); };
+  if (m.contraction * m.contraction >= m.tension.weft * m.tension.warp && m.contraction > 0)
+    fail("material.contraction: expected C12² below k1 k2, or the material would collapse");
+  const bool bends = m.bend.any() || m.bend_damping.any();
+  if (bends && m.bend_form == BendForm::membrane && !m.bend_projected)
+    fail("material.bend_projected = false: expected true, the membrane acts along the normal only");
+  if (bends && m.bend_projected && (grid.nu < 2 || grid.nv < 2))
+    fail("material.bend: expected bend_form = \"plate\" with bend_projected = false, a chain has no normals");
+}
+
+std::string read_file(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  if (!file) throw SceneError(fmt::format("{}: cannot be read: expected a scene file", path.string()));
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+}  // namespace
+
+Override parse_override(std::string_view text) {
+  const auto equals = text.find('=');
+  if (equals == std::string_view::npos || equals == 0 || equals + 1 == text.size())
+    throw SceneError(fmt::format("--set {}: expected key=value, for example material.damping=0.5", text));
+  return {std::string(text.substr(0, equals)), std::string(text.substr(equals + 1))};
+}
+
+Scene parse_scene(std::string_view toml, std::string_view origin, std::span<const Override> overrides) {
+  const std::string file(origin);
+  toml::table root = parse(toml, origin);
+  Origins origins;
+  for (const Override& change : overrides) {
+    apply(root, change);
+    origins[change.key] = "--set " + change.key;
+  }
+  std::map<std::string, const toml::node*> found;
+  collect(root, "", found);
+  check_known(found, file, origins);
+
+  Scene scene;
+  for (const SceneKey& key : scene_key_table()) {
+    const auto node = found.find(std::string(key.path));
+    if (node == found.end()) continue;
+    const auto changed = origins.find(node->first);
+    key.read(Value(*node->second, node->first, changed == origins.end() ? file : changed->second), scene);
+  }
+  if (scene.name.empty()) throw SceneError(fmt::format("{}: name: expected a name for the scene", origin));
+  check_together(scene, file);
+  return scene;
+}
+
+Scene load_scene(const std::string& name_or_file, std::span<const Override> overrides) {
+  if (name_or_file.ends_with(".toml")) return parse_scene(read_file(name_or_file), name_or_file, overrides);
+  const auto builtin = std::ranges::find(builtin_scenes(), name_or_file, &BuiltinScene::name);
+  if (builtin != builtin_scenes().end()) return parse_scene(builtin->toml, name_or_file, overrides);
+  std::vector<std::string_view> names;
+  for (const BuiltinScene& scene : builtin_scenes()) names.push_back(scene.name);
+  throw SceneError(
+      fmt::format("unknown scene '{}': expected a file ending in .toml or one of {}", name_or_file, fmt::join(names, ", ")));
+}
+
+std::string to_toml(const Scene& scene) {
+  std::string text;
+  for (const SceneKey& key : scene_key_table()) text += fmt::format("{} = {}\n", key.path, key.write(scene));
+  return text;
+}
+
+std::vector<KeyHelp> scene_keys() {
+  std::vector<KeyHelp> keys;
+  for (const SceneKey& key : scene_key_table()) keys.push_back({std::string(key.path), std::string(key.description)});
+  return keys;
+}
+
+}  // namespace drape::model

@@ -1,0 +1,25 @@
+#include "model/term.hpp"
+
+namespace drape::model {
+
+std::span<const TermKind> term_kinds() {
+  static constexpr TermKind table[] = {
+      {"tension", "springs along weft and warp (2.20), Alg. 1", make_tension},
+      {"damping", "linear damping d/l² (v_j − v_i) along weft and warp (3.18)", make_linear_damping},
+      {"projected-damping", "viscous tension, projected onto the edges (2.28), Alg. 1", make_projected_damping},
+      {"shear", "conservative shear W = ½ G <s_u, s_v>² with its viscous part", make_shear},
+      {"printed-shear", "shear as Algorithm 2 prints it", make_printed_shear},
+      {"contraction", "transverse contraction (2.22) with its viscous part", make_contraction},
+      {"membrane", "membrane bending (2.24) with its viscous part", make_membrane},
+      {"plate", "thin-plate bending (2.26) with its viscous part", make_plate},
+      {"gravity", "weight", make_gravity},
+  };
+  return table;
+}
+
+void JacobianEntries::add(std::vector<Eigen::Triplet<double>>& entries, int i, int j, const Eigen::Matrix3d& block) {
+  for (int a = 0; a < 3; ++a)
+    for (int b = 0; b < 3; ++b) entries.emplace_back(3 * i + a, 3 * j + b, block(a, b));
+}
+
+}  // namespace drape::model
