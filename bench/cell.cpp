@@ -1,0 +1,91 @@
+#include "bench/cell.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "model/scene_file.hpp"
+
+namespace drape::bench {
+namespace {
+
+const solver::LinearSolver& find_linear_solver(const std::string& name) {
+  const auto all = solver::linear_solvers();
+  const auto found = std::ranges::find(all, name, &solver::LinearSolver::name);
+  if (found != all.end()) return *found;
+  std::string message = "unknown linear solver '" + name + "': choose from";
+  for (const solver::LinearSolver& solver : all) message += " " + std::string(solver.name);
+  throw std::invalid_argument(message);
+}
+
+std::vector<results::Parameter> parameters(const Cell& cell) {
+  const solver::Options& o = cell.options;
+  std::vector<results::Parameter> all{{"size", model::size(cell.scene), "m", "length by which errors are divided"}};
+  if (cell.method->implicit()) {
+    all.push_back(
+        {"cg_tolerance", o.cg_tolerance, "1", "residual of a linear solve over |b|; in the loop at most half of its"});
+    all.push_back({"max_cg_iterations", double(o.max_cg_iterations), "1", "iterations a solve before it counts as failed"});
+  } else {
+    all.push_back({"verlet_fraction", o.verlet_fraction, "1", "sub-step over its stability limit"});
+  }
+  if (cell.method->stage_solver == "fixed-point") {
+    all.push_back({"loop_tolerance", o.loop_tolerance, "1", "residual of the fixed-point loop over |b|"});
+    all.push_back({"max_updates", double(o.max_updates), "1", "updates a stage before it counts as failed"});
+  }
+  if (o.control.enabled()) {
+    all.push_back({"control_min_updates", double(o.control.min_updates), "1", "the step grows after fewer updates"});
+    all.push_back({"control_max_updates", double(o.control.max_updates), "1", "the step shrinks after more updates"});
+    all.push_back({"control_factor", o.control.factor, "1", "by which the step grows and shrinks"});
+  }
+  return all;
+}
+
+results::RunRecord describe(const Cell& cell, const model::Plan& plan) {
+  results::RunRecord run;
+  run.scene = cell.scene.name;
+  run.scene_toml = model::to_toml(cell.scene);
+  run.overrides = cell.overrides;
+  run.plan = model::to_string(plan);
+  run.method = cell.method_name();
+  run.stage_solver = cell.method->stage_solver;
+  run.linear_solver = cell.method->implicit() ? cell.options.linear_solver->name : "none";
+  run.step = cell.step;
+  run.until = cell.scene.end;
+  run.parameters = parameters(cell);
+  run.numerical_stiffness = model::numerical_stiffness(cell.scene, cell.step);
+  run.stiffness_to_damping = model::stiffness_to_damping(cell.scene, cell.step);
+  return run;
+}
+
+}  // namespace
+
+std::string Cell::method_name() const {
+  const bool usual = options.linear_solver == &solver::linear_solvers().front();
+  return std::string(method->name) + (usual ? "" : "/" + std::string(options.linear_solver->name));
+}
+
+void choose_method(Cell& cell, const std::string& name) {
+  const auto slash = name.find('/');
+  cell.method = &solver::method(name.substr(0, slash));
+  if (slash == std::string::npos) return;
+  cell.options.linear_solver = &find_linear_solver(name.substr(slash + 1));
+  if (!cell.method->implicit()) throw std::invalid_argument("'" + name + "': this method solves no linear systems");
+}
+
+results::RunRecord record(const Cell& cell) {
+  const model::Cloth cloth = model::compile(cell.scene);
+  const solver::SplitOde& ode = cloth.ode;
+  results::RunRecord run = describe(cell, cloth.plan);
+  solver::Integrator integrator(ode, *cell.method, cell.options, cloth.start);
+  const solver::RunResult result = integrate(integrator, cell.scene.end, cell.step, [&](const solver::StepReport& step) {
+    run.steps.push_back({step.t, step.h, step.updates, step.cg_iterations, solver::kinetic_energy(ode, step.y.v),
+                         ode.potential_energy(step.t, step.y.x)});
+  });
+  run.outcome = to_string(result.outcome);
+  run.message = result.message;
+  run.last_good_time = result.last_good_time;
+  run.final_state = integrator.state();
+  for (const solver::Work::Kind& kind : ode.work->kinds()) run.work.push_back({kind.name, kind.description, kind.count});
+  return run;
+}
+
+}  // namespace drape::bench

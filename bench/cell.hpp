@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "model/cloth.hpp"
+#include "results/run_record.hpp"
+#include "solver/integrator.hpp"
+
+namespace drape::bench {
+
+/// One run: a scene, a method, a step. `scene.end` is the time it runs to.
+struct Cell {
+  model::Scene scene;
+  std::string overrides;  ///< for people: what differs from the scene's file
+  const solver::Method* method;
+  double step;  ///< [s]
+  solver::Options options;
+
+  /// The method with its linear solver if that is not the usual one: "bdf2", "bdf2/cholesky".
+  std::string method_name() const;
+};
+
+/// Sets method and linear solver from a name like that. Throws std::invalid_argument with all that there is to choose from.
+void choose_method(Cell& cell, const std::string& name);
+
+/// Cells that are compared with each other: repetitions are interleaved within a group and it is recorded as a whole.
+using Group = std::vector<Cell>;
+
+/// Runs a cell once and records everything but times and errors.
+results::RunRecord record(const Cell& cell);
+
+}  // namespace drape::bench

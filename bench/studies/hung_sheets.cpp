@@ -1,0 +1,23 @@
+#include "bench/studies.hpp"
+#include "model/scene_file.hpp"
+
+namespace drape::bench {
+
+/// Table 3.2's methods, and IMEX midpoint and velocity Verlet beside them, on the 20 × 20 sheet: l = 0.8/19 m, k = 10⁴ N/m,
+/// ρ = 1 kg/m², h = 0.01 s, 1 s.
+std::vector<Group> hung_sheets(bool quick) {
+  std::vector<Group> groups;
+  for (const char* name : {"hung-edge", "hung-corners"})
+    for (const char* damping : {"50", "0.5"}) {
+      const model::Override change{"material.damping", damping};
+      model::Scene scene = model::load_scene(name, {&change, 1});
+      if (quick) scene.end = 0.1;
+      Group group;
+      for (const solver::Method& method : solver::methods())
+        group.push_back({scene, "material.damping=" + change.value, &method, 0.01, {}});
+      groups.push_back(std::move(group));
+    }
+  return groups;
+}
+
+}  // namespace drape::bench

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "bench/cell.hpp"
+
+namespace drape::bench {
+
+/// How a list of groups is run and recorded.
+struct SweepOptions {
+  int repetitions = 3;    ///< timed runs of every cell, besides the one that is recorded
+  bool reference = true;  ///< whether errors are measured
+  std::filesystem::path out;
+  std::string command_line;
+};
+
+/// Runs all groups; after each its runs are on disk. Progress on a terminal; remarks on standard error.
+std::vector<results::RunRecord> sweep(const std::vector<Group>& groups, const SweepOptions& options);
+
+/// A file in results/runs/ named after the time and the job, in a folder made if need be.
+std::filesystem::path default_out(const std::string& job);
+
+}  // namespace drape::bench
