@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <stdexcept>
+
+namespace drape::results {
+
+/// A file that cannot be written or read. The message names it and says what is wrong.
+class FileError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Throws FileError unless there is no such file yet and its folder lets us create one.
+void require_creatable(const std::filesystem::path& file);
+
+/// Whether publish() may take the place of a file that is already there.
+enum class Existing { refuse, replace };
+
+/// Makes `content` the file in one step: whoever looks, now or after a crash, sees all of it or what was there before.
+/// Throws FileError and leaves nothing half-written, neither in the file nor beside it.
+void publish(const std::filesystem::path& file, std::span<const std::byte> content, Existing existing);
+
+}  // namespace drape::results

@@ -1,0 +1,221 @@
+#include "results/hdf5.hpp"
+
+#include <fmt/format.h>
+#include <hdf5.h>
+
+#include <concepts>
+#include <type_traits>
+#include <utility>
+
+namespace drape::results::hdf5 {
+namespace {
+
+static_assert(std::is_same_v<hid_t, std::int64_t>);
+
+/// The most specific description on the library's error stack.
+std::string innermost_error() {
+  std::string description = "no reason given";
+  const auto take = [](unsigned, const H5E_error2_t* error, void* text) -> herr_t {
+    if (error->desc) *static_cast<std::string*>(text) = error->desc;
+    return 1;  // the first is enough
+  };
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, take, &description);
+  return description;
+}
+
+/// Passes on what a function of the library returned: all of them say with a negative number that they failed.
+template <std::signed_integral Result>
+Result check(Result result, const std::string& what) {
+  if (result < 0) throw Error(fmt::format("{}: {}", what, innermost_error()));
+  return result;
+}
+
+/// The library must not print its errors: they are in our exceptions.
+void be_silent() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+
+/// UTF-8 of any length.
+Handle text_type() {
+  Handle type(H5Tcopy(H5T_C_S1), "text type");
+  check(H5Tset_size(type.id(), H5T_VARIABLE), "text type");
+  check(H5Tset_cset(type.id(), H5T_CSET_UTF8), "text type");
+  return type;
+}
+
+/// The types in memory and, the same on every machine, in the file.
+struct Types {
+  hid_t memory;
+  hid_t file;
+};
+
+template <class Number>
+Types types() {
+  if constexpr (std::is_same_v<Number, double>) return {H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE};
+  if constexpr (std::is_same_v<Number, int>) return {H5T_NATIVE_INT, H5T_STD_I32LE};
+  if constexpr (std::is_same_v<Number, std::int64_t>) return {H5T_NATIVE_INT64, H5T_STD_I64LE};
+}
+
+void write_attribute(const Handle& object, const std::string& name, Types types, const void* value) {
+  const Handle space(H5Screate(H5S_SCALAR), name);
+  const Handle attribute(H5Acreate2(object.id(), name.c_str(), types.file, space.id(), H5P_DEFAULT, H5P_DEFAULT), name);
+  check(H5Awrite(attribute.id(), types.memory, value), name);
+}
+
+/// Reads an attribute that holds one value.
+void read_attribute(const Handle& object, const std::string& name, hid_t type, void* value) {
+  const Handle attribute(H5Aopen(object.id(), name.c_str(), H5P_DEFAULT), name);
+  const Handle space(H5Aget_space(attribute.id()), name);
+  if (check(H5Sget_simple_extent_npoints(space.id()), name) != 1) throw Error(name + " must be a single value");
+  check(H5Aread(attribute.id(), type, value), name);
+}
+
+std::string description_of(const std::string& name) { return name + ".description"; }
+
+/// For the library's iterations: appends a name to a list.
+template <class Info>
+herr_t append_name(hid_t, const char* name, const Info*, void* names) {
+  static_cast<std::vector<std::string>*>(names)->push_back(name);
+  return 0;
+}
+
+}  // namespace
+
+Handle::Handle(std::int64_t id, const std::string& what) : id_(check(id, what)) {}
+Handle::Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, H5I_INVALID_HID)) {}
+Handle::~Handle() {
+  if (id_ != H5I_INVALID_HID) H5Idec_ref(id_);
+}
+
+Handle create_in_memory(const std::filesystem::path& name) {
+  be_silent();
+  constexpr std::size_t growth = 1 << 20;  // [bytes]
+  const Handle creation(H5Pcreate(H5P_FILE_CREATE), "file");
+  check(H5Pset_attr_creation_order(creation.id(), H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED), "file");
+  const Handle access(H5Pcreate(H5P_FILE_ACCESS), "file");
+  check(H5Pset_fapl_core(access.id(), growth, /*backing_store=*/false), "file");
+  return {H5Fcreate(name.c_str(), H5F_ACC_TRUNC, creation.id(), access.id()), "file"};
+}
+
+Handle open_for_reading(const std::filesystem::path& path) {
+  be_silent();
+  return {H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), "cannot be opened"};
+}
+
+std::vector<std::byte> image(const Handle& file) {
+  check(H5Fflush(file.id(), H5F_SCOPE_GLOBAL), "file image");
+  std::vector<std::byte> bytes(static_cast<std::size_t>(check(H5Fget_file_image(file.id(), nullptr, 0), "file image")));
+  check(H5Fget_file_image(file.id(), bytes.data(), bytes.size()), "file image");
+  return bytes;
+}
+
+Handle create_group(const Handle& parent, const std::string& name, const std::string& description) {
+  Handle group(H5Gcreate2(parent.id(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), name);
+  write_text(group, "description", description);
+  return group;
+}
+
+Handle open_group(const Handle& parent, const std::string& name) {
+  return {H5Gopen2(parent.id(), name.c_str(), H5P_DEFAULT), name};
+}
+
+bool has(const Handle& parent, const std::string& name) {
+  return check(H5Lexists(parent.id(), name.c_str(), H5P_DEFAULT), name) > 0;
+}
+
+void remove(const Handle& parent, const std::string& name) { check(H5Ldelete(parent.id(), name.c_str(), H5P_DEFAULT), name); }
+
+void write_text(const Handle& object, const std::string& name, const std::string& value) {
+  const Handle type = text_type();
+  const char* text = value.c_str();
+  write_attribute(object, name, {type.id(), type.id()}, &text);
+}
+
+void write_described_text(const Handle& object, const std::string& name, const std::string& value,
+                          const std::string& description) {
+  write_text(object, name, value);
+  write_text(object, description_of(name), description);
+}
+
+std::string read_text(const Handle& object, const std::string& name) {
+  const Handle type = text_type();
+  char* text = nullptr;
+  read_attribute(object, name, type.id(), &text);
+  std::string value = text ? text : "";
+  H5free_memory(text);
+  return value;
+}
+
+std::string read_description(const Handle& object, const std::string& name) { return read_text(object, description_of(name)); }
+
+std::vector<std::string> described_texts(const Handle& object) {
+  std::vector<std::string> names;
+  check(H5Aiterate2(object.id(), H5_INDEX_CRT_ORDER, H5_ITER_INC, nullptr, append_name<H5A_info_t>, &names), "attributes");
+  std::erase_if(names,
+                [&](const auto& name) { return check(H5Aexists(object.id(), description_of(name).c_str()), name) == 0; });
+  return names;
+}
+
+void write_integer(const Handle& object, const std::string& name, int value) {
+  write_attribute(object, name, types<int>(), &value);
+}
+
+int read_integer(const Handle& object, const std::string& name) {
+  int value = 0;
+  read_attribute(object, name, types<int>().memory, &value);
+  return value;
+}
+
+template <class Number>
+void write_numbers(const Handle& group, const std::string& name, const Number* values, std::vector<std::uint64_t> shape,
+                   const std::string& unit, const std::string& description) {
+  const std::vector<hsize_t> dimensions(shape.begin(), shape.end());
+  const int rank = static_cast<int>(shape.size());
+  const Handle space(rank == 0 ? H5Screate(H5S_SCALAR) : H5Screate_simple(rank, dimensions.data(), nullptr), name);
+  const Handle links(H5Pcreate(H5P_LINK_CREATE), name);
+  check(H5Pset_create_intermediate_group(links.id(), 1), name);
+  const hid_t type = types<Number>().file;
+  const Handle dataset(H5Dcreate2(group.id(), name.c_str(), type, space.id(), links.id(), H5P_DEFAULT, H5P_DEFAULT), name);
+  check(H5Dwrite(dataset.id(), types<Number>().memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), name);
+  write_text(dataset, "unit", unit);
+  write_text(dataset, "description", description);
+}
+
+template <class Number>
+std::vector<Number> read_numbers(const Handle& group, const std::string& name) {
+  const Handle dataset(H5Dopen2(group.id(), name.c_str(), H5P_DEFAULT), name);
+  const Handle space(H5Dget_space(dataset.id()), name);
+  std::vector<Number> values(static_cast<std::size_t>(check(H5Sget_simple_extent_npoints(space.id()), name)));
+  check(H5Dread(dataset.id(), types<Number>().memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), name);
+  return values;
+}
+
+template <class Number>
+Number read_number(const Handle& group, const std::string& name) {
+  const auto values = read_numbers<Number>(group, name);
+  if (values.size() != 1) throw Error(name + " must be a single number");
+  return values.front();
+}
+
+std::vector<DatasetInfo> datasets(const Handle& group) {
+  std::vector<std::string> names;
+  check(H5Lvisit(group.id(), H5_INDEX_NAME, H5_ITER_INC, append_name<H5L_info_t>, &names), "list of datasets");
+  std::vector<DatasetInfo> infos;
+  for (const std::string& name : names) {
+    const Handle object(H5Oopen(group.id(), name.c_str(), H5P_DEFAULT), name);
+    if (H5Iget_type(object.id()) == H5I_DATASET)
+      infos.push_back({name, read_text(object, "unit"), read_text(object, "description")});
+  }
+  return infos;
+}
+
+template void write_numbers(const Handle&, const std::string&, const double*, std::vector<std::uint64_t>, const std::string&,
+                            const std::string&);
+template void write_numbers(const Handle&, const std::string&, const int*, std::vector<std::uint64_t>, const std::string&,
+                            const std::string&);
+template void write_numbers(const Handle&, const std::string&, const std::int64_t*, std::vector<std::uint64_t>,
+                            const std::string&, const std::string&);
+template std::vector<double> read_numbers(const Handle&, const std::string&);
+template std::vector<int> read_numbers(const Handle&, const std::string&);
+template double read_number(const Handle&, const std::string&);
+template std::int64_t read_number(const Handle&, const std::string&);
+
+}  // namespace drape::results::hdf5

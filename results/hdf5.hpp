@@ -1,0 +1,83 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+/// The little of HDF5 that we use, with exceptions and handles that close themselves. Only hdf5.cpp knows the library.
+///
+/// Text is kept in attributes, since h5py shows these as str, and described by an attribute of its own: `a.description` for
+/// `a`. Numbers are kept in datasets with the attributes `unit` and `description`.
+namespace drape::results::hdf5 {
+
+/// Says what failed and why, but not in which file.
+struct Error : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// Owns a file, a group or any other object of the library.
+class Handle {
+ public:
+  /// Throws Error, naming `what`, if the id is not valid.
+  Handle(std::int64_t id, const std::string& what);
+  Handle(Handle&& other) noexcept;
+  Handle& operator=(Handle&&) = delete;
+  ~Handle();
+  std::int64_t id() const { return id_; }
+
+ private:
+  std::int64_t id_;
+};
+
+/// A file that exists in memory only. Its root remembers the order in which its attributes were written.
+Handle create_in_memory(const std::filesystem::path& name);
+Handle open_for_reading(const std::filesystem::path& path);
+
+/// What the file would be on disk.
+std::vector<std::byte> image(const Handle& file);
+
+Handle create_group(const Handle& parent, const std::string& name, const std::string& description);
+Handle open_group(const Handle& parent, const std::string& name);
+bool has(const Handle& parent, const std::string& name);
+void remove(const Handle& parent, const std::string& name);
+
+void write_text(const Handle& object, const std::string& name, const std::string& value);
+void write_described_text(const Handle& object, const std::string& name, const std::string& value,
+                          const std::string& description);
+std::string read_text(const Handle& object, const std::string& name);
+std::string read_description(const Handle& object, const std::string& name);
+
+/// Names of the texts of an object that have a description, in the order they were written.
+std::vector<std::string> described_texts(const Handle& object);
+
+/// An integer as an attribute of its own.
+void write_integer(const Handle& object, const std::string& name, int value);
+int read_integer(const Handle& object, const std::string& name);
+
+/// Number: double, int or std::int64_t. Shape {} is a single number. A '/' in the name makes groups.
+template <class Number>
+void write_numbers(const Handle& group, const std::string& name, const Number* values, std::vector<std::uint64_t> shape,
+                   const std::string& unit, const std::string& description);
+
+/// All numbers of a dataset, row by row.
+template <class Number>
+std::vector<Number> read_numbers(const Handle& group, const std::string& name);
+
+/// Throws Error unless the dataset holds exactly one number.
+template <class Number>
+Number read_number(const Handle& group, const std::string& name);
+
+/// A dataset's name in its group (a path, if it is in a group of the group), unit and description.
+struct DatasetInfo {
+  std::string name;
+  std::string unit;
+  std::string description;
+};
+
+/// All datasets in a group and in its groups, sorted by name.
+std::vector<DatasetInfo> datasets(const Handle& group);
+
+}  // namespace drape::results::hdf5

@@ -1,0 +1,192 @@
+#include "results/run_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "results/hdf5.hpp"
+#include "results/schema.hpp"
+
+namespace drape::results {
+namespace fs = std::filesystem;
+namespace {
+
+using hdf5::Handle;
+
+/// Runs `action` and names the file in its errors.
+template <class Action>
+auto with_file_named(const fs::path& path, Action action) {
+  try {
+    return action();
+  } catch (const hdf5::Error& error) {
+    throw FileError(fmt::format("{}: {}", path.string(), error.what()));
+  }
+}
+
+// --- Members of records by their type ------------------------------------------------------------------------------------
+
+void write(const Handle& group, const auto& field, const std::string& value) {
+  hdf5::write_described_text(group, field.name, value, field.description);
+}
+
+void write(const Handle& group, const auto& field, double value) {
+  hdf5::write_numbers(group, field.name, &value, {}, field.unit, field.description);
+}
+
+template <class Number>
+void write(const Handle& group, const auto& field, const std::vector<Number>& values) {
+  hdf5::write_numbers(group, field.name, values.data(), {values.size()}, field.unit, field.description);
+}
+
+void write(const Handle& group, const auto& field, const solver::Vectors& values) {
+  const auto rows = static_cast<std::uint64_t>(values.rows());
+  hdf5::write_numbers(group, field.name, values.data(), {rows, 3}, field.unit, field.description);
+}
+
+void read(const Handle& group, const char* name, std::string& value) { value = hdf5::read_text(group, name); }
+
+void read(const Handle& group, const char* name, double& value) { value = hdf5::read_number<double>(group, name); }
+
+void read(const Handle& group, const char* name, std::vector<double>& values) {
+  values = hdf5::read_numbers<double>(group, name);
+}
+
+void read(const Handle& group, const char* name, solver::Vectors& values) {
+  const auto numbers = hdf5::read_numbers<double>(group, name);
+  if (numbers.size() % 3 != 0) throw hdf5::Error(fmt::format("{} must have three columns", name));
+  values = Eigen::Map<const solver::Vectors>(numbers.data(), static_cast<Eigen::Index>(numbers.size() / 3), 3);
+}
+
+template <class Record>
+void write_fields(const Handle& group, const auto& fields, const Record& record) {
+  for_each(fields, [&](const auto& field) { write(group, field, record.*field.member); });
+}
+
+template <class Record>
+Record read_fields(const Handle& group, const auto& fields) {
+  Record record;
+  for_each(fields, [&](const auto& field) { read(group, field.name, record.*field.member); });
+  return record;
+}
+
+void write_steps(const Handle& group, const std::vector<StepRecord>& steps) {
+  for_each(step_fields, [&]<class Value>(const Field<StepRecord, Value>& field) {
+    std::vector<Value> column;
+    std::ranges::transform(steps, std::back_inserter(column), field.member);
+    write(group, field, column);
+  });
+}
+
+std::vector<StepRecord> read_steps(const Handle& group) {
+  std::vector<StepRecord> steps(hdf5::read_numbers<double>(group, std::get<0>(step_fields).name).size());
+  for_each(step_fields, [&]<class Value>(const Field<StepRecord, Value>& field) {
+    const auto column = hdf5::read_numbers<Value>(group, field.name);
+    if (column.size() != steps.size()) throw hdf5::Error(fmt::format("{} must be as long as the other series", field.name));
+    for (std::size_t i = 0; i < column.size(); ++i) steps[i].*field.member = column[i];
+  });
+  return steps;
+}
+
+// --- Runs ----------------------------------------------------------------------------------------------------------------
+
+void write_run(const Handle& runs, const std::string& name, const RunRecord& run) {
+  const Handle group = hdf5::create_group(runs, name, "one run of one method on one scene");
+  write_fields(group, run_fields, run);
+  write_steps(hdf5::create_group(group, "steps", "what happened in each accepted step"), run.steps);
+  const Handle parameters = hdf5::create_group(group, "parameters", "parameters of the scene");
+  for (const Parameter& p : run.parameters) hdf5::write_numbers(parameters, p.name, &p.value, {}, p.unit, p.description);
+  const Handle work = hdf5::create_group(group, "work", "how often each kind of work was done");
+  for (const WorkCount& w : run.work) hdf5::write_numbers(work, w.name, &w.count, {}, "1", w.description);
+  write_fields(hdf5::create_group(group, "final_state", "where the run ended"), state_fields, run.final_state);
+  if (!run.error) return;
+  write_fields(hdf5::create_group(group, "error", "distance of the final positions from a reference"), error_fields,
+               *run.error);
+}
+
+RunRecord read_run(const Handle& group) {
+  RunRecord run = read_fields<RunRecord>(group, run_fields);
+  run.steps = read_steps(hdf5::open_group(group, "steps"));
+  const Handle parameters = hdf5::open_group(group, "parameters");
+  for (const auto& [name, unit, description] : hdf5::datasets(parameters))
+    run.parameters.push_back({name, hdf5::read_number<double>(parameters, name), unit, description});
+  const Handle work = hdf5::open_group(group, "work");
+  for (const auto& [name, unit, description] : hdf5::datasets(work))
+    run.work.push_back({name, description, hdf5::read_number<std::int64_t>(work, name)});
+  run.final_state = read_fields<solver::State>(hdf5::open_group(group, "final_state"), state_fields);
+  if (hdf5::has(group, "error")) run.error = read_fields<ErrorRecord>(hdf5::open_group(group, "error"), error_fields);
+  return run;
+}
+
+std::string run_name(int run) { return fmt::format("{:03}", run); }
+
+Handle open_run_file(const fs::path& path) {
+  std::error_code unknown;  // then it is no file to us
+  if (!fs::is_regular_file(path, unknown)) throw hdf5::Error("there is no such file");
+  Handle file = hdf5::open_for_reading(path);
+  const int version = hdf5::read_integer(file, "schema_version");
+  if (version != schema_version)
+    throw hdf5::Error(fmt::format("its schema_version is {}, this program reads {}", version, schema_version));
+  return file;
+}
+
+}  // namespace
+
+struct RunFile::Image {
+  Handle file;
+  Handle runs;
+  int count = 0;
+};
+
+RunFile::RunFile(fs::path path, const Provenance& provenance) : path_(std::move(path)) {
+  require_creatable(path_);
+  with_file_named(path_, [&] {
+    Handle file = hdf5::create_in_memory(path_);
+    hdf5::write_text(file, "description", "Runs of drape, a harness for time integrators of cloth");
+    hdf5::write_integer(file, "schema_version", schema_version);
+    for (const Fact& fact : provenance) hdf5::write_described_text(file, fact.name, fact.value, fact.description);
+    Handle runs = hdf5::create_group(file, "runs", "one group for each run, in the order they finished");
+    image_ = std::make_unique<Image>(Image{std::move(file), std::move(runs)});
+  });
+}
+
+RunFile::~RunFile() = default;
+
+void RunFile::add(const RunRecord& run) {
+  const std::string name = run_name(image_->count);
+  with_file_named(path_, [&] {
+    try {
+      write_run(image_->runs, name, run);
+      publish(path_, hdf5::image(image_->file), image_->count == 0 ? Existing::refuse : Existing::replace);
+    } catch (...) {
+      if (hdf5::has(image_->runs, name)) hdf5::remove(image_->runs, name);
+      throw;
+    }
+  });
+  ++image_->count;
+}
+
+std::vector<RunRecord> read_runs(const fs::path& path) {
+  return with_file_named(path, [&] {
+    const Handle file = open_run_file(path);
+    const Handle runs = hdf5::open_group(file, "runs");
+    std::vector<RunRecord> records;
+    for (int i = 0; hdf5::has(runs, run_name(i)); ++i) records.push_back(read_run(hdf5::open_group(runs, run_name(i))));
+    return records;
+  });
+}
+
+Provenance read_provenance(const fs::path& path) {
+  return with_file_named(path, [&] {
+    const Handle file = open_run_file(path);
+    Provenance facts;
+    for (const std::string& name : hdf5::described_texts(file))
+      facts.push_back({name, hdf5::read_text(file, name), hdf5::read_description(file, name)});
+    return facts;
+  });
+}
+
+}  // namespace drape::results

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "solver/state.hpp"
+
+namespace drape::results {
+
+/// A number with its unit and meaning, as it is stored (unit "1" where there is none).
+struct Parameter {
+  std::string name;
+  double value = 0;
+  std::string unit;
+  std::string description;
+};
+
+/// How often a kind of work was done.
+struct WorkCount {
+  std::string name;
+  std::string description;
+  std::int64_t count = 0;
+};
+
+/// One accepted step.
+struct StepRecord {
+  double t = 0;  ///< [s], at the end of the step
+  double h = 0;  ///< [s]
+  int updates = 0;
+  int cg_iterations = 0;
+  double kinetic_energy = 0;    ///< [J]
+  double potential_energy = 0;  ///< [J]
+};
+
+/// Distance of the final positions from a reference. Errors are divided by the scene's size and so have no unit.
+struct ErrorRecord {
+  double rms = 0;
+  double maximum = 0;
+  std::string reference;           ///< name, for example "cvode-bdf"
+  double reference_tolerance = 0;  ///< relative tolerance it was computed with
+  double reference_error = 0;      ///< its own uncertainty, in the same measure as rms
+};
+
+/// All that is kept of one run: plain data, filled by whoever runs, written by whoever records.
+struct RunRecord {
+  std::string scene;
+  std::string scene_toml;  ///< the complete scene, defaults and overrides included
+  std::string overrides;   ///< what was set differently from the scene, for example "material.damping=0.5"
+  std::string plan;        ///< what the scene compiled to, for people
+  std::string method;      ///< as on the command line, for example "bdf2/cholesky"
+  std::string stage_solver;
+  std::string linear_solver;
+  double step = 0;   ///< [s]
+  double until = 0;  ///< [s]
+  std::vector<Parameter> parameters;
+  double numerical_stiffness = 0;   ///< ν_h = h² k / (ρ l²), the larger of weft and warp
+  double stiffness_to_damping = 0;  ///< h k / d; infinite without damping
+
+  std::string outcome;
+  std::string message;
+  double last_good_time = 0;  ///< [s]
+
+  std::vector<StepRecord> steps;
+  std::vector<double> times_ms;  ///< solver wall time of every repetition, in the order they ran
+  std::vector<WorkCount> work;
+  solver::State final_state;
+  std::optional<ErrorRecord> error;
+};
+
+/// The count of a kind of work, 0 if the run knows no such kind.
+std::int64_t work_count(const RunRecord& run, const std::string& name);
+
+}  // namespace drape::results

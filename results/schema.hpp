@@ -1,0 +1,70 @@
+#pragma once
+
+#include <tuple>
+
+#include "results/run_record.hpp"
+
+namespace drape::results {
+
+/// The layout of a run in the file: this one list serves writing and reading. results/README.md shows it for people.
+inline constexpr int schema_version = 1;
+
+/// A member of a record under its name in the file. Text has no unit; numbers have one, "1" if they have no dimension.
+template <class Record, class Value>
+struct Field {
+  const char* name;
+  Value Record::*member;
+  const char* unit;
+  const char* description;
+};
+template <class Record, class Value>
+Field(const char*, Value Record::*, const char*, const char*) -> Field<Record, Value>;
+
+inline constexpr std::tuple run_fields{
+    Field{"scene", &RunRecord::scene, "", "name of the scene"},
+    Field{"scene_toml", &RunRecord::scene_toml, "", "the complete scene, defaults and overrides included"},
+    Field{"overrides", &RunRecord::overrides, "", "what was set differently from the scene"},
+    Field{"plan", &RunRecord::plan, "", "what the scene compiled to"},
+    Field{"method", &RunRecord::method, "", "time integrator with its solvers, as on the command line"},
+    Field{"stage_solver", &RunRecord::stage_solver, "", "how the implicit stages were solved"},
+    Field{"linear_solver", &RunRecord::linear_solver, "", "how the linear systems were solved"},
+    Field{"outcome", &RunRecord::outcome, "", "how the run ended; anything but success means that its result must not be used"},
+    Field{"message", &RunRecord::message, "", "why the run failed"},
+    Field{"step", &RunRecord::step, "s", "step size h asked for"},
+    Field{"until", &RunRecord::until, "s", "end time asked for"},
+    Field{"last_good_time", &RunRecord::last_good_time, "s", "time reached without failure"},
+    Field{"numerical_stiffness", &RunRecord::numerical_stiffness, "1", "h^2 k / (rho l^2), the larger of weft and warp"},
+    Field{"stiffness_to_damping", &RunRecord::stiffness_to_damping, "1", "h k / d; infinite without damping"},
+    Field{"times_ms", &RunRecord::times_ms, "ms", "solver wall time of every repetition, in the order they ran"},
+};
+
+inline constexpr std::tuple step_fields{
+    Field{"t", &StepRecord::t, "s", "time at the end of the step"},
+    Field{"h", &StepRecord::h, "s", "size of the step"},
+    Field{"updates", &StepRecord::updates, "1", "updates of the iterate by the stage solver"},
+    Field{"cg_iterations", &StepRecord::cg_iterations, "1", "iterations of the conjugate gradient method"},
+    Field{"kinetic_energy", &StepRecord::kinetic_energy, "J", "kinetic energy at the end of the step"},
+    Field{"potential_energy", &StepRecord::potential_energy, "J", "potential energy at the end of the step"},
+};
+
+inline constexpr std::tuple state_fields{
+    Field{"x", &solver::State::x, "m", "positions, one row for each particle"},
+    Field{"v", &solver::State::v, "m/s", "velocities, one row for each particle"},
+};
+
+inline constexpr std::tuple error_fields{
+    Field{"rms", &ErrorRecord::rms, "1",
+          "root of the mean squared distance to the reference, divided by the size of the scene"},
+    Field{"maximum", &ErrorRecord::maximum, "1", "largest distance to the reference, divided by the size of the scene"},
+    Field{"reference", &ErrorRecord::reference, "", "name of the reference"},
+    Field{"reference_tolerance", &ErrorRecord::reference_tolerance, "1", "relative tolerance the reference was computed with"},
+    Field{"reference_error", &ErrorRecord::reference_error, "1", "uncertainty of the reference, in the same measure as rms"},
+};
+
+/// Calls visit(field) for every field of a list.
+template <class Fields, class Visit>
+void for_each(const Fields& fields, Visit visit) {
+  std::apply([&](const auto&... field) { (visit(field), ...); }, fields);
+}
+
+}  // namespace drape::results
