@@ -1,21 +1,13 @@
 #include "bench/cell.hpp"
 
-#include <algorithm>
+#include <fmt/format.h>
+
 #include <stdexcept>
 
 #include "model/scene_file.hpp"
 
 namespace drape::bench {
 namespace {
-
-const solver::LinearSolver& find_linear_solver(const std::string& name) {
-  const auto all = solver::linear_solvers();
-  const auto found = std::ranges::find(all, name, &solver::LinearSolver::name);
-  if (found != all.end()) return *found;
-  std::string message = "unknown linear solver '" + name + "': choose from";
-  for (const solver::LinearSolver& solver : all) message += " " + std::string(solver.name);
-  throw std::invalid_argument(message);
-}
 
 std::vector<results::Parameter> parameters(const Cell& cell) {
   const solver::Options& o = cell.options;
@@ -59,16 +51,17 @@ results::RunRecord describe(const Cell& cell, const model::Plan& plan) {
 }  // namespace
 
 std::string Cell::method_name() const {
-  const bool usual = options.linear_solver == &solver::linear_solvers().front();
-  return std::string(method->name) + (usual ? "" : "/" + std::string(options.linear_solver->name));
+  if (options.linear_solver == &solver::linear_solvers().front()) return std::string(method->name);
+  return fmt::format("{}/{}", method->name, options.linear_solver->name);
 }
 
 void choose_method(Cell& cell, const std::string& name) {
   const auto slash = name.find('/');
   cell.method = &solver::method(name.substr(0, slash));
   if (slash == std::string::npos) return;
-  cell.options.linear_solver = &find_linear_solver(name.substr(slash + 1));
-  if (!cell.method->implicit()) throw std::invalid_argument("'" + name + "': this method solves no linear systems");
+  cell.options.linear_solver = &solver::linear_solver(name.substr(slash + 1));
+  if (!cell.method->implicit())
+    throw std::invalid_argument(fmt::format("method '{}': expected {}, it solves no linear systems", name, cell.method->name));
 }
 
 results::RunRecord record(const Cell& cell) {

@@ -1,8 +1,6 @@
 #include "bench/studies.hpp"
 
-#include <algorithm>
-#include <stdexcept>
-#include <string>
+#include "solver/named.hpp"
 
 namespace drape::bench {
 
@@ -15,13 +13,6 @@ std::span<const Study> studies() {
   return table;
 }
 
-const Study& study(std::string_view name) {
-  const auto all = studies();
-  const auto found = std::ranges::find(all, name, &Study::name);
-  if (found != all.end()) return *found;
-  std::string message = "unknown study '" + std::string(name) + "': choose from";
-  for (const Study& known : all) message += " " + std::string(known.name);
-  throw std::invalid_argument(message);
-}
+const Study& study(std::string_view name) { return solver::find_named(studies(), "study", name); }
 
 }  // namespace drape::bench

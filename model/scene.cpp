@@ -1,10 +1,12 @@
 #include "model/scene.hpp"
 
 #include <algorithm>
-#include <functional>
 #include <limits>
 #include <map>
-#include <stdexcept>
+#include <string_view>
+#include <tuple>
+
+#include "solver/named.hpp"
 
 namespace drape::model {
 namespace {
@@ -12,7 +14,7 @@ namespace {
 using Place = bool (*)(const Grid& grid, int a, int b);
 
 struct NamedPlace {
-  const char* name;
+  std::string_view name;
   Place contains;
 };
 
@@ -39,11 +41,10 @@ std::vector<int> pinned_particles(const Grid& grid, const PinRule& rule) {
     for (const auto& [a, b] : rule.particles) found.push_back(grid.index(a, b));
     return found;
   }
-  const auto place = std::ranges::find(places, rule.where, [](const NamedPlace& p) { return std::string(p.name); });
-  if (place == std::end(places)) throw std::invalid_argument("no place called '" + rule.where + "' to pin");
+  const NamedPlace& place = solver::find_named<NamedPlace>(places, "place", rule.where);
   for (int b = 0; b < grid.nv; ++b)
     for (int a = 0; a < grid.nu; ++a)
-      if (place->contains(grid, a, b)) found.push_back(grid.index(a, b));
+      if (place.contains(grid, a, b)) found.push_back(grid.index(a, b));
   return found;
 }
 

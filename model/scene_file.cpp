@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "model/scene_keys.hpp"
+#include "solver/named.hpp"
 
 namespace drape::model {
 namespace {
@@ -133,12 +134,11 @@ Scene parse_scene(std::string_view toml, std::string_view origin, std::span<cons
 
 Scene load_scene(const std::string& name_or_file, std::span<const Override> overrides) {
   if (name_or_file.ends_with(".toml")) return parse_scene(read_file(name_or_file), name_or_file, overrides);
-  const auto builtin = std::ranges::find(builtin_scenes(), name_or_file, &BuiltinScene::name);
-  if (builtin != builtin_scenes().end()) return parse_scene(builtin->toml, name_or_file, overrides);
-  std::vector<std::string_view> names;
-  for (const BuiltinScene& scene : builtin_scenes()) names.push_back(scene.name);
-  throw SceneError(
-      fmt::format("unknown scene '{}': expected a file ending in .toml or one of {}", name_or_file, fmt::join(names, ", ")));
+  try {
+    return parse_scene(solver::find_named(builtin_scenes(), "scene", name_or_file).toml, name_or_file, overrides);
+  } catch (const std::invalid_argument& error) {
+    throw SceneError(fmt::format("{}, or a file ending in .toml", error.what()));
+  }
 }
 
 std::string to_toml(const Scene& scene) {

@@ -1,7 +1,6 @@
 #include "solver/methods.hpp"
 
-#include <algorithm>
-#include <stdexcept>
+#include "solver/named.hpp"
 
 namespace drape::solver {
 
@@ -18,13 +17,6 @@ std::span<const Method> methods() {
   return table;
 }
 
-const Method& method(std::string_view name) {
-  const auto all = methods();
-  const auto found = std::ranges::find(all, name, &Method::name);
-  if (found != all.end()) return *found;
-  std::string message = "unknown method '" + std::string(name) + "': choose from";
-  for (const Method& m : all) message += " " + std::string(m.name);
-  throw std::invalid_argument(message);
-}
+const Method& method(std::string_view name) { return find_named(methods(), "method", name); }
 
 }  // namespace drape::solver

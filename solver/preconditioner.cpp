@@ -1,5 +1,7 @@
 #include "solver/preconditioner.hpp"
 
+#include "solver/named.hpp"
+
 namespace drape::solver {
 
 std::span<const LinearSolver> linear_solvers() {
@@ -9,5 +11,7 @@ std::span<const LinearSolver> linear_solvers() {
   };
   return table;
 }
+
+const LinearSolver& linear_solver(std::string_view name) { return find_named(linear_solvers(), "linear solver", name); }
 
 }  // namespace drape::solver

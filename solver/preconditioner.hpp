@@ -37,6 +37,9 @@ struct LinearSolver {
 /// All linear solvers; the first is the default.
 std::span<const LinearSolver> linear_solvers();
 
+/// The linear solver with this name. Throws std::invalid_argument, naming all that there are.
+const LinearSolver& linear_solver(std::string_view name);
+
 std::unique_ptr<Preconditioner> make_incomplete_cholesky();
 std::unique_ptr<Preconditioner> make_cholesky();
 
