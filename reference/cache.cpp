@@ -1,0 +1,111 @@
+#include "reference/cache.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <sundials/sundials_version.h>
+#include <sunlinsol/sunlinsol_klu.h>
+#include <unistd.h>
+#include <xxhash.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+
+#include "reference/fingerprint.hpp"
+#include "reference/reference_file.hpp"
+
+namespace drape::reference {
+namespace {
+
+std::string complete(std::string_view key) {
+  std::array<char, 32> sundials{};
+  SUNDIALSGetVersion(sundials.data(), static_cast<int>(sundials.size()));
+  return fmt::format("{}\nSUNDIALS {}, KLU {}.{}.{}, Eigen {}.{}.{}\n{}\n", key, sundials.data(), KLU_MAIN_VERSION,
+                     KLU_SUB_VERSION, KLU_SUBSUB_VERSION, EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION,
+                     fingerprint);
+}
+
+/// Writes a file of its own beside the target and renames it, so that no reader ever sees a half of it.
+void write_atomically(const std::filesystem::path& target, const std::string& bytes) {
+  std::filesystem::create_directories(target.parent_path());
+  std::string temporary = target.string() + ".XXXXXX";
+  const int descriptor = mkstemp(temporary.data());
+  if (descriptor < 0) throw std::system_error(errno, std::generic_category(), temporary);
+  ::close(descriptor);
+  try {
+    std::ofstream file(temporary, std::ios::binary);
+    file.exceptions(std::ios::badbit | std::ios::failbit);
+    file << bytes;
+    file.close();
+    std::filesystem::rename(temporary, target);
+  } catch (...) {
+    std::error_code ignored;  // the first failure is the one to report
+    std::filesystem::remove(temporary, ignored);
+    throw;
+  }
+}
+
+}  // namespace
+
+std::filesystem::path default_cache_folder() {
+  const auto from = [](const char* variable) {
+    const char* value = std::getenv(variable);
+    return std::filesystem::path(value ? value : "");
+  };
+  if (const auto folder = from("DRAPE_CACHE"); !folder.empty()) return folder;
+  if (const auto folder = from("XDG_CACHE_HOME"); !folder.empty()) return folder / "drape";
+  if (const auto folder = from("HOME"); !folder.empty()) return folder / ".cache" / "drape";
+  return {};
+}
+
+std::filesystem::path Cache::file(std::string_view key) const {
+  const std::string text = complete(key);
+  const auto hash = XXH3_128bits(text.data(), text.size());
+  return folder_ / fmt::format("{:016x}{:016x}.reference", hash.high64, hash.low64);
+}
+
+std::optional<Reference> Cache::find(std::string_view key) {
+  const std::filesystem::path path = file(key);
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) {
+    ++counts_.absent;
+    return std::nullopt;
+  }
+  try {
+    Reference reference = decode(std::string(std::istreambuf_iterator<char>(stream), {}), complete(key));
+    ++counts_.hits;
+    return reference;
+  } catch (const DamagedFile& error) {
+    ++counts_.rejected;
+    messages_.push_back(fmt::format("the cached reference {} is not used: {}", path.string(), error.what()));
+    return std::nullopt;
+  }
+}
+
+void Cache::store(std::string_view key, const Reference& reference) {
+  const std::filesystem::path path = file(key);
+  try {
+    if (folder_.empty()) throw std::runtime_error("none of DRAPE_CACHE, XDG_CACHE_HOME and HOME names a folder");
+    write_atomically(path, encode(complete(key), reference));
+  } catch (const std::exception& error) {
+    ++counts_.not_stored;
+    messages_.push_back(fmt::format("the reference is not kept for the next run: {}", error.what()));
+  }
+}
+
+std::string cache_key(std::string_view scene_toml, double t0, std::span<const double> times, const CvodeOptions& options) {
+  return fmt::format("{}\nt0 = {}\ntimes = [{}]\nrtol = {}\nsize = {}", scene_toml, t0, fmt::join(times, ", "), options.rtol,
+                     options.size);
+}
+
+Reference cached(Cache& cache, std::string_view key, const std::function<Reference()>& compute) {
+  if (auto known = cache.find(key)) return *std::move(known);
+  Reference reference = compute();
+  cache.store(key, reference);
+  return reference;
+}
+
+}  // namespace drape::reference

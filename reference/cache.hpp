@@ -1,0 +1,54 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string_view>
+
+#include "reference/reference.hpp"
+
+namespace drape::reference {
+
+/// $DRAPE_CACHE, else $XDG_CACHE_HOME/drape, else $HOME/.cache/drape, else empty.
+std::filesystem::path default_cache_folder();
+
+/// References on disk, one file for each key.
+///
+/// To the caller's key text is added all that he cannot know: the source code of solver/, model/ and reference/, the
+/// compiler and its flags, and the versions of the libraries. A file holds the complete text, compared on reading, and a
+/// checksum; a file that fails either test counts as absent. Files are never removed: the folder may be deleted at any time.
+/// Nothing about the disk stops a run: what cannot be read is computed, what cannot be written is not kept.
+class Cache {
+ public:
+  explicit Cache(std::filesystem::path folder = default_cache_folder()) : folder_(std::move(folder)) {}
+
+  std::optional<Reference> find(std::string_view key);
+  void store(std::string_view key, const Reference& reference);
+
+  /// The file of a key, whether it is there or not.
+  std::filesystem::path file(std::string_view key) const;
+
+  struct Counts {
+    int hits = 0;
+    int absent = 0;
+    int rejected = 0;  ///< files that were damaged or belonged to another key
+    int not_stored = 0;
+  };
+  const Counts& counts() const { return counts_; }
+
+  /// One sentence for each file that was rejected or could not be written, for the user.
+  const std::vector<std::string>& messages() const { return messages_; }
+
+ private:
+  std::filesystem::path folder_;
+  Counts counts_;
+  std::vector<std::string> messages_;
+};
+
+/// The caller's part of a key: the complete scene, from which the ODE and y0 follow, and what reference() was asked for.
+std::string cache_key(std::string_view scene_toml, double t0, std::span<const double> times, const CvodeOptions& options);
+
+/// The reference from the cache, or else from `compute` and into the cache. Exceptions of `compute` pass through.
+Reference cached(Cache& cache, std::string_view key, const std::function<Reference()>& compute);
+
+}  // namespace drape::reference

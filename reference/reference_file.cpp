@@ -1,0 +1,93 @@
+#include "reference/reference_file.hpp"
+
+#include <xxhash.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <cstring>
+
+namespace drape::reference {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "numbers are written as they are in memory");
+
+template <class T>
+void put(std::string& out, const T* first, std::size_t count) {
+  const std::uint64_t length = count;
+  out.append(reinterpret_cast<const char*>(&length), sizeof length);
+  out.append(reinterpret_cast<const char*>(first), count * sizeof(T));
+}
+
+/// Takes from the front what put() appended.
+class Reader {
+ public:
+  explicit Reader(std::string_view bytes) : rest_(bytes) {}
+
+  template <class Container>
+  Container take() {
+    std::uint64_t count = 0;
+    std::memcpy(&count, bytes(sizeof count).data(), sizeof count);
+    constexpr std::size_t width = sizeof(typename Container::value_type);
+    if (count > rest_.size() / width) throw DamagedFile("it is shorter than it says");
+    Container result(count, {});
+    std::ranges::copy(bytes(count * width), reinterpret_cast<char*>(result.data()));
+    return result;
+  }
+
+  std::string_view bytes(std::size_t count) {
+    if (count > rest_.size()) throw DamagedFile("it is shorter than it says");
+    const std::string_view front = rest_.substr(0, count);
+    rest_.remove_prefix(count);
+    return front;
+  }
+
+ private:
+  std::string_view rest_;
+};
+
+solver::Vectors take_vectors(Reader& reader) {
+  const auto values = reader.take<std::vector<double>>();
+  return Eigen::Map<const solver::Vectors>(values.data(), static_cast<Eigen::Index>(values.size() / 3), 3);
+}
+
+std::string checksum(std::string_view bytes) {
+  const std::uint64_t hash = XXH3_64bits(bytes.data(), bytes.size());
+  return {reinterpret_cast<const char*>(&hash), sizeof hash};
+}
+
+}  // namespace
+
+std::string encode(std::string_view key, const Reference& reference) {
+  std::string out;
+  put(out, key.data(), key.size());
+  put(out, reference.name.data(), reference.name.size());
+  put(out, &reference.tolerance, 1);
+  put(out, reference.error.data(), reference.error.size());
+  put(out, reference.trajectory.times.data(), reference.trajectory.times.size());
+  for (const solver::State& state : reference.trajectory.states) {
+    put(out, state.x.data(), static_cast<std::size_t>(state.x.size()));
+    put(out, state.v.data(), static_cast<std::size_t>(state.v.size()));
+  }
+  return out + checksum(out);
+}
+
+Reference decode(std::string_view bytes, std::string_view key) {
+  const std::string_view body = bytes.substr(0, bytes.size() - std::min(bytes.size(), sizeof(XXH64_hash_t)));
+  if (checksum(body) != bytes.substr(body.size())) throw DamagedFile("its checksum is wrong");
+
+  Reader reader(body);
+  if (reader.take<std::string>() != key) throw DamagedFile("it belongs to another key");
+  Reference reference;
+  reference.name = reader.take<std::string>();
+  reference.tolerance = reader.take<std::vector<double>>().at(0);
+  reference.error = reader.take<std::vector<double>>();
+  reference.trajectory.times = reader.take<std::vector<double>>();
+  for (std::size_t i = 0; i < reference.trajectory.times.size(); ++i) {
+    solver::Vectors x = take_vectors(reader);
+    reference.trajectory.states.push_back({std::move(x), take_vectors(reader)});
+  }
+  return reference;
+}
+
+}  // namespace drape::reference
