@@ -89,11 +89,15 @@ void check_together(const Scene& scene, const std::string& origin) {
     fail("material.bend_projected = false: expected true, the membrane acts along the normal only");
   if (bends && m.bend_projected && (grid.nu < 2 || grid.nv < 2))
     fail("material.bend: expected bend_form = \"plate\" with bend_projected = false, a chain has no normals");
+  const std::vector<solver::Pin> all = pins(scene);
+  if (std::ssize(all) == grid.particles() && std::ranges::all_of(all, &solver::Pin::all))
+    fail("pins: expected at least one coordinate that is free to move");
 }
 
 std::string read_file(const std::filesystem::path& path) {
   std::ifstream file(path);
-  if (!file) throw SceneError(fmt::format("{}: cannot be read: expected a scene file", path.string()));
+  if (!file || std::filesystem::is_directory(path))
+    throw SceneError(fmt::format("{}: cannot be read: expected a scene file", path.string()));
   std::ostringstream text;
   text << file.rdbuf();
   return text.str();

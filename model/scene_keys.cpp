@@ -40,7 +40,7 @@ void read_particles(const Value& value, const Grid& grid, PinRule& rule) {
   for (const Value& pair : value.list()) {
     const std::vector<Value> ab = pair.list(2);
     const double a = ab[0].number(), b = ab[1].number();
-    if (a != static_cast<int>(a) || b != static_cast<int>(b) || a < 0 || b < 0 || a >= grid.nu || b >= grid.nv)
+    if (a < 0 || b < 0 || a >= grid.nu || b >= grid.nv || a != static_cast<int>(a) || b != static_cast<int>(b))
       value.fail(fmt::format("places [a, b] with 0 ≤ a < {} and 0 ≤ b < {}", grid.nu, grid.nv));
     rule.particles.emplace_back(static_cast<int>(a), static_cast<int>(b));
   }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <sstream>
@@ -16,7 +17,9 @@ std::string place(const std::string& origin, const toml::node& node) {
 std::string Value::shown() const {
   std::ostringstream out;
   node_.visit([&](const auto& value) { out << value; });
-  return out.str();
+  std::string text = out.str();
+  std::ranges::replace(text, '\n', ' ');  // a message is one line
+  return text;
 }
 
 void Value::fail(const std::string& what_is_right) const {

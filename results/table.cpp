@@ -96,9 +96,15 @@ std::string quoted(std::string text) {
   return '"' + text + '"';
 }
 
+/// What people see: why there is no error, and no digits of an error that the reference is too uncertain to resolve.
 std::string shown(const Column& column, const RunRecord& run) {
-  if (column.name == "error_rms" && run.outcome != to_string(solver::Outcome::success))
-    return fmt::format("{} at {:.4g} s", run.outcome, run.last_good_time);
+  constexpr double resolved = 10;  // times the reference's own error
+  if (column.name == "error_rms") {
+    if (run.outcome != to_string(solver::Outcome::success))
+      return fmt::format("{} at {:.4g} s", run.outcome, run.last_good_time);
+    if (run.error && run.error->rms < resolved * run.error->reference_error)
+      return fmt::format("< {:.1g}", resolved * run.error->reference_error);
+  }
   return to_text(column.cell(run), "{:.4g}");
 }
 

@@ -153,6 +153,15 @@ TEST(Table, FailedRunShowsHowAndWhenInPlaceOfItsError) {
   EXPECT_THAT(to_table(std::vector{with_error}), Not(HasSubstr("1.235e-05")));
 }
 
+TEST(Table, ShowsNoErrorThatItsReferenceCannotResolve) {
+  RunRecord run = good_run();
+  run.error->reference_error = run.error->rms / 11;
+  EXPECT_THAT(to_table(std::vector{run}), HasSubstr(" 1.235e-05 "));
+  run.error->reference_error = run.error->rms / 9;
+  EXPECT_THAT(to_table(std::vector{run}), AllOf(HasSubstr(" < 1e-05 "), Not(HasSubstr("1.235e-05"))));
+  EXPECT_THAT(to_csv(std::vector{run}), HasSubstr(",1.23456789e-05,"));
+}
+
 TEST(Table, LeavesOutColumnsThatNoRunHasAValueFor) {
   EXPECT_THAT(to_table(runs), AllOf(HasSubstr(" set "), HasSubstr("reference")));
   EXPECT_THAT(to_table(std::vector{good_run()}), Not(HasSubstr(" set")));
