@@ -130,35 +130,37 @@ Outcome IncompleteCholesky::factor(const SparseMatrix& A) {
   return Outcome::success;
 }
 
-/// The rows of the triangle solved in place, in their order; w_i is multiplied by scale_i before.
-template <bool scaled>
-void eliminate(const Triangle& T, const std::vector<double>& scale, std::vector<Lanes>& work) {
+/// Solves the triangle in its order: w_i = begin(i) − Σ_j T_ij w_j, and end(i, w_i) for each.
+template <class Begin, class End>
+void eliminate(const Triangle& T, std::vector<Lanes>& work, const Begin& begin, const End& end) {
   const int n = static_cast<int>(T.row.size());
   const int *const row = T.row.data(), *const start = T.start.data(), *const column = T.column.data();
-  const double *const value = T.value.data(), *const factor = scale.data();
+  const double* const value = T.value.data();
   Lanes* const w = work.data();
   for (int k = 0, e = 0; k < n; ++k) {
     const int i = row[k];
-    Lanes s = w[i];
-    if constexpr (scaled) s *= factor[i];
-    for (const int end = start[k + 1]; e < end; ++e) s -= value[e] * w[column[e]];
+    Lanes s = begin(i);
+    for (const int last = start[k + 1]; e < last; ++e) s -= value[e] * w[column[e]];
     w[i] = s;
+    end(i, s);
   }
 }
 
 double IncompleteCholesky::apply(const Vectors& r, Vectors& z) {
-  const auto n = r.rows();
-  for (Eigen::Index i = 0; i < n - 1; ++i) work_[i] = load(r.data() + 3 * i);
-  work_[n - 1].head<3>() = r.row(n - 1).transpose();
-  eliminate<false>(forward_, inverse_, work_);
-  eliminate<true>(backward_, inverse_, work_);
+  const auto last = r.rows() - 1;
+  Lanes last_row = Lanes::Zero();  // four lanes of it would read past the end
+  last_row.head<3>() = r.row(last).transpose();
+  const auto residual = [&](Eigen::Index i) -> Lanes { return i < last ? Lanes(load(r.data() + 3 * i)) : last_row; };
+
+  eliminate(forward_, work_, residual, [](int, const Lanes&) {});
   Lanes rz = Lanes::Zero();
-  for (Eigen::Index i = 0; i < n - 1; ++i) {
-    rz += work_[i] * load(r.data() + 3 * i);
-    Lanes::Map(z.data() + 3 * i) = work_[i];  // the fourth lane is overwritten by the next row
-  }
-  z.row(n - 1) = work_[n - 1].head<3>();
-  return sum(rz) + z.row(n - 1).dot(r.row(n - 1));
+  eliminate(
+      backward_, work_, [&](int i) -> Lanes { return work_[i] * inverse_[i]; },
+      [&](int i, const Lanes& s) {
+        store(z.data() + 3 * static_cast<Eigen::Index>(i), s);
+        rz += s * residual(i);
+      });
+  return sum(rz);
 }
 
 }  // namespace

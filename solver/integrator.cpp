@@ -15,6 +15,9 @@ constexpr double same_step = 1e-9;  ///< relative difference of steps that is ro
 /// Below this part of the first step a run counts as stuck.
 constexpr double smallest_step = 1e-6;
 
+/// A sum is finite only if all its terms are, and it is vectorised where a test of each would not be.
+bool finite(const State& y) { return std::isfinite(y.x.sum() + y.v.sum()); }
+
 double controlled(const StepControl& control, double h, int updates) {
   if (updates > control.max_updates) return h / control.factor;
   if (updates < control.min_updates) return h * control.factor;
@@ -62,8 +65,7 @@ StageResult Integrator::step(double h) {
   step_.result = {};
   method_.step(step_);
   StageResult& result = step_.result;
-  const State& y1 = step_.next.y;
-  if (result.outcome == Outcome::success && !(y1.x.allFinite() && y1.v.allFinite())) result.outcome = Outcome::not_finite;
+  if (result.outcome == Outcome::success && !finite(step_.next.y)) result.outcome = Outcome::not_finite;
   if (result.outcome != Outcome::success) {
     ++rejected_;
     return result;

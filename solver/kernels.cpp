@@ -21,7 +21,7 @@ double multiply(const SparseMatrix& A, const Vectors& x, Vectors& y) {
   for (int i = 0, k = 0; i < n; ++i) {
     const int end = start[i + 1];
     // Four lanes of the last particle would read past the end.
-    if (i == n - 1 || (end > k && column[end - 1] == n - 1)) {
+    if (i == n - 1 || (end > k && column[end - 1] == n - 1)) [[unlikely]] {
       const Eigen::Array3d s = row_product(A, x, i);
       y.row(i) = s;
       xy += (s * x.row(i).transpose().array()).sum();

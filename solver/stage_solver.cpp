@@ -40,6 +40,12 @@ Eigen::ArrayXd aligned(const SparseMatrix& pattern, const SparseMatrix& B) {
   return values;
 }
 
+/// Every value three times, once a coordinate.
+Eigen::ArrayXd thrice(const Eigen::VectorXd& values) { return values.replicate(1, 3).reshaped<Eigen::RowMajor>(); }
+
+auto flat(const Vectors& a) { return Eigen::ArrayXd::Map(a.data(), a.size()); }
+auto flat(Vectors& a) { return Eigen::ArrayXd::Map(a.data(), a.size()); }
+
 SparseMatrix diagonal(const Eigen::VectorXd& mass) { return SparseMatrix(mass.asDiagonal()); }
 
 }  // namespace
@@ -52,7 +58,8 @@ StageSolver::StageSolver(const SplitOde& ode, const Options& options)
       mass_(aligned(A_, diagonal(ode.mass))),
       stiffness_(aligned(A_, ode.stiffness)),
       damping_(aligned(A_, ode.damping)),
-      spring_(Eigen::VectorXd(ode.stiffness.diagonal())),
+      momentum_(thrice(ode.mass)),
+      spring_(thrice(ode.stiffness.diagonal())),
       work_(*ode.work) {
   cg_.analyze(A_);
   for (Vectors* field : {&r_, &d_, &q_}) field->setZero(ode.particles(), 3);
@@ -72,14 +79,21 @@ Outcome StageSolver::prepare(double gamma) {
 /// |b| = |r + A v| over the free coordinates. At rest b vanishes like r does, but for the round-off of differences of
 /// positions times spring constants, which a relative test alone would never get below.
 StageSolver::Scale StageSolver::scale(const Vectors& residual, const State& y, double gamma) {
-  constexpr double operations = 8;  // roundings that add up in the force on one particle
+  constexpr double operations = 8;                                         // roundings that add up in the force on one particle
+  const double underflow = std::sqrt(std::numeric_limits<double>::min());  // squares of what is smaller vanish
   multiply(A_, y.v, q_);
   ++work_.products;
   work_.bytes += multiply_bytes(A_) + vector_bytes(A_.rows(), 3);
   q_ += residual;
   filter(ode_.pins, q_);
-  const double forces = std::sqrt((spring_.square() * y.x.rowwise().squaredNorm().array()).sum());
-  return {q_.norm(), operations * std::numeric_limits<double>::epsilon() * gamma * forces};
+  const double forces = (spring_ * flat(y.x)).matrix().norm();
+  return {q_.norm(), operations * std::numeric_limits<double>::epsilon() * gamma * forces + underflow};
+}
+
+/// r = M (av − v) + γ f over the free coordinates; f may be r.
+void StageSolver::form_residual(const Stage& stage, const Vectors& v, const Vectors& f) {
+  flat(r_) = momentum_ * (flat(stage.av) - flat(v)) + stage.gamma * flat(f);
+  filter(ode_.pins, r_);
 }
 
 StageResult StageSolver::solve_linear(const Stage& stage, const Vectors& f_explicit, State& y) {
@@ -100,8 +114,8 @@ StageResult StageSolver::solve_linear(const Stage& stage, const Vectors& f_expli
   }
   ++work_.products;
   work_.bytes += multiply_bytes(ode_.stiffness) + vector_bytes(A_.rows(), 8);
-  r_ = ode_.mass.asDiagonal() * (stage.av - y.v) + gamma * (r_ + f_explicit);
-  filter(ode_.pins, r_);
+  r_ += f_explicit;
+  form_residual(stage, y.v, r_);
 
   const double target = scale(r_, y, gamma).target(options_.cg_tolerance);
   const LinearResult linear = cg_.solve(A_, r_, d_, target);
@@ -123,8 +137,7 @@ StageResult StageSolver::solve(const Stage& stage, State& y) {
   for (;; ++result.updates, ++work_.updates) {
     y.x = stage.ax + gamma * y.v;
     ode_.force(stage.t, y.x, y.v, r_);
-    r_ = ode_.mass.asDiagonal() * (stage.av - y.v) + gamma * r_;
-    filter(ode_.pins, r_);
+    form_residual(stage, y.v, r_);
     if (result.updates == 0) size = scale(r_, y, gamma);
 
     const double residual = r_.norm();

@@ -46,6 +46,7 @@ class StageSolver {
   };
 
   Outcome prepare(double gamma);
+  void form_residual(const Stage& stage, const Vectors& v, const Vectors& f);
   Scale scale(const Vectors& residual, const State& y, double gamma);
 
   const SplitOde& ode_;
@@ -53,7 +54,7 @@ class StageSolver {
   ConjugateGradients cg_;
   SparseMatrix A_;
   Eigen::ArrayXd mass_, stiffness_, damping_;  // each aligned with the entries of A
-  Eigen::ArrayXd spring_;                      // diagonal of K
+  Eigen::ArrayXd momentum_, spring_;           // mass and diagonal of K, each thrice a particle, as coordinates lie in memory
   double gamma_ = 0;
   Vectors r_, d_, q_;
   LinearWork work_;
