@@ -2,31 +2,36 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
-#include <cmath>
-#include <functional>
+#include <cerrno>
+#include <cstdio>
+#include <optional>
+#include <system_error>
 
+#include "bench/argument_checks.hpp"
+#include "bench/choices.hpp"
 #include "bench/studies.hpp"
 #include "bench/sweep.hpp"
 #include "model/scene_file.hpp"
 #include "results/run_file.hpp"
 #include "results/table.hpp"
+#include "solver/named.hpp"
 
 namespace drape::bench {
 namespace {
 
+constexpr int failure = 1;
 constexpr int bad_input = 2;
 constexpr double most_steps = 1e7;
 
 /// What stands on the command line.
 struct Arguments {
-  std::string list_what;
+  std::string list_kind;
   std::string scene;
   std::vector<std::string> methods;
   std::vector<double> steps;
-  double until = 0;
+  std::optional<double> until;
   std::vector<std::string> sets;
-  std::vector<double> control;
+  std::vector<int> control;
   solver::Options options;
   std::string study;
   bool quick = false;
@@ -37,35 +42,44 @@ struct Arguments {
   std::string command_line;
 };
 
-void list(const std::string& what) {
-  if (what == "scenes")
-    for (const model::BuiltinScene& scene : model::builtin_scenes()) fmt::print("{}\n", scene.name);
-  if (what == "methods")
-    for (const solver::Method& method : solver::methods()) fmt::print("{}\n", method.name);
-  if (what == "studies")
-    for (const Study& known : studies()) fmt::print("{}\n", known.name);
+struct Kind {
+  std::string_view name;
+  Choices (*choices)();
+};
+constexpr Kind kinds[] = {{"scenes", scene_choices}, {"methods", method_choices}, {"studies", study_choices}};
+
+/// The names of one kind for programs, or all kinds for people.
+void list(const std::string& kind) {
+  if (kind.empty()) {
+    std::string_view separator;
+    for (const Kind& any : kinds) fmt::print("{}{}", std::exchange(separator, "\n"), paragraph(any.name, any.choices()));
+    return;
+  }
+  for (const Choice& choice : solver::find_named(std::span<const Kind>(kinds), "kind of names", kind).choices())
+    fmt::print("{}\n", choice.name);
 }
 
 /// Checks what CLI11 cannot: numbers that belong together.
 void check_steps(const Arguments& a, double end) {
   for (const double h : a.steps)
     if (!(end / h <= most_steps))
-      throw std::invalid_argument(fmt::format("--step {}: expected at most {} steps to t = {} s", h, most_steps, end));
+      throw std::invalid_argument(fmt::format("--step: expected at most {:g} steps to t = {:g} s, so at least {:g}, not {:g}",
+                                              most_steps, end, end / most_steps, h));
 }
 
-solver::StepControl step_control(const std::vector<double>& bounds) {
+solver::StepControl step_control(const std::vector<int>& bounds) {
   if (bounds.empty()) return {};
-  const double low = bounds[0], high = bounds[1];
-  if (low != std::floor(low) || high != std::floor(high) || low < 0 || high < 1 || low > high || high > most_steps)
-    throw std::invalid_argument("--control: expected whole numbers MIN MAX with 0 <= MIN <= MAX and MAX at least 1");
-  return {.min_updates = static_cast<int>(low), .max_updates = static_cast<int>(high)};
+  const int low = bounds[0], high = bounds[1];
+  if (low > high || high == 0)
+    throw std::invalid_argument(fmt::format("--control: expected MIN <= MAX and MAX at least 1, not {} {}", low, high));
+  return {.min_updates = low, .max_updates = high};
 }
 
 std::vector<Group> run_groups(const Arguments& a) {
   std::vector<model::Override> overrides;
   for (const std::string& text : a.sets) overrides.push_back(model::parse_override(text));
   model::Scene scene = model::load_scene(a.scene, overrides);
-  if (a.until > 0) scene.end = a.until;
+  scene.end = a.until.value_or(scene.end);
   check_steps(a, scene.end);
   Cell cell{scene, fmt::format("{}", fmt::join(a.sets, " ")), nullptr, 0, a.options};
   cell.options.control = step_control(a.control);
@@ -85,7 +99,7 @@ void print(const std::vector<results::RunRecord>& runs, const Arguments& a, cons
   if (a.format == "csv") {
     fmt::print("{}", results::to_csv(runs));
   } else if (a.format == "json") {
-    fmt::print("{}\n", results::to_json(runs));
+    fmt::print("{}", results::to_json(runs));
   } else {
     fmt::print("{}\nrecorded in {}\n", results::to_table(runs), out.string());
   }
@@ -102,72 +116,91 @@ void sweep_and_print(const std::vector<Group>& groups, const Arguments& a, const
 
 void add_output_options(CLI::App& command, Arguments& a) {
   command.add_option("--repeat", a.repeat, "timed repetitions of every run, interleaved")
-      ->check(CLI::Range(1, 1000))
+      ->type_name("R")
+      ->check(between(1, 1000))
       ->capture_default_str();
-  command.add_option("--out", a.out, "HDF5 file to record in; must not exist [results/runs/<time>-<job>.h5]");
+  command.add_option("--out", a.out, "HDF5 file to record in; must not exist [results/runs/<time>-<job>-<process>.h5]")
+      ->type_name("FILE.h5")
+      ->check(not_empty());
   command.add_option("--format", a.format, "what is printed")
-      ->check(CLI::IsMember({"table", "csv", "json"}))
+      ->type_name("table|csv|json")
+      ->check(CLI::IsMember({"table", "csv", "json"}).description(""))
       ->capture_default_str();
   command.add_flag("--no-reference", a.no_reference, "measure no errors");
 }
 
+void add_solver_options(CLI::App& command, Arguments& a) {
+  command.add_option("--loop-tolerance", a.options.loop_tolerance, "of the fixed-point loop, relative to |b|")
+      ->type_name("X")
+      ->check(between(1e-15, 1.0))
+      ->capture_default_str();
+  command
+      .add_option("--cg-tolerance", a.options.cg_tolerance,
+                  "of linear solves, relative to |b|; in the loop at most half of its")
+      ->type_name("X")
+      ->check(between(1e-15, 1.0))
+      ->capture_default_str();
+  command.add_option("--max-updates", a.options.max_updates, "updates a step before it counts as not converged")
+      ->type_name("N")
+      ->check(between(1, 1000000))
+      ->capture_default_str();
+  command.add_option("--verlet-fraction", a.options.verlet_fraction, "sub-step of verlet over its stability limit")
+      ->type_name("X")
+      ->check(between(1e-3, 1.0))
+      ->capture_default_str();
+  command.add_option("--control", a.control, "step control by the number of updates a step")
+      ->option_text("MIN MAX")
+      ->check(between(0, 1000000))
+      ->expected(2);
+}
+
 void add_run(CLI::App& app, Arguments& a) {
   CLI::App& run = *app.add_subcommand("run", "run methods on a scene and compare them with the reference");
-  run.add_option("--scene", a.scene, "built-in scene or TOML file (keys: see below)")->required();
+  run.add_option("--scene", a.scene, "built-in scene or TOML file")->required()->type_name("NAME|FILE.toml");
   run.add_option("--method", a.methods, "methods, each with /LINEAR_SOLVER if not the first: bdf2,sbdf2/cholesky")
       ->required()
-      ->delimiter(',');
-  run.add_option("--step", a.steps, "steps h in seconds")->required()->delimiter(',')->check(CLI::PositiveNumber);
-  run.add_option("--until", a.until, "end time in seconds [the scene's]")->check(CLI::PositiveNumber);
-  run.add_option("--set", a.sets, "override a key of the scene: --set key=value (repeatable)")->allow_extra_args(false);
-  run.add_option("--loop-tolerance", a.options.loop_tolerance, "of the fixed-point loop, relative to |b|")
-      ->check(CLI::Range(1e-15, 1.0))
-      ->capture_default_str();
-  run.add_option("--cg-tolerance", a.options.cg_tolerance, "of linear solves, relative to |b|; in the loop at most half of its")
-      ->check(CLI::Range(1e-15, 1.0))
-      ->capture_default_str();
-  run.add_option("--max-updates", a.options.max_updates, "updates a step before it counts as not converged")
-      ->check(CLI::Range(1, 1000000))
-      ->capture_default_str();
-  run.add_option("--verlet-fraction", a.options.verlet_fraction, "sub-step of verlet over its stability limit")
-      ->check(CLI::Range(1e-3, 1.0))
-      ->capture_default_str();
-  run.add_option("--control", a.control, "MIN MAX: step control by the number of updates a step")->expected(2);
+      ->type_name("A,B")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  run.add_option("--step", a.steps, "steps h in seconds")
+      ->required()
+      ->type_name("H1,H2")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(positive());
+  run.add_option("--until", a.until, "end time in seconds [the scene's]")->type_name("T")->check(positive());
+  run.add_option("--set", a.sets, "override a key of the scene (repeatable)")->type_name("key=value")->allow_extra_args(false);
+  add_solver_options(run, a);
   add_output_options(run, a);
-
-  std::string footer = "Methods:\n";
-  for (const solver::Method& method : solver::methods()) footer += fmt::format("  {:<16}{}\n", method.name, method.description);
-  footer += "\nLinear solvers:\n";
-  for (const solver::LinearSolver& solver : solver::linear_solvers())
-    footer += fmt::format("  {:<16}{}\n", solver.name, solver.description);
-  footer += "\nKeys of scenes:\n";
-  for (const model::KeyHelp& key : model::scene_keys()) footer += fmt::format("  {:<31}{}\n", key.path, key.description);
-  run.footer(footer);
+  run.footer(fmt::format("{}\n{}\n{}\n{}", paragraph("Scenes", scene_choices()), paragraph("Methods", method_choices()),
+                         paragraph("Linear solvers", linear_solver_choices()),
+                         paragraph("Keys of scenes", scene_key_choices())));
   run.callback([&a] { sweep_and_print(run_groups(a), a, "run"); });
 }
 
 void add_study(CLI::App& app, Arguments& a) {
   CLI::App& command = *app.add_subcommand("study", "run one of the studies");
-  std::string names = "Studies:\n";
-  for (const Study& known : studies()) names += fmt::format("  {:<16}{}\n", known.name, known.description);
-  command.add_option("name", a.study, "its name")->required();
+  command.add_option("NAME", a.study, "its name")->required()->type_name("");
   command.add_flag("--quick", a.quick, "a short form, for tests");
   add_output_options(command, a);
-  command.footer(names);
+  command.footer(paragraph("Studies", study_choices()));
   command.callback([&a] { sweep_and_print(study(a.study).groups(a.quick), a, a.study); });
 }
 
 void add_list(CLI::App& app, Arguments& a) {
   CLI::App& command = *app.add_subcommand("list", "names of scenes, methods or studies, one a line");
-  command.add_option("what", a.list_what, "scenes, methods or studies")
-      ->required()
-      ->check(CLI::IsMember({"scenes", "methods", "studies"}));
-  command.callback([&a] { list(a.list_what); });
+  command.add_option("KIND", a.list_kind, "scenes, methods or studies [all, with descriptions]")->type_name("");
+  command.callback([&a] { list(a.list_kind); });
 }
 
-int complain(const std::string& message) {
+/// Throws std::system_error unless all that was printed went out.
+void flush_output() {
+  if (std::fflush(stdout) != 0) throw std::system_error(errno, std::generic_category(), "standard output");
+}
+
+int complain(const std::string& message, int exit_code = bad_input) {
   fmt::print(stderr, "bench_integrators: {}\n", message);
-  return bad_input;
+  return exit_code;
 }
 
 }  // namespace
@@ -183,19 +216,27 @@ int run_command_line(int argc, const char* const* argv) {
   add_list(app, a);
   add_run(app, a);
   add_study(app, a);
+  app.footer(
+      "Examples:\n"
+      "  bench_integrators run --scene hung-edge --method bdf2,sbdf2 --step 0.01,0.005 --set material.damping=0.5\n"
+      "  bench_integrators study hung-sheets --out hung-sheets.h5 --format csv\n"
+      "  bench_integrators run --help\n");  // after the subcommands, which would inherit it
   try {
     app.parse(argc, argv);
     if (app.get_subcommands().empty()) sweep_and_print(studies().front().groups(false), a, std::string(studies().front().name));
+    flush_output();
     return 0;
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help
-    return complain(error.what());
+    return complain(explanation(app, error));
   } catch (const std::invalid_argument& error) {
     return complain(error.what());
   } catch (const model::SceneError& error) {
     return complain(error.what());
   } catch (const results::FileError& error) {
     return complain(error.what());
+  } catch (const std::exception& error) {  // no fault of the input: no memory, no place for the output
+    return complain(error.what(), failure);
   }
 }
 

@@ -1,11 +1,23 @@
 #include "bench/progress.hpp"
 
 #include <fmt/format.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 namespace drape::bench {
+namespace {
+
+/// Columns of the terminal, 80 if it does not say.
+int columns() {
+  winsize size{};
+  return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+}
+
+}  // namespace
 
 Progress::Progress(int total) : terminal_(isatty(STDERR_FILENO) == 1), total_(total) {}
 
@@ -30,10 +42,12 @@ void Progress::draw() const {
   std::string left = "estimating";
   if (done_ > 0) {
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start_;
-    const int seconds = static_cast<int>(elapsed.count() / done_ * (total_ - done_) + 0.5);
+    const long seconds = std::lround(elapsed.count() / done_ * (total_ - done_));
     left = fmt::format("{}:{:02} left", seconds / 60, seconds % 60);
   }
-  fmt::print(stderr, "\r\033[K[{:=<{}}{:{}}] {}/{}  {}  {}", "", filled, "", width - filled, done_, total_, left, activity_);
+  const std::string line =
+      fmt::format("[{:=<{}}{:{}}] {}/{}  {}  {}", "", filled, "", width - filled, done_, total_, left, activity_);
+  fmt::print(stderr, "\r\033[K{:.{}}", line, columns() - 1);  // a line that wraps could not be drawn over
   std::fflush(stderr);
 }
 

@@ -2,8 +2,10 @@
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <system_error>
 
 #include "bench/progress.hpp"
 #include "bench/timing.hpp"
@@ -48,7 +50,7 @@ results::ErrorRecord distance(const results::RunRecord& run, const reference::Re
 }
 
 std::string title(const Cell& cell) {
-  return fmt::format("{} {} {} h = {}", cell.scene.name, cell.overrides, cell.method_name(), cell.step);
+  return fmt::format("{} {} h = {} {}", cell.scene.name, cell.method_name(), cell.step, cell.overrides);
 }
 
 /// Errors of the runs of a group that reached their end; all its cells have the same scene.
@@ -100,8 +102,12 @@ std::vector<results::RunRecord> sweep(const std::vector<Group>& groups, const Sw
 
 std::filesystem::path default_out(const std::string& job) {
   const std::filesystem::path folder = std::filesystem::path("results") / "runs";
-  std::filesystem::create_directories(folder);
-  return folder / fmt::format("{:%Y-%m-%dT%H-%M-%SZ}-{}.h5", fmt::gmtime(std::time(nullptr)), job);
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error)
+    throw results::FileError(
+        fmt::format("{}: cannot be created ({}); choose a file by --out", folder.string(), error.message()));
+  return folder / fmt::format("{:%Y-%m-%dT%H-%M-%SZ}-{}-{}.h5", fmt::gmtime(std::time(nullptr)), job, getpid());
 }
 
 }  // namespace drape::bench

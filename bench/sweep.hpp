@@ -19,7 +19,7 @@ struct SweepOptions {
 /// Runs all groups; after each its runs are on disk. Progress on a terminal; remarks on standard error.
 std::vector<results::RunRecord> sweep(const std::vector<Group>& groups, const SweepOptions& options);
 
-/// A file in results/runs/ named after the time and the job, in a folder made if need be.
+/// A file in results/runs/ named after the time, the job and this process, in a folder made if need be. Throws FileError.
 std::filesystem::path default_out(const std::string& job);
 
 }  // namespace drape::bench

@@ -63,7 +63,7 @@ Term projected(const Grid& grid, LinearOperators operators) {
   term.needs_normals = true;
   term.force = [evaluate](const Configuration& c, Vectors& f) {
     const Vectors& q = (*evaluate)(c);
-    f += (c.normals.array().colwise() * (c.normals.array() * q.array()).rowwise().sum()).matrix();
+    for (Eigen::Index i = 0; i < q.rows(); ++i) f.row(i) += c.normals.row(i).dot(q.row(i)) * c.normals.row(i);
   };
   term.explicit_force = term.force;
   term.jacobian = [evaluate, normals = Normals(grid)](const Configuration& c, JacobianEntries& entries) {

@@ -61,20 +61,16 @@ void collect(const toml::table& table, const std::string& prefix, std::map<std::
   }
 }
 
-void check_known(const std::map<std::string, const toml::node*>& found, const std::string& origin, const Origins& origins) {
-  for (const auto& [path, node] : found) {
-    if (std::ranges::find(scene_key_table(), path, &SceneKey::path) != scene_key_table().end()) continue;
-    const std::string section = path.substr(0, path.find('.') + 1);
-    std::vector<std::string_view> choices;
-    for (const SceneKey& known : scene_key_table())
-      if (section.empty() || known.path.starts_with(section)) choices.push_back(known.path);
-    if (choices.empty())
-      for (const SceneKey& known : scene_key_table()) choices.push_back(known.path);
-    const auto changed = origins.find(path);
-    throw SceneError(fmt::format("{}: unknown key '{}': expected one of {}",
-                                 place(changed == origins.end() ? origin : changed->second, *node), path,
-                                 fmt::join(choices, ", ")));
-  }
+/// `where`: the file and line of the key, or the override.
+void check_known(const std::string& path, const std::string& where) {
+  if (std::ranges::find(scene_key_table(), path, &SceneKey::path) != scene_key_table().end()) return;
+  const std::string section = path.substr(0, path.find('.') + 1);
+  std::vector<std::string_view> choices;
+  for (const SceneKey& known : scene_key_table())
+    if (section.empty() || known.path.starts_with(section)) choices.push_back(known.path);
+  if (choices.empty())
+    for (const SceneKey& known : scene_key_table()) choices.push_back(known.path);
+  throw SceneError(fmt::format("{}: unknown key '{}': expected one of {}", where, path, fmt::join(choices, ", ")));
 }
 
 /// Rules that no single key can break.
@@ -117,12 +113,13 @@ Scene parse_scene(std::string_view toml, std::string_view origin, std::span<cons
   toml::table root = parse(toml, origin);
   Origins origins;
   for (const Override& change : overrides) {
-    apply(root, change);
     origins[change.key] = "--set " + change.key;
+    check_known(change.key, origins[change.key]);
+    apply(root, change);
   }
   std::map<std::string, const toml::node*> found;
   collect(root, "", found);
-  check_known(found, file, origins);
+  for (const auto& [path, node] : found) check_known(path, place(file, *node));
 
   Scene scene;
   for (const SceneKey& key : scene_key_table()) {

@@ -15,7 +15,8 @@ constexpr std::string_view pin_keys[] = {"where", "particles", "directions", "ve
 
 std::string in_quotes(std::string_view text) {
   std::ostringstream out;
-  out << toml::value<std::string>(std::string(text));
+  const toml::value<std::string> value{std::string(text)};
+  out << toml::toml_formatter{value, toml::format_flags::allow_unicode_strings};  // literal and multi-line ones lose characters
   return out.str();
 }
 std::string written(const WeftWarp& m) { return fmt::format("[{}, {}]", m.weft, m.warp); }

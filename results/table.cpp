@@ -23,12 +23,6 @@ struct Column {
   Cell (*cell)(const RunRecord&);
 };
 
-std::int64_t total(const RunRecord& run, int StepRecord::*count) {
-  std::int64_t sum = 0;
-  for (const StepRecord& step : run.steps) sum += step.*count;
-  return sum;
-}
-
 /// The time below which a share of the repetitions is: 0 minimum, 0.5 median, 1 maximum; interpolated between two times.
 Cell quantile(const RunRecord& run, double share) {
   if (run.times_ms.empty()) return {};
@@ -53,8 +47,8 @@ constexpr Column columns[] = {
     {"outcome", "", "", [](Run run) -> Cell { return run.outcome; }},
     {"message", "", "", [](Run run) -> Cell { return run.message; }},
     {"steps", "steps", "1", [](Run run) -> Cell { return std::ssize(run.steps); }},
-    {"updates", "updates", "1", [](Run run) -> Cell { return total(run, &StepRecord::updates); }},
-    {"cg_iterations", "CG", "1", [](Run run) -> Cell { return total(run, &StepRecord::cg_iterations); }},
+    {"updates", "updates", "1", [](Run run) -> Cell { return work_count(run, "updates"); }},
+    {"cg_iterations", "CG", "1", [](Run run) -> Cell { return work_count(run, "cg_iterations"); }},
     {"wall_ms_min", "wall min", "ms", [](Run run) { return quantile(run, 0); }},
     {"wall_ms_median", "median", "ms", [](Run run) { return quantile(run, 0.5); }},
     {"wall_ms_max", "max", "ms", [](Run run) { return quantile(run, 1); }},

@@ -29,7 +29,7 @@ class Cholesky : public Preconditioner {
     release();
     cholmod_sparse view = lower(A);
     factor_ = cholmod_analyze(&view, &common_);
-    right_ = cholmod_allocate_dense(A.rows(), 3, A.rows(), CHOLMOD_REAL, &common_);
+    right_ = cholmod_zeros(A.rows(), columns, CHOLMOD_REAL, &common_);
     if (factor_ == nullptr || right_ == nullptr) throw std::bad_alloc();
   }
 
@@ -55,6 +55,9 @@ class Cholesky : public Preconditioner {
   }
 
  private:
+  /// CHOLMOD solves four at a time and shrinks its workspace for fewer, to allocate it anew the next time: the fourth is 0.
+  static constexpr std::size_t columns = 4;
+
   /// The matrix as CHOLMOD sees it: our rows are its columns, so the upper half of the one is the lower half of the other.
   static cholmod_sparse lower(const SparseMatrix& A) {
     cholmod_sparse view{};

@@ -74,8 +74,16 @@ StageResult Integrator::step(double h) {
   if (method_.two_step) std::swap(step_.before, step_.now);
   std::swap(step_.now, step_.next);
   h_before_ = h;
-  step_.t += h;
+  advance_time(h);
   return result;
+}
+
+/// Compensated, or the round-off of a million steps would be a part of a step.
+void Integrator::advance_time(double h) {
+  const double increment = h - lost_time_;
+  const double t = step_.t + increment;
+  lost_time_ = (t - step_.t) - increment;
+  step_.t = t;
 }
 
 RunResult integrate(Integrator& integrator, double t_end, double h, const Observer& observer) {

@@ -24,11 +24,14 @@ class Integrator {
   const Options& options() const { return options_; }
 
  private:
+  void advance_time(double h);
+
   const Options options_;
   const Method& method_;
   std::optional<StageSolver> stage_;
   Step step_;
   double h_before_ = 0;
+  double lost_time_ = 0;  ///< what rounding has added to the time [s]
   std::int64_t &steps_, &rejected_;
 };
 

@@ -19,7 +19,7 @@ struct StepControl {
 /// Choices of whoever runs a method. Tolerances are relative to |b|, the right-hand side of the step's linear system.
 struct Options {
   double loop_tolerance = 1e-5;  ///< of the fixed-point loop: |b(x, v) − A v| ≤ η |b|
-  double cg_tolerance = 1e-4;    ///< of a linear solve; inside the loop never looser than half the loop's
+  double cg_tolerance = 2e-4;    ///< of a linear solve; inside the loop never looser than half the loop's
   int max_updates = 2000;        ///< fixed-point updates a stage before it counts as not converged
   int max_cg_iterations = 5000;  ///< iterations a linear solve before it counts as not converged
   double verlet_fraction = 0.9;  ///< sub-step of `verlet` as a fraction of its stability limit

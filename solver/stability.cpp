@@ -52,6 +52,7 @@ Spectrum spectrum(const SplitOde& ode, double t, const State& y) {
 
 double verlet_limit(const Spectrum& spectrum) {
   const double omega = std::sqrt(spectrum.omega_squared), c = spectrum.decay;
+  if (!std::isfinite(omega + c)) return std::numeric_limits<double>::quiet_NaN();
   if (omega == 0 && c == 0) return std::numeric_limits<double>::infinity();
   double stable = 0, unstable = std::min(omega > 0 ? 2 / omega : INFINITY, c > 0 ? 1 / c : INFINITY) * 1.01;
   while (unstable - stable > 1e-6 * unstable) {

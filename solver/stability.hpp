@@ -13,7 +13,8 @@ struct Spectrum {
 /// Estimates the spectrum at a state by power iteration, 1 % to the safe side. Allocates.
 Spectrum spectrum(const SplitOde& ode, double t, const State& y);
 
-/// The largest stable step of the method `verlet` for the mode x'' = −ω² x − c x' [s]; infinite if both vanish.
+/// The largest stable step of the method `verlet` for the mode x'' = −ω² x − c x' [s]; infinite if both vanish, NaN if one is
+/// not finite.
 double verlet_limit(const Spectrum& spectrum);
 
 }  // namespace drape::solver

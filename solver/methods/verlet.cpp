@@ -5,6 +5,12 @@
 #include "solver/stability.hpp"
 
 namespace drape::solver {
+namespace {
+
+/// Where a step counts as failed: at some microseconds a sub-step it would take minutes.
+constexpr double most_substeps = 1e8;
+
+}  // namespace
 
 // h is divided into equal sub-steps τ inside the stability limit of the initial state, and in each
 //   x1 = x0 + τ v0 + τ²/2 a0,   a1 = a(t1, x1, v0 + τ a0),   v1 = v0 + τ/2 (a0 + a1)
@@ -12,7 +18,15 @@ namespace drape::solver {
 // evaluation a sub-step   [Verlet 1967; Groot, Warren 1997, λ = 1].
 void verlet(Step& s) {
   if (s.explicit_limit == 0) s.explicit_limit = verlet_limit(spectrum(s.ode, s.t, s.y0()));
+  if (!(s.explicit_limit > 0)) {
+    s.result.outcome = Outcome::not_finite;
+    return;
+  }
   const double substeps = std::max(1.0, std::ceil(s.h / (s.options.verlet_fraction * s.explicit_limit)));
+  if (substeps > most_substeps) {
+    s.result.outcome = Outcome::not_converged;
+    return;
+  }
   const double tau = s.h / substeps;
   State& y = s.y1();
   Vectors& a = s.next.f;

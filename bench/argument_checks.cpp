@@ -1,0 +1,60 @@
+#include "bench/argument_checks.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <functional>
+#include <vector>
+
+namespace drape::bench {
+namespace {
+
+CLI::Validator expect(const std::string& what, const std::function<bool(const std::string&)>& right) {
+  const auto complaint = [=](const std::string& text) {
+    return right(text) ? "" : fmt::format("expected {}, not '{}'", what, text);
+  };
+  return {complaint, ""};
+}
+
+template <class Number>
+CLI::Validator expect_number(const std::string& what, const std::function<bool(Number)>& right) {
+  return expect(what, [=](const std::string& text) {
+    Number value{};
+    return CLI::detail::lexical_cast(text, value) && right(value);
+  });
+}
+
+}  // namespace
+
+CLI::Validator positive() {
+  return expect_number<double>("a finite number above 0", [](double value) { return value > 0 && std::isfinite(value); });
+}
+
+CLI::Validator between(double least, double most) {
+  return expect_number<double>(fmt::format("a number from {} to {}", least, most),
+                               [=](double value) { return least <= value && value <= most; });
+}
+
+CLI::Validator between(int least, int most) {
+  return expect_number<int>(fmt::format("a whole number from {} to {}", least, most),
+                            [=](int value) { return least <= value && value <= most; });
+}
+
+CLI::Validator not_empty() {
+  return expect("a name", [](const std::string& text) { return !text.empty(); });
+}
+
+std::string explanation(const CLI::App& app, const CLI::ParseError& error) {
+  const auto is = [&](CLI::ExitCodes code) { return error.get_exit_code() == static_cast<int>(code); };
+  if (is(CLI::ExitCodes::ValidationError)) return error.what();
+  const CLI::App& command = app.get_subcommands().empty() ? app : *app.get_subcommands().front();
+  if (is(CLI::ExitCodes::ExtrasError)) {
+    std::vector<std::string> known;
+    for (const CLI::App* subcommand : command.get_subcommands({})) known.push_back(subcommand->get_name());
+    for (const CLI::Option* option : command.get_options()) known.push_back(option->get_name());
+    return fmt::format("unknown argument '{}': expected one of {}", command.remaining().front(), fmt::join(known, ", "));
+  }
+  return fmt::format("{}; see {}{} --help", error.what(), app.get_name(), &command == &app ? "" : " " + command.get_name());
+}
+
+}  // namespace drape::bench

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+/// What CLI11 leaves out: its own checks of numbers let NaN pass and print limits of hundreds of digits, and some of its
+/// messages do not say what would be right.
+namespace drape::bench {
+
+/// Finite and above 0.
+CLI::Validator positive();
+
+CLI::Validator between(double least, double most);
+CLI::Validator between(int least, int most);
+CLI::Validator not_empty();
+
+/// One line on what is wrong with the command line and what would be right.
+std::string explanation(const CLI::App& app, const CLI::ParseError& error);
+
+}  // namespace drape::bench
