@@ -29,7 +29,8 @@ RunRecord good_run() {
   run.method = "bdf2/cholesky";
   run.step = 0.01;
   run.outcome = "success";
-  run.steps = {{.updates = 1, .cg_iterations = 20}, {.updates = 2, .cg_iterations = 22}};
+  run.steps.resize(2);
+  run.work = {{"updates", "", 3}, {"cg_iterations", "", 42}};  // those of rejected steps included
   run.times_ms = {4, 1, 2, 3};
   run.numerical_stiffness = 1.0 / 3.0;
   run.stiffness_to_damping = std::numeric_limits<double>::infinity();

@@ -1,0 +1,180 @@
+// Scenes that are wrong are refused in one line that says where, which key, and what would be right.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "model/scene_file.hpp"
+#include "verify/temporary_folder.hpp"
+
+namespace drape::verify {
+namespace {
+
+using model::load_scene;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+
+/// The message of the SceneError that `read` throws; empty if it throws none.
+template <class Read>
+std::string message(const Read& read) {
+  try {
+    read();
+  } catch (const model::SceneError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+/// A scene that must be refused. Its file begins with a line for the name; `lines` follow.
+struct BadScene {
+  std::string name;
+  std::string lines;
+  std::string says;      ///< how the message begins
+  std::string set = {};  ///< an override
+};
+
+void PrintTo(const BadScene& bad, std::ostream* out) { *out << bad.name; }
+
+std::string repeated(int times, const std::string& text) { return times == 0 ? "" : text + repeated(times - 1, text); }
+
+const std::string count = "expected a whole number from 1 to 10000000";
+const std::string chain_bends = "expected bend_form = \"plate\" with bend_projected = false, a chain has no normals";
+
+// clang-format off
+const std::vector<BadScene> bad_scenes = {
+    {"unknown_key", "foo = 1", "a.toml:2: unknown key 'foo': expected one of name, description, grid.n, "},
+    {"unknown_section", "[foo]\nbar = 1", "a.toml:2: unknown key 'foo': expected one of name, "},
+    {"unknown_key_in_a_section", "[material]\n\ndensty = 1",
+     "a.toml:4: unknown key 'material.densty': expected one of material.density, material.tension, "},
+    {"unknown_key_in_a_pin", "[[pins]]\nwher = 'all'", "a.toml:3: pins.wher = 'all': "},
+    {"number_for_a_section", "material = 1", "a.toml:2: unknown key 'material': expected one of "},
+    {"list_of_sections", "[[grid]]\nn = 3", "a.toml:2: unknown key 'grid': expected one of "},
+    {"key_twice", "description = 'a'\ndescription = 'b'", "a.toml:3: "},
+    {"syntax_error", "[grid]\nn = \n", "a.toml:3: Error while parsing key-value pair: expected value, saw "},
+
+    {"not_a_number", "[material]\ndensity = nan", "a.toml:3: material.density = nan: expected a finite number"},
+    {"infinity", "end.time = inf", "a.toml:2: end.time = inf: expected a finite number"},
+    {"infinity_in_a_list", "material.tension = [1, -inf]", "a.toml:2: material.tension = -inf: expected a finite number"},
+    {"not_a_number_in_a_vector", "forces.gravity = [0, nan, 1]", "a.toml:2: forces.gravity = nan: expected a finite number"},
+    {"negative_density", "[material]\ndensity = -1", "a.toml:3: material.density = -1: expected a number above 0"},
+    {"zero_density", "[material]\ndensity = 0.0", "a.toml:3: material.density = 0.0: expected a number above 0"},
+    {"negative_modulus", "material.shear = -2", "a.toml:2: material.shear = -2: expected a number of at least 0"},
+    {"negative_modulus_in_a_list", "material.bend = [1, -2]", "a.toml:2: material.bend = -2: expected a number of at least 0"},
+    {"no_length", "grid.size = [1, 0]", "a.toml:2: grid.size = 0: expected a number above 0"},
+    {"no_stretch", "start.stretch = 0", "a.toml:2: start.stretch = 0: expected a number above 0"},
+    {"no_time", "end.time = 0", "a.toml:2: end.time = 0: expected a number above 0"},
+
+    {"text_for_a_number", "material.density = 'heavy'", "a.toml:2: material.density = 'heavy': expected a number"},
+    {"flag_for_a_number", "material.shear = true", "a.toml:2: material.shear = true: expected a number"},
+    {"table_for_a_number", "material.shear = {a = 1}", "a.toml:2: material.shear = "},
+    {"number_for_a_text", "description = 7", "a.toml:2: description = 7: expected a text in quotes"},
+    {"number_for_a_flag", "material.bend_projected = 1", "a.toml:2: material.bend_projected = 1: expected true or false"},
+    {"number_for_a_vector", "forces.gravity = -9", "a.toml:2: forces.gravity = -9: expected a list of 3 numbers"},
+    {"short_vector", "forces.gravity = [0, -9]", "a.toml:2: forces.gravity = [ 0, -9 ]: expected a list of 3 numbers"},
+    {"long_list", "material.tension = [1, 2, 3]", "a.toml:2: material.tension = [ 1, 2, 3 ]: expected a list of 2 numbers"},
+    {"unknown_word", "material.bend_form = 'disk'", "a.toml:2: material.bend_form = 'disk': expected one of \"membrane\", \"plate\""},
+    {"number_for_a_word", "start.plane = 3", "a.toml:2: start.plane = 3: expected one of \"horizontal\", \"vertical\""},
+
+    {"one_particle", "[grid]\nn = 1", "a.toml:3: grid.n = 1: expected at least 2 particles"},
+    {"one_by_one", "[grid]\nn = [1, 1]", "a.toml:3: grid.n = [ 1, 1 ]: expected at least 2 particles"},
+    {"no_particles", "[grid]\nn = [0, 5]", "a.toml:3: grid.n = 0: " + count},
+    {"negative_count", "[grid]\nn = -3", "a.toml:3: grid.n = -3: " + count},
+    {"fractional_count", "[grid]\nn = 2.5", "a.toml:3: grid.n = 2.5: " + count},
+    {"fractional_count_in_a_list", "[grid]\nn = [4, 3.0]", "a.toml:3: grid.n = 3.0: " + count},
+    {"count_beyond_int", "[grid]\nn = 9999999999999", "a.toml:3: grid.n = 9999999999999: " + count},
+    {"too_many_particles", "[grid]\nn = 4000", "a.toml:3: grid.n = 4000: expected at most ten million particles"},
+
+    {"pin_nowhere", "[[pins]]\ndirections = 'x'\nvelocity = [0, 0, 1]", "a.toml:2: pins = "},
+    {"pin_twice", "[[pins]]\nwhere = 'all'\nparticles = [[0, 0]]", "a.toml:2: pins = "},
+    {"pins_not_a_list", "[pins]\nwhere = 'all'\ndirections = 'x'", "a.toml:2: pins = "},
+    {"unknown_place", "[[pins]]\nwhere = 'middle'", "a.toml:3: pins.where = 'middle': expected one of \"left edge\", \"right edge\", "},
+    {"unknown_direction", "[[pins]]\nwhere = 'all'\ndirections = 'xw'",
+     "a.toml:4: pins.directions = 'xw': expected some of the letters x, y and z"},
+    {"no_direction", "[[pins]]\nwhere = 'all'\ndirections = ''",
+     "a.toml:4: pins.directions = '': expected some of the letters x, y and z"},
+    {"direction_twice", "[[pins]]\nwhere = 'all'\ndirections = 'xx'", "a.toml:4: pins.directions = 'xx': expected some of "},
+    {"infinite_velocity", "[[pins]]\nwhere = 'all'\nvelocity = [0, 0, inf]", "a.toml:4: pins.velocity = inf: expected a finite number"},
+    {"pinned_particle_off_the_grid", "[grid]\nn = [4, 3]\n[[pins]]\nparticles = [[3, 2], [4, 0]]",
+     "a.toml:5: pins.particles = [ [ 3, 2 ], [ 4, 0 ] ]: expected places [a, b] with 0 ≤ a < 4 and 0 ≤ b < 3"},
+    {"pinned_particle_off_the_grid_after_many", "pins = [{particles = [" + repeated(50, "[0, 1], ") + "[9, 9]]}]",
+     "a.toml:2: pins.particles = "},
+    {"negative_pinned_particle", "[[pins]]\nparticles = [[0, -1]]", "a.toml:3: pins.particles = [ [ 0, -1 ] ]: expected places [a, b]"},
+    {"half_a_pinned_particle", "[[pins]]\nparticles = [[0.5, 0]]", "a.toml:3: pins.particles = [ [ 0.5, 0 ] ]: expected places [a, b]"},
+    {"pinned_particle_beyond_int", "[[pins]]\nparticles = [[1e300, 0]]", "a.toml:3: pins.particles = "},
+    {"pinned_particle_of_three", "[[pins]]\nparticles = [[0, 0, 0]]", "a.toml:3: pins.particles = [ 0, 0, 0 ]: expected a list of 2"},
+
+    {"nothing_free_to_move", "[[pins]]\nwhere = 'all'", "a.toml: pins: expected at least one coordinate that is free to move"},
+    {"contraction_above_tension", "material.tension = [4, 9]\nmaterial.contraction = 6",
+     "a.toml: material.contraction: expected C12² below k1 k2, or the material would collapse"},
+    {"contraction_without_tension", "material.contraction = 1", "a.toml: material.contraction: expected C12² below k1 k2"},
+    {"projected_plate_on_a_chain", "grid.n = [5, 1]\nmaterial.bend = 1", "a.toml: material.bend: " + chain_bends},
+    {"membrane_on_a_chain", "grid.n = [1, 5]\nmaterial.bend_damping = 1\nmaterial.bend_form = 'membrane'",
+     "a.toml: material.bend: " + chain_bends},
+    {"unprojected_membrane", "[material]\nbend = 1\nbend_form = 'membrane'\nbend_projected = false",
+     "a.toml: material.bend_projected = false: expected true, the membrane acts along the normal only"},
+
+    {"override_of_an_unknown_key", "", "--set material.densty: unknown key 'material.densty': expected one of material.density, ",
+     "material.densty=1"},
+    {"override_of_an_unknown_section", "", "--set foo: unknown key 'foo': expected one of name, ", "foo=1"},
+    {"override_inside_a_value", "grid = 5", "--set grid.n: 'grid' is not a section", "grid.n=4"},
+    {"override_below_a_key", "", "--set name.x: unknown key 'name.x': expected one of name, ", "name.x=1"},
+    {"override_by_a_negative_density", "material.density = 1",
+     "--set material.density: material.density = -1: expected a number above 0", "material.density=-1"},
+    {"override_by_not_a_number", "", "--set end.time: end.time = nan: expected a finite number", "end.time=nan"},
+    {"override_by_a_word", "", "--set material.shear: material.shear = 'stiff': expected a number", "material.shear=stiff"},
+    {"override_by_a_broken_list", "", "--set material.tension: material.tension = '[1,': expected a number", "material.tension=[1,"},
+    {"override_by_one_particle", "", "--set grid.n: grid.n = 1: expected at least 2 particles", "grid.n=1"},
+    {"override_by_an_unknown_place", "", "--set pins: pins.where = 'middle': expected one of ", "pins=[{where='middle'}]"},
+};
+// clang-format on
+
+class RefusedScene : public testing::TestWithParam<BadScene> {};
+INSTANTIATE_TEST_SUITE_P(, RefusedScene, testing::ValuesIn(bad_scenes), [](const auto& test) { return test.param.name; });
+
+TEST_P(RefusedScene, SaysInOneLineWhereWhatAndWhatIsRight) {
+  const BadScene& bad = GetParam();
+  std::vector<model::Override> overrides;
+  if (!bad.set.empty()) overrides.push_back(model::parse_override(bad.set));
+  EXPECT_THAT(message([&] { model::parse_scene("name = 'x'\n" + bad.lines, "a.toml", overrides); }),
+              AllOf(StartsWith(bad.says), Not(HasSubstr("\n"))));
+}
+
+TEST(SceneError, OfASceneWithoutAName) {
+  for (const std::string text : {"", "# nothing\n", "name = ''", "[grid]\nn = 3"})
+    EXPECT_EQ(message([&] { model::parse_scene(text, "a.toml"); }), "a.toml: name: expected a name for the scene");
+}
+
+TEST(SceneError, OfAnUnknownSceneSaysTheNamesOfAll) {
+  const std::string said = message([] { load_scene("hung-egde"); });
+  EXPECT_THAT(said, AllOf(StartsWith("unknown scene 'hung-egde': expected "), HasSubstr("a file ending in .toml")));
+  for (const auto& scene : model::builtin_scenes()) EXPECT_THAT(said, HasSubstr(std::string(scene.name)));
+}
+
+TEST(SceneError, OfAFileThatCannotBeRead) {
+  const TemporaryFolder folder;
+  const std::string missing = folder / "missing.toml", directory = folder / "directory.toml", empty = folder / "empty.toml";
+  std::filesystem::create_directory(directory);
+  std::ofstream(empty) << "";
+  EXPECT_EQ(message([&] { load_scene(missing); }), missing + ": cannot be read: expected a scene file");
+  EXPECT_EQ(message([&] { load_scene(directory); }), directory + ": cannot be read: expected a scene file");
+  EXPECT_EQ(message([&] { load_scene(empty); }), empty + ": name: expected a name for the scene");
+}
+
+TEST(SceneError, InAFileSaysItsName) {
+  const TemporaryFolder folder;
+  const std::string file = folder / "bad.toml";
+  std::ofstream(file) << "name = 'x'\nfoo = 1\n";
+  EXPECT_THAT(message([&] { load_scene(file); }), StartsWith(file + ":2: unknown key 'foo'"));
+}
+
+TEST(SceneError, OfAnOverrideWithoutKeyOrValue) {
+  for (const std::string text : {"material.damping", "=3", "material.damping="})
+    EXPECT_EQ(message([&] { model::parse_override(text); }),
+              "--set " + text + ": expected key=value, for example material.damping=0.5");
+}
+
+}  // namespace
+}  // namespace drape::verify

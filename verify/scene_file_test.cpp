@@ -1,0 +1,215 @@
+// Scene files: what they say is what the scene is, also after writing and reading again.
+
+#include "model/scene_file.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+
+#include "model/cloth.hpp"
+#include "verify/temporary_folder.hpp"
+
+namespace drape::verify {
+namespace {
+
+using model::Scene;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Pair;
+using testing::TestWithParam;
+
+Scene parsed(const std::string& toml, const std::vector<std::string>& set = {}) {
+  std::vector<model::Override> overrides;
+  for (const std::string& text : set) overrides.push_back(model::parse_override(text));
+  return model::parse_scene(toml, "a.toml", overrides);
+}
+
+Scene named(const std::string& name) {
+  Scene scene;
+  scene.name = name;
+  return scene;
+}
+
+std::pair<double, double> both(const model::WeftWarp& m) { return {m.weft, m.warp}; }
+
+// --- What a file says --------------------------------------------------------------------------------------------------------
+
+const std::string complete = R"(
+name = "all"
+description = "says \"everything\", with a \\ and a ü"
+[grid]
+n = [4, 3]
+size = [0.6, 0.4]
+[material]
+density = 0.3
+tension = [2000, 1e3]
+damping = 2
+damping_form = "projected"
+shear = 50
+shear_damping = 0.2
+shear_form = "printed"
+contraction = 300
+contraction_damping = 0.1
+bend = [1e-3, 5e-4]
+bend_damping = 0.1
+bend_form = "membrane"
+bend_projected = true
+[forces]
+gravity = [0, 0.1, -9.81]
+[[pins]]
+where = "left edge"
+[[pins]]
+particles = [[3, 0], [3, 2]]
+directions = "xz"
+velocity = [0.05, 0, 1]
+[start]
+plane = "vertical"
+stretch = [1.1, 1]
+velocity = [0, 0.3, 0]
+[end]
+time = 0.5
+)";
+
+/// Every key as `complete` says it.
+void expect_complete(const Scene& scene) {
+  EXPECT_EQ(scene.name, "all");
+  EXPECT_EQ(scene.description, "says \"everything\", with a \\ and a ü");
+  const auto& [grid, material, gravity] = scene.sheet;
+  EXPECT_THAT((std::array{grid.nu, grid.nv}), ElementsAre(4, 3));
+  EXPECT_THAT((std::array{grid.size_u, grid.size_v}), ElementsAre(0.6, 0.4));
+  EXPECT_EQ(material.density, 0.3);
+  EXPECT_THAT(both(material.tension), Pair(2000, 1000));
+  EXPECT_THAT(both(material.damping), Pair(2, 2));
+  EXPECT_EQ(material.damping_form, model::DampingForm::projected);
+  EXPECT_EQ(material.shear, 50);
+  EXPECT_EQ(material.shear_damping, 0.2);
+  EXPECT_EQ(material.shear_form, model::ShearForm::printed);
+  EXPECT_EQ(material.contraction, 300);
+  EXPECT_EQ(material.contraction_damping, 0.1);
+  EXPECT_THAT(both(material.bend), Pair(1e-3, 5e-4));
+  EXPECT_THAT(both(material.bend_damping), Pair(0.1, 0.1));
+  EXPECT_EQ(material.bend_form, model::BendForm::membrane);
+  EXPECT_TRUE(material.bend_projected);
+  EXPECT_EQ(gravity, Eigen::Vector3d(0, 0.1, -9.81));
+  EXPECT_EQ(scene.start.plane, model::Plane::vertical);
+  EXPECT_THAT(both(scene.start.stretch), Pair(1.1, 1));
+  EXPECT_EQ(scene.start.velocity, Eigen::Vector3d(0, 0.3, 0));
+  EXPECT_EQ(scene.end, 0.5);
+  ASSERT_EQ(scene.pins.size(), 2u);
+  EXPECT_EQ(scene.pins[0].where, "left edge");
+  EXPECT_THAT(scene.pins[0].directions, ElementsAre(true, true, true));
+  EXPECT_EQ(scene.pins[0].velocity, Eigen::Vector3d(0, 0, 0));
+  EXPECT_EQ(scene.pins[1].where, "");
+  EXPECT_THAT(scene.pins[1].particles, ElementsAre(Pair(3, 0), Pair(3, 2)));
+  EXPECT_THAT(scene.pins[1].directions, ElementsAre(true, false, true));
+  EXPECT_EQ(scene.pins[1].velocity, Eigen::Vector3d(0.05, 0, 1));
+}
+
+TEST(SceneFile, SaysWhatTheSceneIs) { expect_complete(parsed(complete)); }
+
+TEST(SceneFile, SaysTheSameAfterWriting) { expect_complete(parsed(to_toml(parsed(complete)))); }
+
+TEST(SceneFile, MayLeaveOutAllButTheName) { EXPECT_EQ(to_toml(parsed("name = 'x'")), to_toml(named("x"))); }
+
+TEST(SceneFile, IsTheSameAfterWritingAndReadingAgain) {
+  std::vector<Scene> scenes{parsed(complete), named("x")};
+  for (const auto& builtin : model::builtin_scenes()) scenes.push_back(model::load_scene(std::string(builtin.name)));
+  for (const Scene& scene : scenes) EXPECT_EQ(to_toml(parsed(to_toml(scene))), to_toml(scene));
+}
+
+TEST(SceneFile, KeepsEveryNumberToTheLastBit) {
+  for (const double number : {0.1, 1.0 / 3, 1e300, 1e-300, 1e15, 123456789012345678.0}) {
+    Scene scene = named("x");
+    scene.sheet.material.density = number;
+    EXPECT_EQ(parsed(to_toml(scene)).sheet.material.density, number);
+  }
+}
+
+TEST(SceneFile, KeepsEveryText) {
+  for (const std::string text :
+       {"", "it's", "a \"b\" \\ c", "\n'''\n", "\n\"\"\"\n", "\nbegins with a line", "ü \t", "\r\n", "\\u00e9"}) {
+    Scene scene = named("x");
+    scene.description = text;
+    EXPECT_EQ(parsed(to_toml(scene)).description, text);
+  }
+}
+
+TEST(SceneFile, HasAHelpForEveryKeyItWrites) {
+  const std::string text = to_toml(named("x"));
+  for (const auto& [path, description] : model::scene_keys()) {
+    EXPECT_FALSE(description.empty()) << path;
+    EXPECT_THAT("\n" + text, HasSubstr("\n" + path + " = "));
+  }
+  EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(text, '\n')), model::scene_keys().size());
+}
+
+TEST(SceneFile, IsReadFromDisk) {
+  const TemporaryFolder folder;
+  const std::string file = folder / "scene.toml";
+  std::ofstream(file) << complete;
+  EXPECT_EQ(to_toml(model::load_scene(file)), to_toml(parsed(complete)));
+}
+
+// --- Built-in scenes
+// -----------------------------------------------------------------------------------------------------------
+
+class BuiltinScene : public TestWithParam<model::BuiltinScene> {};
+INSTANTIATE_TEST_SUITE_P(, BuiltinScene, testing::ValuesIn(model::builtin_scenes()), [](const auto& test) {
+  std::string name(test.param.name);
+  std::ranges::replace(name, '-', '_');
+  return name;
+});
+
+TEST_P(BuiltinScene, CompilesAndHasFiniteForces) {
+  const Scene scene = model::load_scene(std::string(GetParam().name));
+  EXPECT_EQ(scene.name, GetParam().name);
+  EXPECT_FALSE(scene.description.empty());
+  const model::Cloth cloth = model::compile(scene);
+  solver::Vectors f;
+  solver::SparseMatrix dx, dv;
+  cloth.ode.force(0, cloth.start.x, cloth.start.v, f);
+  EXPECT_TRUE(f.allFinite());
+  EXPECT_GT(f.cwiseAbs().maxCoeff(), 0);
+  cloth.ode.jacobian(0, cloth.start.x, cloth.start.v, dx, dv);
+  EXPECT_TRUE(Eigen::MatrixXd(dx).allFinite() && Eigen::MatrixXd(dv).allFinite());
+  EXPECT_GT(cloth.plan.pinned_dofs, 0);
+}
+
+// --- Overrides
+// -----------------------------------------------------------------------------------------------------------------
+
+TEST(Override, OfTheResolutionKeepsTheSides) {
+  const model::Grid grid = parsed(complete, {"grid.n=40"}).sheet.grid;
+  EXPECT_THAT((std::array{grid.nu, grid.nv}), ElementsAre(40, 40));
+  EXPECT_THAT((std::array{grid.size_u, grid.size_v}), ElementsAre(0.6, 0.4));
+}
+
+TEST(Override, OfAModulusSetsBothDirectionsOrEach) {
+  EXPECT_THAT(both(parsed(complete, {"material.tension=3e3"}).sheet.material.tension), Pair(3000, 3000));
+  EXPECT_THAT(both(parsed(complete, {"material.tension=[4000, 3e3]"}).sheet.material.tension), Pair(4000, 3000));
+}
+
+TEST(Override, MayBeABareWordOrInQuotes) {
+  EXPECT_EQ(parsed(complete, {"material.shear_form=conservative"}).sheet.material.shear_form, model::ShearForm::conservative);
+  EXPECT_EQ(parsed(complete, {"start.plane='horizontal'"}).start.plane, model::Plane::horizontal);
+  EXPECT_EQ(parsed(complete, {"description=two words = one"}).description, "two words = one");
+}
+
+TEST(Override, MayReplaceAllPins) {
+  EXPECT_TRUE(parsed(complete, {"pins=[]"}).pins.empty());
+  EXPECT_EQ(parsed(complete, {"pins=[{where='corners'}]"}).pins.at(0).where, "corners");
+}
+
+TEST(Override, MayNameWhatTheFileDoesNot) { EXPECT_EQ(parsed("name = 'x'", {"material.shear=7"}).sheet.material.shear, 7); }
+
+TEST(Override, ThatComesLaterWins) { EXPECT_EQ(parsed(complete, {"end.time=1", "end.time=2"}).end, 2); }
+
+TEST(Override, AppliesToBuiltinScenesToo) {
+  const model::Override half{"end.time", "0.25"};
+  EXPECT_EQ(model::load_scene("hung-edge", std::span(&half, 1)).end, 0.25);
+}
+
+}  // namespace
+}  // namespace drape::verify
