@@ -107,7 +107,7 @@ std::vector<model::Override> only(std::vector<model::Override> kept) {
 
 void register_all() {
   const std::vector<std::int64_t> sizes{20, 100, 1000};
-  const auto add = [&](const std::string& name, auto function, std::vector<std::int64_t> some_sizes) {
+  const auto add = [&](const std::string& name, auto function, const std::vector<std::int64_t>& some_sizes) {
     for (const std::int64_t n : some_sizes) benchmark::RegisterBenchmark(name.c_str(), function)->Arg(n)->ArgName("n");
   };
   add("triad", triad, sizes);

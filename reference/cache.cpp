@@ -55,7 +55,7 @@ std::filesystem::path default_cache_folder() {
     const char* value = std::getenv(variable);
     return std::filesystem::path(value ? value : "");
   };
-  if (const auto folder = from("DRAPE_CACHE"); !folder.empty()) return folder;
+  if (auto folder = from("DRAPE_CACHE"); !folder.empty()) return folder;
   if (const auto folder = from("XDG_CACHE_HOME"); !folder.empty()) return folder / "drape";
   if (const auto folder = from("HOME"); !folder.empty()) return folder / ".cache" / "drape";
   return {};
