@@ -17,6 +17,7 @@ std::atomic<std::int64_t> allocations = 0;
 // All ways to memory lead through malloc and its relatives, `new` and the libraries of others included.
 #ifdef DRAPE_SANITIZE
 // Declared here because g++ 12 ships the function without its header.
+// NOLINTNEXTLINE(readability-identifier-naming)
 extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*)(const volatile void*, std::size_t),
                                                          void (*)(const volatile void*));
 
