@@ -11,9 +11,10 @@
 #include "bench/choices.hpp"
 #include "bench/studies.hpp"
 #include "bench/sweep.hpp"
+#include "bench/table_jobs.hpp"
 #include "model/scene_file.hpp"
 #include "results/run_file.hpp"
-#include "results/table.hpp"
+#include "results/runs_table.hpp"
 #include "solver/named.hpp"
 
 namespace drape::bench {
@@ -36,6 +37,7 @@ struct Arguments {
   std::string study;
   bool quick = false;
   bool no_reference = false;
+  double agreement = SweepOptions().agreement;
   int repeat = 3;
   std::string out;
   std::string format = "table";
@@ -95,23 +97,47 @@ std::vector<Group> run_groups(const Arguments& a) {
   return {group};
 }
 
-void print(const std::vector<results::RunRecord>& runs, const Arguments& a, const std::filesystem::path& out) {
-  if (a.format == "csv") {
-    fmt::print("{}", results::to_csv(runs));
-  } else if (a.format == "json") {
-    fmt::print("{}", results::to_json(runs));
-  } else {
-    fmt::print("{}\nrecorded in {}\n", results::to_table(runs), out.string());
+void print_table(const results::Table& table, const std::string& format) {
+  fmt::print("{}", format == "csv" ? to_csv(table) : format == "json" ? to_json(table) : to_text(table));
+}
+
+/// Tables under their descriptions; as CSV under their names; as JSON in one object.
+void print_tables(const std::vector<results::Table>& tables, const std::string& format) {
+  if (format == "json") {
+    fmt::print("{}", results::to_json(std::span(tables)));
+    return;
   }
+  for (const results::Table& table : tables) {
+    fmt::print("{}{}\n", format == "csv" ? "# " : "\n", format == "csv" ? table.name : table.description);
+    print_table(table, format);
+  }
+}
+
+void say_where(const std::filesystem::path& out, const std::string& format) {
+  if (format == "table") fmt::print("\nrecorded in {}\n", out.string());
+}
+
+std::filesystem::path out_file(const Arguments& a, const std::string& job) {
+  return a.out.empty() ? default_out(job) : std::filesystem::path(a.out);
 }
 
 void sweep_and_print(const std::vector<Group>& groups, const Arguments& a, const std::string& job) {
   SweepOptions options;
   options.repetitions = a.repeat;
   options.reference = !a.no_reference;
+  options.agreement = a.agreement;
   options.command_line = a.command_line;
-  options.out = a.out.empty() ? default_out(job) : std::filesystem::path(a.out);
-  print(sweep(groups, options), a, options.out);
+  options.out = out_file(a, job);
+  print_table(results::to_table(sweep(groups, options)), a.format);
+  say_where(options.out, a.format);
+}
+
+void run_study(const Study& chosen, const Arguments& a) {
+  const std::string name(chosen.name);
+  if (chosen.groups) return sweep_and_print(chosen.groups(a.quick), a, name);
+  const std::filesystem::path out = out_file(a, name);
+  print_tables(compute(chosen.tables(a.quick), out, a.command_line), a.format);
+  say_where(out, a.format);
 }
 
 void add_output_options(CLI::App& command, Arguments& a) {
@@ -127,6 +153,12 @@ void add_output_options(CLI::App& command, Arguments& a) {
       ->check(CLI::IsMember({"table", "csv", "json"}).description(""))
       ->capture_default_str();
   command.add_flag("--no-reference", a.no_reference, "measure no errors");
+  command
+      .add_option("--agreement", a.agreement,
+                  "largest disagreement of the two solvers behind a reference, over the scene's size")
+      ->type_name("X")
+      ->check(between(1e-15, 1.0))
+      ->capture_default_str();
 }
 
 void add_solver_options(CLI::App& command, Arguments& a) {
@@ -184,7 +216,7 @@ void add_study(CLI::App& app, Arguments& a) {
   command.add_flag("--quick", a.quick, "a short form, for tests");
   add_output_options(command, a);
   command.footer(paragraph("Studies", study_choices()));
-  command.callback([&a] { sweep_and_print(study(a.study).groups(a.quick), a, a.study); });
+  command.callback([&a] { run_study(study(a.study), a); });
 }
 
 void add_list(CLI::App& app, Arguments& a) {
@@ -223,7 +255,7 @@ int run_command_line(int argc, const char* const* argv) {
       "  bench_integrators run --help\n");  // after the subcommands, which would inherit it
   try {
     app.parse(argc, argv);
-    if (app.get_subcommands().empty()) sweep_and_print(studies().front().groups(false), a, std::string(studies().front().name));
+    if (app.get_subcommands().empty()) run_study(studies().front(), a);
     flush_output();
     return 0;
   } catch (const CLI::ParseError& error) {

@@ -8,7 +8,7 @@ std::span<const Study> studies() {
   static constexpr Study table[] = {
       {"hung-sheets",
        "all methods on the sheet of table 3.2 (without the table), hung by its edge and by two corners, d = 50 and 0.5",
-       hung_sheets},
+       hung_sheets, nullptr},
   };
   return table;
 }

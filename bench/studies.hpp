@@ -1,18 +1,30 @@
 #pragma once
 
+#include <functional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include "bench/cell.hpp"
+#include "bench/progress.hpp"
+#include "results/table.hpp"
 
 namespace drape::bench {
 
-/// A study: a fixed list of runs with a question. A row of the table, its cells in a file of its own under bench/studies/.
+/// A table to be computed in `parts` pieces of work; `compute` says what it does and calls progress.advance() after each.
+struct TableJob {
+  int parts;
+  std::function<results::Table(Progress& progress)> compute;
+};
+
+/// A study: a fixed question, answered by a list of runs or by tables. A row of the table, in a file of its own under
+/// bench/studies/. quick: a short form for tests.
 struct Study {
   std::string_view name;
   std::string_view description;
-  std::vector<Group> (*groups)(bool quick);  ///< quick: a short form for tests
+  std::vector<Group> (*groups)(bool quick) = nullptr;     ///< runs, compared with references
+  std::vector<TableJob> (*tables)(bool quick) = nullptr;  ///< or tables
 };
 
 /// All studies; the first is the main job.
@@ -22,5 +34,8 @@ std::span<const Study> studies();
 const Study& study(std::string_view name);
 
 std::vector<Group> hung_sheets(bool quick);
+std::vector<TableJob> convergence(bool quick);
+std::vector<TableJob> orders(bool quick);
+std::vector<TableJob> modes(bool quick);
 
 }  // namespace drape::bench

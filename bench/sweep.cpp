@@ -7,70 +7,45 @@
 #include <algorithm>
 #include <system_error>
 
+#include "bench/errors.hpp"
 #include "bench/progress.hpp"
 #include "bench/timing.hpp"
-#include "model/scene_file.hpp"
-#include "reference/cache.hpp"
 #include "results/run_file.hpp"
 
 namespace drape::bench {
 namespace {
 
-/// The reference at several times up to the end: its uncertainty at a single time may be small by chance.
-class References {
- public:
-  reference::Reference operator()(const model::Scene& scene) {
-    constexpr int outputs = 10;
-    std::vector<double> times;
-    for (int k = 1; k <= outputs; ++k) times.push_back(scene.end * k / outputs);
-    const reference::CvodeOptions options{.size = model::size(scene)};
-    const auto key = reference::cache_key(model::to_toml(scene), 0, times, options);
-    return reference::cached(cache_, key, [&] {
-      const model::Cloth cloth = model::compile(scene);
-      return reference::reference(cloth.ode, cloth.start, 0, times, options);
-    });
-  }
-
-  /// Says what went wrong with the cache.
-  ~References() {
-    for (const std::string& message : cache_.messages()) fmt::print(stderr, "note: {}\n", message);
-  }
-
- private:
-  reference::Cache cache_;
-};
-
-results::ErrorRecord distance(const results::RunRecord& run, const reference::Reference& reference, double size) {
-  const solver::Vectors& x = reference.trajectory.states.back().x;
-  return {.rms = reference::rms_distance(run.final_state.x, x) / size,
-          .maximum = (run.final_state.x - x).rowwise().norm().maxCoeff() / size,
-          .reference = reference.name,
-          .reference_tolerance = reference.tolerance,
-          .reference_error = *std::ranges::max_element(reference.error) / size};
-}
-
 std::string title(const Cell& cell) {
   return fmt::format("{} {} h = {} {}", cell.scene.name, cell.method_name(), cell.step, cell.overrides);
 }
 
-/// Errors of the runs of a group that reached their end; all its cells have the same scene.
-void measure_errors(const Group& group, std::vector<results::RunRecord>& runs, References& references) {
-  const model::Scene& scene = group.front().scene;
+/// The reference that the runs of a group are measured by, or why there is none.
+struct Yardstick {
+  std::optional<reference::Reference> reference;
+  std::string remark;
+};
+
+/// All cells of a group have the same scene.
+Yardstick find_reference(const model::Scene& scene, References& references) {
   try {
-    const reference::Reference reference = references(scene);
-    for (results::RunRecord& run : runs)
-      if (run.outcome == to_string(solver::Outcome::success)) run.error = distance(run, reference, model::size(scene));
+    return {references(scene, model::compile(scene)), ""};
   } catch (const reference::ReferenceError& error) {
-    for (results::RunRecord& run : runs)
-      run.message += fmt::format("{}no reference: {}", run.message.empty() ? "" : "; ", error.what());
+    return {std::nullopt, fmt::format("no reference: {}", error.what())};
   }
+}
+
+void measure_error(const Cell& cell, results::RunRecord& run, const Yardstick& yardstick) {
+  if (!yardstick.reference)
+    run.message += (run.message.empty() ? "" : "; ") + yardstick.remark;
+  else if (run.outcome == to_string(solver::Outcome::success))
+    run.error = distance(run, *yardstick.reference, cell.scene, model::compile(cell.scene));
 }
 
 }  // namespace
 
 std::vector<results::RunRecord> sweep(const std::vector<Group>& groups, const SweepOptions& options) {
   results::RunFile file(options.out, results::provenance(options.command_line));
-  References references;
+  References references(options.agreement);
   int total = 0;
   for (const Group& group : groups)
     total += static_cast<int>(group.size()) * (1 + options.repetitions) + (options.reference ? 1 : 0);
@@ -78,15 +53,17 @@ std::vector<results::RunRecord> sweep(const std::vector<Group>& groups, const Sw
 
   std::vector<results::RunRecord> all;
   for (const Group& group : groups) {
+    Yardstick yardstick;
+    if (options.reference) {
+      progress.show("reference of " + group.front().scene.name);
+      yardstick = find_reference(group.front().scene, references);
+      progress.advance();
+    }
     std::vector<results::RunRecord> runs;
     for (const Cell& cell : group) {
       progress.show(title(cell));
       runs.push_back(record(cell));
-      progress.advance();
-    }
-    if (options.reference) {
-      progress.show("reference of " + group.front().scene.name);
-      measure_errors(group, runs, references);
+      if (options.reference) measure_error(cell, runs.back(), yardstick);
       progress.advance();
     }
     progress.show("timing " + group.front().scene.name);

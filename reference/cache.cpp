@@ -96,7 +96,7 @@ void Cache::store(std::string_view key, const Reference& reference) {
   }
 }
 
-std::string cache_key(std::string_view scene_toml, double t0, std::span<const double> times, const CvodeOptions& options) {
+std::string cache_key(std::string_view scene_toml, double t0, std::span<const double> times, const SolveOptions& options) {
   return fmt::format("{}\nt0 = {}\ntimes = [{}]\nrtol = {}\nsize = {}", scene_toml, t0, fmt::join(times, ", "), options.rtol,
                      options.size);
 }

@@ -46,7 +46,7 @@ class Cache {
 };
 
 /// The caller's part of a key: the complete scene, from which the ODE and y0 follow, and what reference() was asked for.
-std::string cache_key(std::string_view scene_toml, double t0, std::span<const double> times, const CvodeOptions& options);
+std::string cache_key(std::string_view scene_toml, double t0, std::span<const double> times, const SolveOptions& options);
 
 /// The reference from the cache, or else from `compute` and into the cache. Exceptions of `compute` pass through.
 Reference cached(Cache& cache, std::string_view key, const std::function<Reference()>& compute);

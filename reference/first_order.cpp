@@ -10,29 +10,32 @@ using solver::SparseMatrix;
 using solver::State;
 using solver::Vectors;
 
+namespace {
+
+/// A scalar N × N matrix on all three coordinates: 3N × 3N.
+SparseMatrix threefold(const SparseMatrix& scalar) {
+  SparseMatrix result(3 * scalar.rows(), 3 * scalar.cols());
+  result.reserve(Eigen::VectorXi::Constant(result.rows(), 8));
+  for (int i = 0; i < scalar.outerSize(); ++i)
+    for (SparseMatrix::InnerIterator entry(scalar, i); entry; ++entry)
+      for (int c = 0; c < 3; ++c) result.insert(3 * i + c, 3 * static_cast<int>(entry.col()) + c) = entry.value();
+  result.makeCompressed();
+  return result;
+}
+
+}  // namespace
+
 FirstOrderOde::FirstOrderOde(const solver::SplitOde& ode, const State& start, double t0)
-    : ode_(ode), start_(start), t0_(t0), unknown_(3 * ode.mass.size(), -1) {
-  if (start.x.rows() != ode.particles() || start.v.rows() != ode.particles())
-    throw std::invalid_argument(fmt::format("the start has {} positions and {} velocities, the equation of motion {} particles",
-                                            start.x.rows(), start.v.rows(), ode.particles()));
-  solver::prescribe(ode.pins, start_.v);
-  Vectors moves = Vectors::Ones(ode.particles(), 3);
-  solver::filter(ode.pins, moves);
-  for (int i = 0; i < moves.size(); ++i) {
-    if (moves.data()[i] != 0) unknown_[i] = static_cast<int>(free_.size());
-    (moves.data()[i] != 0 ? free_ : pinned_).push_back(i);
-  }
-  if (free_.empty()) throw std::invalid_argument("every coordinate is pinned: there is no equation of motion to integrate");
-  inverse_mass_.resize(free_.size());
-  for (std::size_t r = 0; r < free_.size(); ++r) inverse_mass_[r] = 1 / ode.mass[free_[r] / 3];
+    : ode_(ode), coordinates_(ode), start_(prescribed_start(ode, start)), t0_(t0), inverse_mass_(size() / 2) {
+  for (Eigen::Index r = 0; r < inverse_mass_.size(); ++r) inverse_mass_[r] = 1 / ode.mass[coordinates_.free[r] / 3];
 }
 
 Eigen::VectorXd FirstOrderOde::initial() const {
   const int n = size() / 2;
   Eigen::VectorXd y(size());
   for (int r = 0; r < n; ++r) {
-    y[r] = start_.x.data()[free_[r]];
-    y[n + r] = start_.v.data()[free_[r]];
+    y[r] = start_.x.data()[coordinates_.free[r]];
+    y[n + r] = start_.v.data()[coordinates_.free[r]];
   }
   return y;
 }
@@ -40,32 +43,46 @@ Eigen::VectorXd FirstOrderOde::initial() const {
 State FirstOrderOde::state(double t, const Eigen::Ref<const Eigen::VectorXd>& y) const {
   const int n = size() / 2;
   State s = start_;
-  for (int i : pinned_) s.x.data()[i] += start_.v.data()[i] * (t - t0_);
+  for (int i : coordinates_.pinned) s.x.data()[i] += start_.v.data()[i] * (t - t0_);
   for (int r = 0; r < n; ++r) {
-    s.x.data()[free_[r]] = y[r];
-    s.v.data()[free_[r]] = y[n + r];
+    s.x.data()[coordinates_.free[r]] = y[r];
+    s.v.data()[coordinates_.free[r]] = y[n + r];
   }
   return s;
 }
 
-void FirstOrderOde::derivative(double t, const Eigen::Ref<const Eigen::VectorXd>& y, Eigen::Ref<Eigen::VectorXd> dy) const {
-  const int n = size() / 2;
-  const State s = state(t, y);
+Vectors FirstOrderOde::force(double t, const State& s, Part part) const {
+  if (part == Part::implicit) return ode_.stiffness * s.x + ode_.damping * s.v;
   Vectors f(ode_.particles(), 3);
-  ode_.force(t, s.x, s.v, f);
-  dy.head(n) = y.tail(n);
+  (part == Part::whole ? ode_.force : ode_.explicit_force)(t, s.x, s.v, f);
+  return f;
+}
+
+void FirstOrderOde::derivative(double t, const Eigen::Ref<const Eigen::VectorXd>& y, Eigen::Ref<Eigen::VectorXd> dy,
+                               Part part) const {
+  const int n = size() / 2;
+  const Vectors f = force(t, state(t, y), part);
+  if (part == Part::explicit_)
+    dy.head(n).setZero();
+  else
+    dy.head(n) = y.tail(n);
   for (int r = 0; r < n; ++r) {
-    dy[n + r] = inverse_mass_[r] * f.data()[free_[r]];
+    dy[n + r] = inverse_mass_[r] * f.data()[coordinates_.free[r]];
     if (!std::isfinite(dy[n + r]))
-      throw std::runtime_error(fmt::format("the force on particle {} is not finite at t = {} s", free_[r] / 3, t));
+      throw std::runtime_error(fmt::format("the force on particle {} is not finite at t = {} s", coordinates_.free[r] / 3, t));
   }
 }
 
-WideSparseMatrix FirstOrderOde::jacobian(double t, const Eigen::Ref<const Eigen::VectorXd>& y) const {
+WideSparseMatrix FirstOrderOde::jacobian(double t, const Eigen::Ref<const Eigen::VectorXd>& y, Part part) const {
   const int n = size() / 2;
-  const State s = state(t, y);
   SparseMatrix df_dx, df_dv, identity(3 * ode_.particles(), 3 * ode_.particles());
-  ode_.jacobian(t, s.x, s.v, df_dx, df_dv);
+  if (part == Part::whole) {
+    const State s = state(t, y);
+    ode_.jacobian(t, s.x, s.v, df_dx, df_dv);
+  } else {
+    df_dx = threefold(ode_.stiffness);
+    df_dv = threefold(ode_.damping);
+  }
   identity.setIdentity();
   df_dv += 0 * identity;  // the diagonal becomes part of the pattern
 
@@ -77,8 +94,9 @@ WideSparseMatrix FirstOrderOde::jacobian(double t, const Eigen::Ref<const Eigen:
     J.insertBack(r, n + r) = 1;
   }
   const auto append_row = [&](int r, const SparseMatrix& block, int first_column) {
-    for (SparseMatrix::InnerIterator entry(block, free_[r]); entry; ++entry)
-      if (const int c = unknown_[entry.col()]; c >= 0) J.insertBack(n + r, first_column + c) = inverse_mass_[r] * entry.value();
+    for (SparseMatrix::InnerIterator entry(block, coordinates_.free[r]); entry; ++entry)
+      if (const int c = coordinates_.unknown[entry.col()]; c >= 0)
+        J.insertBack(n + r, first_column + c) = inverse_mass_[r] * entry.value();
   };
   for (int r = 0; r < n; ++r) {
     J.startVec(n + r);

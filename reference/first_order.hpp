@@ -1,26 +1,25 @@
 #pragma once
 
-#include <vector>
-
-#include "solver/split_ode.hpp"
+#include "reference/coordinates.hpp"
 
 namespace drape::reference {
 
-/// Compressed rows with the 64 bit indices of SUNDIALS.
-using WideSparseMatrix = Eigen::SparseMatrix<double, Eigen::RowMajor, std::int64_t>;
+/// The split of the equation of motion: K x + D v is implicit, f_expl explicit [Etzmuß 2002, (3.20)].
+enum class Part { whole, implicit, explicit_ };
 
 /// The split equation of motion as  dy/dt = g(t, y)  for a general ODE solver.
 ///
 /// y = (positions [m], velocities [m/s]) of the n free coordinates, in the order of their index 3i + c: 2n numbers. Pinned
 /// coordinates are no unknowns: they are at x0 + w (t - t0) with the velocity w, and are put in before every evaluation.
-/// The ODE must outlive this object. Evaluations throw std::runtime_error if the result is not finite.
+/// dx/dt = v belongs to the implicit part. The ODE must outlive this object. Evaluations throw std::runtime_error if the
+/// result is not finite.
 class FirstOrderOde {
  public:
   /// Throws std::invalid_argument if the state does not fit the ODE, or if all coordinates are pinned.
   FirstOrderOde(const solver::SplitOde& ode, const solver::State& start, double t0);
 
   /// Length of y, 2n.
-  int size() const { return 2 * static_cast<int>(free_.size()); }
+  int size() const { return 2 * static_cast<int>(coordinates_.free.size()); }
 
   /// The free part of the start.
   Eigen::VectorXd initial() const;
@@ -28,19 +27,21 @@ class FirstOrderOde {
   /// All coordinates, the pinned ones included, at time t [s].
   solver::State state(double t, const Eigen::Ref<const Eigen::VectorXd>& y) const;
 
-  /// dy/dt.
-  void derivative(double t, const Eigen::Ref<const Eigen::VectorXd>& y, Eigen::Ref<Eigen::VectorXd> dy) const;
+  /// dy/dt, or one part of it.
+  void derivative(double t, const Eigen::Ref<const Eigen::VectorXd>& y, Eigen::Ref<Eigen::VectorXd> dy,
+                  Part part = Part::whole) const;
 
-  /// ∂g/∂y = [0 I; M⁻¹ ∂f/∂x  M⁻¹ ∂f/∂v], 2n × 2n. Every diagonal entry is stored, so that I - γ ∂g/∂y has the same pattern.
-  WideSparseMatrix jacobian(double t, const Eigen::Ref<const Eigen::VectorXd>& y) const;
+  /// ∂g/∂y = [0 I; M⁻¹ ∂f/∂x  M⁻¹ ∂f/∂v], 2n × 2n, of the whole or of the implicit part. Every diagonal entry is stored, so
+  /// that I - γ ∂g/∂y has the same pattern.
+  WideSparseMatrix jacobian(double t, const Eigen::Ref<const Eigen::VectorXd>& y, Part part = Part::whole) const;
 
  private:
+  solver::Vectors force(double t, const solver::State& s, Part part) const;
+
   const solver::SplitOde& ode_;
+  Coordinates coordinates_;
   solver::State start_;  ///< with the prescribed velocities
   double t0_;
-  std::vector<int> free_;         ///< 3i + c of each free coordinate
-  std::vector<int> pinned_;       ///< 3i + c of each pinned coordinate
-  std::vector<int> unknown_;      ///< 3N: place among the free coordinates, -1 if pinned
   Eigen::VectorXd inverse_mass_;  ///< n, [1/kg]
 };
 

@@ -51,6 +51,21 @@ solver::Vectors take_vectors(Reader& reader) {
   return Eigen::Map<const solver::Vectors>(values.data(), static_cast<Eigen::Index>(values.size() / 3), 3);
 }
 
+void put_trajectory(std::string& out, const Trajectory& trajectory) {
+  put(out, trajectory.times.data(), trajectory.times.size());
+  for (const solver::State& state : trajectory.states)
+    for (const solver::Vectors* part : {&state.x, &state.v}) put(out, part->data(), static_cast<std::size_t>(part->size()));
+}
+
+Trajectory take_trajectory(Reader& reader) {
+  Trajectory trajectory{reader.take<std::vector<double>>(), {}};
+  for (std::size_t i = 0; i < trajectory.times.size(); ++i) {
+    solver::Vectors x = take_vectors(reader);
+    trajectory.states.push_back({std::move(x), take_vectors(reader)});
+  }
+  return trajectory;
+}
+
 std::string checksum(std::string_view bytes) {
   const std::uint64_t hash = XXH3_64bits(bytes.data(), bytes.size());
   return {reinterpret_cast<const char*>(&hash), sizeof hash};
@@ -61,14 +76,11 @@ std::string checksum(std::string_view bytes) {
 std::string encode(std::string_view key, const Reference& reference) {
   std::string out;
   put(out, key.data(), key.size());
-  put(out, reference.name.data(), reference.name.size());
+  for (const std::string* name : {&reference.name, &reference.witness}) put(out, name->data(), name->size());
   put(out, &reference.tolerance, 1);
-  put(out, reference.error.data(), reference.error.size());
-  put(out, reference.trajectory.times.data(), reference.trajectory.times.size());
-  for (const solver::State& state : reference.trajectory.states) {
-    put(out, state.x.data(), static_cast<std::size_t>(state.x.size()));
-    put(out, state.v.data(), static_cast<std::size_t>(state.v.size()));
-  }
+  for (const auto* series : {&reference.error, &reference.tolerance_effect, &reference.growth})
+    put(out, series->data(), series->size());
+  for (const Trajectory* trajectory : {&reference.trajectory, &reference.perturbed}) put_trajectory(out, *trajectory);
   return out + checksum(out);
 }
 
@@ -79,14 +91,11 @@ Reference decode(std::string_view bytes, std::string_view key) {
   Reader reader(body);
   if (reader.take<std::string>() != key) throw DamagedFile("it belongs to another key");
   Reference reference;
-  reference.name = reader.take<std::string>();
+  for (std::string* name : {&reference.name, &reference.witness}) *name = reader.take<std::string>();
   reference.tolerance = reader.take<std::vector<double>>().at(0);
-  reference.error = reader.take<std::vector<double>>();
-  reference.trajectory.times = reader.take<std::vector<double>>();
-  for (std::size_t i = 0; i < reference.trajectory.times.size(); ++i) {
-    solver::Vectors x = take_vectors(reader);
-    reference.trajectory.states.push_back({std::move(x), take_vectors(reader)});
-  }
+  for (auto* series : {&reference.error, &reference.tolerance_effect, &reference.growth})
+    *series = reader.take<std::vector<double>>();
+  for (Trajectory* trajectory : {&reference.trajectory, &reference.perturbed}) *trajectory = take_trajectory(reader);
   return reference;
 }
 

@@ -164,19 +164,49 @@ int read_integer(const Handle& object, const std::string& name) {
   return value;
 }
 
-template <class Number>
-void write_numbers(const Handle& group, const std::string& name, const Number* values, std::vector<std::uint64_t> shape,
-                   const std::string& unit, const std::string& description) {
+namespace {
+
+/// A new dataset with its unit and description.
+void write_dataset(const Handle& group, const std::string& name, Types types_of_values, const void* values,
+                   const std::vector<std::uint64_t>& shape, const std::string& unit, const std::string& description) {
   const std::vector<hsize_t> dimensions(shape.begin(), shape.end());
   const int rank = static_cast<int>(shape.size());
   const Handle space(rank == 0 ? H5Screate(H5S_SCALAR) : H5Screate_simple(rank, dimensions.data(), nullptr), name);
   const Handle links(H5Pcreate(H5P_LINK_CREATE), name);
   check(H5Pset_create_intermediate_group(links.id(), 1), name);
-  const hid_t type = types<Number>().file;
-  const Handle dataset(H5Dcreate2(group.id(), name.c_str(), type, space.id(), links.id(), H5P_DEFAULT, H5P_DEFAULT), name);
-  check(H5Dwrite(dataset.id(), types<Number>().memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), name);
+  const Handle dataset(
+      H5Dcreate2(group.id(), name.c_str(), types_of_values.file, space.id(), links.id(), H5P_DEFAULT, H5P_DEFAULT), name);
+  check(H5Dwrite(dataset.id(), types_of_values.memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), name);
   write_text(dataset, "unit", unit);
   write_text(dataset, "description", description);
+}
+
+}  // namespace
+
+template <class Number>
+void write_numbers(const Handle& group, const std::string& name, const Number* values, std::vector<std::uint64_t> shape,
+                   const std::string& unit, const std::string& description) {
+  write_dataset(group, name, types<Number>(), values, shape, unit, description);
+}
+
+void write_texts(const Handle& group, const std::string& name, const std::vector<std::string>& values,
+                 const std::string& description) {
+  const Handle type = text_type();
+  std::vector<const char*> texts;
+  for (const std::string& value : values) texts.push_back(value.c_str());
+  write_dataset(group, name, {type.id(), type.id()}, texts.data(), {texts.size()}, "", description);
+}
+
+std::vector<std::string> read_texts(const Handle& group, const std::string& name) {
+  const Handle dataset(H5Dopen2(group.id(), name.c_str(), H5P_DEFAULT), name);
+  const Handle space(H5Dget_space(dataset.id()), name), stored(H5Dget_type(dataset.id()), name), type = text_type();
+  if (H5Tis_variable_str(stored.id()) <= 0) throw Error(name + " must be a list of texts");
+  std::vector<char*> texts(static_cast<std::size_t>(check(H5Sget_simple_extent_npoints(space.id()), name)));
+  check(H5Dread(dataset.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, texts.data()), name);
+  std::vector<std::string> values;
+  for (char* text : texts) values.emplace_back(text ? text : "");
+  check(H5Dvlen_reclaim(type.id(), space.id(), H5P_DEFAULT, texts.data()), name);
+  return values;
 }
 
 template <class Number>
@@ -193,6 +223,12 @@ Number read_number(const Handle& group, const std::string& name) {
   const auto values = read_numbers<Number>(group, name);
   if (values.size() != 1) throw Error(name + " must be a single number");
   return values.front();
+}
+
+std::vector<std::string> groups(const Handle& group) {
+  std::vector<std::string> names;
+  check(H5Literate(group.id(), H5_INDEX_NAME, H5_ITER_INC, nullptr, append_name<H5L_info_t>, &names), "list of groups");
+  return names;
 }
 
 std::vector<DatasetInfo> datasets(const Handle& group) {

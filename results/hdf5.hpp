@@ -9,8 +9,8 @@
 
 /// The little of HDF5 that we use, with exceptions and handles that close themselves. Only hdf5.cpp knows the library.
 ///
-/// Text is kept in attributes, since h5py shows these as str, and described by an attribute of its own: `a.description` for
-/// `a`. Numbers are kept in datasets with the attributes `unit` and `description`.
+/// Single texts are kept in attributes, since h5py shows these as str, and described by an attribute of their own:
+/// `a.description` for `a`. Numbers and lists of texts are kept in datasets with the attributes `unit` and `description`.
 namespace drape::results::hdf5 {
 
 /// Says what failed and why, but not in which file.
@@ -70,12 +70,21 @@ std::vector<Number> read_numbers(const Handle& group, const std::string& name);
 template <class Number>
 Number read_number(const Handle& group, const std::string& name);
 
+void write_texts(const Handle& group, const std::string& name, const std::vector<std::string>& values,
+                 const std::string& description);
+
+/// All texts of a dataset; throws Error if it holds something else.
+std::vector<std::string> read_texts(const Handle& group, const std::string& name);
+
 /// A dataset's name in its group (a path, if it is in a group of the group), unit and description.
 struct DatasetInfo {
   std::string name;
   std::string unit;
   std::string description;
 };
+
+/// Names of all groups in a group, sorted.
+std::vector<std::string> groups(const Handle& group);
 
 /// All datasets in a group and in its groups, sorted by name.
 std::vector<DatasetInfo> datasets(const Handle& group);

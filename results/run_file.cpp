@@ -10,6 +10,7 @@
 
 #include "results/hdf5.hpp"
 #include "results/schema.hpp"
+#include "results/table_in_file.hpp"
 
 namespace drape::results {
 namespace fs = std::filesystem;
@@ -137,8 +138,23 @@ Handle open_run_file(const fs::path& path) {
 
 struct RunFile::Image {
   Handle file;
-  Handle runs;
-  int count = 0;
+  Handle runs, tables;
+  int run_count = 0;
+  bool published = false;
+
+  /// Writes a new member of a group and publishes the file; without the member, if that fails.
+  void add(const fs::path& path, const Handle& group, const std::string& name, const auto& write) {
+    with_file_named(path, [&] {
+      try {
+        write();
+        publish(path, hdf5::image(file), published ? Existing::replace : Existing::refuse);
+        published = true;
+      } catch (...) {
+        if (hdf5::has(group, name)) hdf5::remove(group, name);
+        throw;
+      }
+    });
+  }
 };
 
 RunFile::RunFile(fs::path path, const Provenance& provenance) : path_(std::move(path)) {
@@ -149,24 +165,21 @@ RunFile::RunFile(fs::path path, const Provenance& provenance) : path_(std::move(
     hdf5::write_integer(file, "schema_version", schema_version);
     for (const Fact& fact : provenance) hdf5::write_described_text(file, fact.name, fact.value, fact.description);
     Handle runs = hdf5::create_group(file, "runs", "one group for each run, in the order they finished");
-    image_ = std::make_unique<Image>(Image{std::move(file), std::move(runs)});
+    Handle tables = hdf5::create_group(file, "tables", "one group for each table of a study, one dataset for each column");
+    image_ = std::make_unique<Image>(Image{std::move(file), std::move(runs), std::move(tables)});
   });
 }
 
 RunFile::~RunFile() = default;
 
 void RunFile::add(const RunRecord& run) {
-  const std::string name = run_name(image_->count);
-  with_file_named(path_, [&] {
-    try {
-      write_run(image_->runs, name, run);
-      publish(path_, hdf5::image(image_->file), image_->count == 0 ? Existing::refuse : Existing::replace);
-    } catch (...) {
-      if (hdf5::has(image_->runs, name)) hdf5::remove(image_->runs, name);
-      throw;
-    }
-  });
-  ++image_->count;
+  const std::string name = run_name(image_->run_count);
+  image_->add(path_, image_->runs, name, [&] { write_run(image_->runs, name, run); });
+  ++image_->run_count;
+}
+
+void RunFile::add(const Table& table) {
+  image_->add(path_, image_->tables, table.name, [&] { write_table(image_->tables, table); });
 }
 
 std::vector<RunRecord> read_runs(const fs::path& path) {
@@ -176,6 +189,16 @@ std::vector<RunRecord> read_runs(const fs::path& path) {
     std::vector<RunRecord> records;
     for (int i = 0; hdf5::has(runs, run_name(i)); ++i) records.push_back(read_run(hdf5::open_group(runs, run_name(i))));
     return records;
+  });
+}
+
+std::vector<Table> read_tables(const fs::path& path) {
+  return with_file_named(path, [&] {
+    const Handle file = open_run_file(path);
+    const Handle tables = hdf5::open_group(file, "tables");
+    std::vector<Table> result;
+    for (const std::string& name : hdf5::groups(tables)) result.push_back(read_table(tables, name));
+    return result;
   });
 }
 

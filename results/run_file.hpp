@@ -7,6 +7,7 @@
 #include "results/atomic_file.hpp"
 #include "results/provenance.hpp"
 #include "results/run_record.hpp"
+#include "results/table.hpp"
 
 namespace drape::results {
 
@@ -23,6 +24,9 @@ class RunFile {
   /// without the run, if it cannot be written.
   void add(const RunRecord& run);
 
+  /// On return the table is on disk, as `/tables/<name>`. Throws like the other.
+  void add(const Table& table);
+
   const std::filesystem::path& path() const { return path_; }
 
  private:
@@ -34,6 +38,9 @@ class RunFile {
 /// All runs of a file, in the order they were added; their parameters and work counts are sorted by name.
 /// Throws FileError if the file cannot be read or is not such a file.
 std::vector<RunRecord> read_runs(const std::filesystem::path& path);
+
+/// All tables of a file, sorted by name. Throws like read_runs().
+std::vector<Table> read_tables(const std::filesystem::path& path);
 
 /// Where the runs of a file come from. Throws like read_runs().
 Provenance read_provenance(const std::filesystem::path& path);

@@ -34,14 +34,29 @@ struct StepRecord {
   double potential_energy = 0;  ///< [J]
 };
 
-/// Distance of the final positions from a reference. Errors are divided by the scene's size and so have no unit.
+/// Distance of the final state from a reference. Lengths are divided by the scene's size, energies by the largest sum of
+/// kinetic energy and change of potential energy along the reference, so nothing has a unit. A spread is what a small
+/// perturbation of the start does to the quantity.
 struct ErrorRecord {
   double rms = 0;
   double maximum = 0;
-  std::string reference;           ///< name, for example "cvode-bdf"
-  double reference_tolerance = 0;  ///< relative tolerance it was computed with
-  double reference_error = 0;      ///< its own uncertainty, in the same measure as rms
+  std::string reference;           ///< the two solvers, for example "cvode-bdf + arkode-esdirk"
+  double reference_tolerance = 0;  ///< relative tolerance they ran with
+  double reference_error = 0;      ///< their disagreement, in the same measure as rms
+  double growth = 0;               ///< of a small perturbation of the start
+  double energy = 0;               ///< difference of the total energy
+  double energy_spread = 0;
+  double centre = 0;  ///< distance of the centre of mass
+  double centre_spread = 0;
 };
+
+/// Beyond this growth of a perturbation the final positions say little about a method: compare energies and statistics.
+inline constexpr double comparable_growth = 100;
+inline bool comparable(const ErrorRecord& error) { return error.growth <= comparable_growth; }
+
+/// An error below so many times its reference's own is no number to rely on.
+inline constexpr double resolution = 10;
+inline bool resolved(const ErrorRecord& error) { return error.rms >= resolution * error.reference_error; }
 
 /// All that is kept of one run: plain data, filled by whoever runs, written by whoever records.
 struct RunRecord {

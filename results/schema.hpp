@@ -7,7 +7,7 @@
 namespace drape::results {
 
 /// The layout of a run in the file: this one list serves writing and reading. results/README.md shows it for people.
-inline constexpr int schema_version = 1;
+inline constexpr int schema_version = 2;
 
 /// A member of a record under its name in the file. Text has no unit; numbers have one, "1" if they have no dimension.
 template <class Record, class Value>
@@ -56,9 +56,15 @@ inline constexpr std::tuple error_fields{
     Field{"rms", &ErrorRecord::rms, "1",
           "root of the mean squared distance to the reference, divided by the size of the scene"},
     Field{"maximum", &ErrorRecord::maximum, "1", "largest distance to the reference, divided by the size of the scene"},
-    Field{"reference", &ErrorRecord::reference, "", "name of the reference"},
+    Field{"reference", &ErrorRecord::reference, "", "the two solvers that make the reference"},
     Field{"reference_tolerance", &ErrorRecord::reference_tolerance, "1", "relative tolerance the reference was computed with"},
-    Field{"reference_error", &ErrorRecord::reference_error, "1", "uncertainty of the reference, in the same measure as rms"},
+    Field{"reference_error", &ErrorRecord::reference_error, "1", "disagreement of the two solvers, in the same measure as rms"},
+    Field{"growth", &ErrorRecord::growth, "1", "growth of a small perturbation of the start; rms means little beyond 100"},
+    Field{"energy", &ErrorRecord::energy, "1",
+          "difference of the total energy, over the largest sum of kinetic energy and change of potential energy"},
+    Field{"energy_spread", &ErrorRecord::energy_spread, "1", "what the perturbation does to the energy, in the same measure"},
+    Field{"centre", &ErrorRecord::centre, "1", "distance of the centres of mass, divided by the size of the scene"},
+    Field{"centre_spread", &ErrorRecord::centre_spread, "1", "what the perturbation does to the centre, in the same measure"},
 };
 
 /// Calls visit(field) for every field of a list.

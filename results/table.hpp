@@ -1,22 +1,44 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
-
-#include "results/run_record.hpp"
+#include <variant>
+#include <vector>
 
 namespace drape::results {
 
-/// One line per run, aligned for people: the columns that matter most, four digits. A run that failed shows how and when in
-/// place of its error; an error below ten times its reference's own is shown as less than that. Columns that no run has a
-/// value for are left out.
-std::string to_table(std::span<const RunRecord> runs);
+/// A value in a table; monostate if there is none.
+using Cell = std::variant<std::monostate, std::string, double, std::int64_t>;
+
+/// A column of a table.
+struct Column {
+  std::string name;         ///< in files, CSV and JSON
+  std::string title;        ///< for people; empty if not shown to them
+  std::string unit;         ///< "1" for numbers without dimension, empty for text
+  std::string description;  ///< what the numbers are
+  std::vector<Cell> cells;
+  std::vector<std::string> shown;  ///< what people see in place of the cells; empty: the cells, numbers with four digits
+};
+
+/// A result that is no single run: rows of equally long columns. Plain data.
+struct Table {
+  std::string name;         ///< unique in a file
+  std::string description;  ///< one sentence
+  std::vector<Column> columns;
+};
+
+/// One line per row, aligned for people. Columns without any value or title are left out.
+std::string to_text(const Table& table);
 
 /// All columns with a header (RFC 4180, but lines end with a line feed). Numbers read back as the same numbers; a cell is
 /// empty where there is no value.
-std::string to_csv(std::span<const RunRecord> runs);
+std::string to_csv(const Table& table);
 
-/// A list of objects with the columns of to_csv() as keys; null where there is no value or no finite one.
-std::string to_json(std::span<const RunRecord> runs);
+/// A list of objects with the columns' names as keys; null where there is no value or no finite one.
+std::string to_json(const Table& table);
+
+/// An object with the tables' names as keys and their lists as values.
+std::string to_json(std::span<const Table> tables);
 
 }  // namespace drape::results

@@ -16,4 +16,12 @@ void filter(const std::vector<Pin>& pins, Vectors& r) {
       if (pin.fixed[c]) r(pin.particle, c) = 0;
 }
 
+Vectors reactions(const SplitOde& ode, double t, const State& y) {
+  Vectors f(ode.particles(), 3);
+  ode.force(t, y.x, y.v, f);
+  Vectors free = f;
+  filter(ode.pins, free);
+  return free - f;
+}
+
 }  // namespace drape::solver

@@ -53,4 +53,8 @@ void prescribe(const std::vector<Pin>& pins, Vectors& v);
 /// Sets the pinned coordinates of a residual, force or acceleration to zero.
 void filter(const std::vector<Pin>& pins, Vectors& r);
 
+/// Forces of the pins on their particles [N], N × 3: M dv/dt - f, where dv/dt = 0 since prescribed velocities are constant;
+/// 0 in the free coordinates.
+Vectors reactions(const SplitOde& ode, double t, const State& y);
+
 }  // namespace drape::solver

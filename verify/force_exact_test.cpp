@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "reference/exact.hpp"
+#include "reference/exact/tension.hpp"
 #include "verify/model_fixtures.hpp"
 
 namespace drape::verify {

@@ -4,6 +4,7 @@
 
 #include "model/cloth.hpp"
 #include "model/scene_file.hpp"
+#include "reference/cvode.hpp"
 #include "reference/reference.hpp"
 #include "verify/convergence.hpp"
 #include "verify/small_problems.hpp"

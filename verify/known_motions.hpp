@@ -41,6 +41,9 @@ inline SparseMatrix threefold(const SparseMatrix& scalar) {
 inline SplitOde linear_ode(const Eigen::VectorXd& mass, const SparseMatrix& K, const SparseMatrix& D) {
   SplitOde ode;
   ode.mass = mass;
+  ode.stiffness = K;
+  ode.damping = D;
+  ode.explicit_force = [](double, const Vectors& x, const Vectors&, Vectors& f) { f = 0 * x; };
   ode.force = [K, D](double, const Vectors& x, const Vectors& v, Vectors& f) { f = K * x + D * v; };
   ode.jacobian = [K = threefold(K), D = threefold(D)](double, const Vectors&, const Vectors&, SparseMatrix& df_dx,
                                                       SparseMatrix& df_dv) { df_dx = K, df_dv = D; };

@@ -25,7 +25,14 @@ namespace fs = std::filesystem;
 /// Numbers without a short decimal form, a negative zero and a subnormal one.
 Reference some_reference() {
   const solver::Vectors x = solver::Vectors::Constant(4, 3, std::numbers::pi), v = -0.0 * x;
-  return {"cvode-bdf", 1e-10, {1e-12 / 3, 5e-324}, {{0.1, 0.2}, {{x, v}, {x * 7, x / 3}}}};
+  return {.name = "cvode-bdf",
+          .witness = "arkode-esdirk",
+          .tolerance = 1e-10,
+          .error = {1e-12 / 3, 5e-324},
+          .tolerance_effect = {1e-9 / 7, 1},
+          .growth = {0.3, 1e300},
+          .trajectory = {{0.1, 0.2}, {{x, v}, {x * 7, x / 3}}},
+          .perturbed = {{0.1, 0.2}, {{x / 5, v}, {x * 7, x / 11}}}};
 }
 
 bool equal(const Reference& a, const Reference& b) {
@@ -35,8 +42,12 @@ bool equal(const Reference& a, const Reference& b) {
   const auto same_state = [&](const solver::State& p, const solver::State& q) {
     return same_bits(p.x, q.x) && same_bits(p.v, q.v);
   };
-  return a.name == b.name && a.tolerance == b.tolerance && a.error == b.error && a.trajectory.times == b.trajectory.times &&
-         std::ranges::equal(a.trajectory.states, b.trajectory.states, same_state);
+  const auto same_trajectory = [&](const reference::Trajectory& p, const reference::Trajectory& q) {
+    return p.times == q.times && std::ranges::equal(p.states, q.states, same_state);
+  };
+  return a.name == b.name && a.witness == b.witness && a.tolerance == b.tolerance && a.error == b.error &&
+         a.tolerance_effect == b.tolerance_effect && a.growth == b.growth && same_trajectory(a.trajectory, b.trajectory) &&
+         same_trajectory(a.perturbed, b.perturbed);
 }
 
 std::string read(const fs::path& path) {

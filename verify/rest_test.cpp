@@ -4,7 +4,7 @@
 
 #include "model/cloth.hpp"
 #include "model/scene_file.hpp"
-#include "reference/exact.hpp"
+#include "reference/exact/tension.hpp"
 #include "verify/small_problems.hpp"
 
 namespace drape::verify {

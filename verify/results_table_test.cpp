@@ -10,7 +10,7 @@
 #include <numbers>
 #include <sstream>
 
-#include "results/table.hpp"
+#include "results/runs_table.hpp"
 
 namespace drape::verify {
 namespace {
@@ -35,7 +35,16 @@ RunRecord good_run() {
   run.numerical_stiffness = 1.0 / 3.0;
   run.stiffness_to_damping = std::numeric_limits<double>::infinity();
   run.last_good_time = 0.02;
-  run.error = ErrorRecord{1.23456789e-5, 2.5e-5, "cvode-bdf", 1e-11, 3e-10};
+  run.error = ErrorRecord{.rms = 1.23456789e-5,
+                          .maximum = 2.5e-5,
+                          .reference = "cvode-bdf",
+                          .reference_tolerance = 1e-11,
+                          .reference_error = 3e-10,
+                          .growth = 0.5,
+                          .energy = 1e-3,
+                          .energy_spread = 1e-9,
+                          .centre = 2e-6,
+                          .centre_spread = 1e-9};
   return run;
 }
 
@@ -53,20 +62,22 @@ RunRecord failed_run() {
 const std::vector<RunRecord> runs{good_run(), failed_run()};
 
 TEST(Csv, HasTheColumnsThatScriptsRelyOn) {
-  EXPECT_EQ(to_csv({}),
+  EXPECT_EQ(to_csv(to_table({})),
             "scene,method,step,outcome,message,steps,updates,cg_iterations,wall_ms_min,wall_ms_median,wall_ms_max,error_rms,"
-            "reference,reference_error,error_max,numerical_stiffness,stiffness_to_damping,last_good_time,set\n");
+            "reference,reference_error,error_max,growth,energy_error,centre_error,numerical_stiffness,stiffness_to_damping,"
+            "last_good_time,set\n");
 }
 
 TEST(Csv, GivesTotalsQuantilesAndAllDigits) {
-  EXPECT_THAT(to_csv(std::vector{good_run()}),
-              HasSubstr("\nflag,bdf2/cholesky,0.01,success,,2,3,42,1,2.5,4,1.23456789e-05,cvode-bdf,3e-10,2.5e-05,"
-                        "0.3333333333333333,inf,0.02,\n"));
+  EXPECT_THAT(
+      to_csv(to_table(std::vector{good_run()})),
+      HasSubstr("\nflag,bdf2/cholesky,0.01,success,,2,3,42,1,2.5,4,1.23456789e-05,cvode-bdf,3e-10,2.5e-05,0.5,0.001,2e-06,"
+                "0.3333333333333333,inf,0.02,\n"));
 }
 
 TEST(Csv, QuotesTextAndLeavesCellsWithoutValueEmpty) {
-  EXPECT_THAT(to_csv(std::vector{failed_run()}),
-              HasSubstr("\nFähnchen,bdf2/cholesky,0.01,not converged,\"said \"\"no\"\", twice\nand again\",2,3,42,,,,,,,,"
+  EXPECT_THAT(to_csv(to_table(std::vector{failed_run()})),
+              HasSubstr("\nFähnchen,bdf2/cholesky,0.01,not converged,\"said \"\"no\"\", twice\nand again\",2,3,42,,,,,,,,,,,"
                         "0.3333333333333333,inf,0.02,material.damping=0.5\n"));
 }
 
@@ -74,22 +85,22 @@ TEST(Csv, NumbersReadBackAsTheSameNumbers) {
   RunRecord run = good_run();
   for (const double number : {std::numbers::pi, 5e-324, 1.7976931348623157e308, 0.1 + 0.2}) {
     run.step = number;
-    const std::string csv = to_csv(std::vector{run});
+    const std::string csv = to_csv(to_table(std::vector{run}));
     const std::string cell = csv.substr(csv.find("cholesky,") + 9);
     EXPECT_EQ(std::strtod(cell.c_str(), nullptr), number);
   }
 }
 
 TEST(Json, HasTheColumnsOfCsvAsKeysInTheirOrder) {
-  const auto list = nlohmann::ordered_json::parse(to_json(runs));
+  const auto list = nlohmann::ordered_json::parse(to_json(to_table(runs)));
   ASSERT_THAT(list, SizeIs(2));
   std::string header;
   for (const auto& item : list[0].items()) header += (header.empty() ? "" : ",") + item.key();
-  EXPECT_EQ(header + "\n", to_csv({}));
+  EXPECT_EQ(header + "\n", to_csv(to_table({})));
 }
 
 TEST(Json, KeepsValuesAndGivesNullWhereThereIsNone) {
-  const auto list = nlohmann::json::parse(to_json(runs));
+  const auto list = nlohmann::json::parse(to_json(to_table(runs)));
   EXPECT_EQ(list[0]["error_rms"], 1.23456789e-5);
   EXPECT_EQ(list[0]["cg_iterations"], 42);
   EXPECT_EQ(list[0]["stiffness_to_damping"], nullptr) << "JSON knows no infinity";
@@ -102,7 +113,7 @@ TEST(Json, KeepsValuesAndGivesNullWhereThereIsNone) {
 TEST(Json, ReplacesBytesThatAreNotUtf8) {
   RunRecord run = good_run();
   run.message = "\xff!";
-  EXPECT_EQ(nlohmann::json::parse(to_json(std::vector{run}))[0]["message"], "\uFFFD!");
+  EXPECT_EQ(nlohmann::json::parse(to_json(to_table(std::vector{run})))[0]["message"], "\uFFFD!");
 }
 
 std::vector<std::string> lines_of(const std::string& text) {
@@ -122,7 +133,7 @@ std::size_t characters(const std::string& line) {
 TEST(Table, AllLinesAreEquallyWide) {
   ASSERT_NE(std::setlocale(LC_CTYPE, "C.UTF-8"), nullptr);
   std::vector<std::size_t> widths;
-  for (const std::string& line : lines_of(to_table(runs))) widths.push_back(characters(line));
+  for (const std::string& line : lines_of(to_text(to_table(runs)))) widths.push_back(characters(line));
   std::setlocale(LC_CTYPE, "C");
   ASSERT_THAT(widths, SizeIs(5));
   EXPECT_THAT(widths, Each(widths.front()));
@@ -132,7 +143,7 @@ TEST(Table, NumbersAlignAtTheRightAndTextAtTheLeft) {
   RunRecord longer = good_run();
   longer.method = "euler";
   longer.steps.resize(1234);
-  const auto lines = lines_of(to_table(std::vector{good_run(), longer}));
+  const auto lines = lines_of(to_text(to_table(std::vector{good_run(), longer})));
   const auto column = [&](std::size_t line, const std::string& text) { return lines[line].find(text); };
   EXPECT_EQ(column(0, "method"), column(3, "bdf2"));
   EXPECT_EQ(column(0, "method"), column(4, "euler"));
@@ -141,32 +152,41 @@ TEST(Table, NumbersAlignAtTheRightAndTextAtTheLeft) {
 }
 
 TEST(Table, ShowsFourDigitsAndUnits) {
-  const auto lines = lines_of(to_table(runs));
+  const auto lines = lines_of(to_text(to_table(runs)));
   EXPECT_THAT(lines[1], AllOf(HasSubstr("[s]"), HasSubstr("[ms]"), Not(HasSubstr("[1]"))));
   EXPECT_THAT(lines[3], AllOf(StartsWith("flag "), HasSubstr(" 1.235e-05 "), HasSubstr(" 0.3333 ")));
 }
 
 TEST(Table, FailedRunShowsHowAndWhenInPlaceOfItsError) {
-  const auto lines = lines_of(to_table(runs));
+  const auto lines = lines_of(to_text(to_table(runs)));
   EXPECT_THAT(lines[4], AllOf(HasSubstr("not converged at 0.02 s"), Not(HasSubstr("e-05"))));
   RunRecord with_error = failed_run();
   with_error.error = good_run().error;
-  EXPECT_THAT(to_table(std::vector{with_error}), Not(HasSubstr("1.235e-05")));
+  EXPECT_THAT(to_text(to_table(std::vector{with_error})), Not(HasSubstr("1.235e-05")));
 }
 
 TEST(Table, ShowsNoErrorThatItsReferenceCannotResolve) {
   RunRecord run = good_run();
   run.error->reference_error = run.error->rms / 11;
-  EXPECT_THAT(to_table(std::vector{run}), HasSubstr(" 1.235e-05 "));
+  EXPECT_THAT(to_text(to_table(std::vector{run})), HasSubstr(" 1.235e-05 "));
   run.error->reference_error = run.error->rms / 9;
-  EXPECT_THAT(to_table(std::vector{run}), AllOf(HasSubstr(" < 1e-05 "), Not(HasSubstr("1.235e-05"))));
-  EXPECT_THAT(to_csv(std::vector{run}), HasSubstr(",1.23456789e-05,"));
+  EXPECT_THAT(to_text(to_table(std::vector{run})), AllOf(HasSubstr(" < 1e-05 "), Not(HasSubstr("1.235e-05"))));
+  EXPECT_THAT(to_csv(to_table(std::vector{run})), HasSubstr(",1.23456789e-05,"));
+}
+
+TEST(Table, ShowsStatisticsInPlaceOfPositionsThatAreNotComparable) {
+  RunRecord run = good_run();
+  EXPECT_THAT(to_text(to_table(std::vector{run})), Not(HasSubstr("energy error")));
+  run.error->growth = 101;
+  EXPECT_THAT(to_text(to_table(std::vector{run})), AllOf(HasSubstr(" growth 1e+02 "), HasSubstr(" 0.001 ± 1e-09 "),
+                                                         HasSubstr(" 2e-06 ± 1e-09 "), Not(HasSubstr("e-05"))));
+  EXPECT_THAT(to_csv(to_table(std::vector{run})), HasSubstr(",1.23456789e-05,"));
 }
 
 TEST(Table, LeavesOutColumnsThatNoRunHasAValueFor) {
-  EXPECT_THAT(to_table(runs), AllOf(HasSubstr(" set "), HasSubstr("reference")));
-  EXPECT_THAT(to_table(std::vector{good_run()}), Not(HasSubstr(" set")));
-  EXPECT_THAT(to_table(std::vector{failed_run()}), Not(HasSubstr("reference")));
+  EXPECT_THAT(to_text(to_table(runs)), AllOf(HasSubstr(" set "), HasSubstr("reference")));
+  EXPECT_THAT(to_text(to_table(std::vector{good_run()})), Not(HasSubstr(" set")));
+  EXPECT_THAT(to_text(to_table(std::vector{failed_run()})), Not(HasSubstr("reference")));
 }
 
 TEST(WorkCount, IsZeroForAKindTheRunDoesNotKnow) {

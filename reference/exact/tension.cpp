@@ -1,4 +1,4 @@
-#include "reference/exact.hpp"
+#include "reference/exact/tension.hpp"
 
 namespace drape::reference {
 

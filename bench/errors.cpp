@@ -1,0 +1,74 @@
+#include "bench/errors.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "model/scene_file.hpp"
+
+namespace drape::bench {
+namespace {
+
+using solver::State;
+
+double total_energy(const model::Cloth& cloth, double t, const State& y) {
+  return solver::kinetic_energy(cloth.ode, y.v) + cloth.ode.potential_energy(t, y.x);
+}
+
+/// The largest sum of kinetic energy and change of potential energy along a trajectory [J].
+double energy_scale(const model::Cloth& cloth, const reference::Trajectory& trajectory) {
+  const double start = cloth.ode.potential_energy(0, cloth.start.x);
+  double scale = 0;
+  for (std::size_t k = 0; k < trajectory.times.size(); ++k) {
+    const State& y = trajectory.states[k];
+    scale = std::max(
+        scale, solver::kinetic_energy(cloth.ode, y.v) + std::abs(cloth.ode.potential_energy(trajectory.times[k], y.x) - start));
+  }
+  return scale;
+}
+
+double centre_distance(const model::Cloth& cloth, const State& a, const State& b) {
+  return (cloth.ode.mass.asDiagonal() * (a.x - b.x)).colwise().sum().norm() / cloth.ode.mass.sum();
+}
+
+}  // namespace
+
+References::~References() {
+  for (const std::string& message : cache_.messages()) fmt::print(stderr, "note: {}\n", message);
+}
+
+reference::Reference References::operator()(const model::Scene& scene, const model::Cloth& cloth) {
+  constexpr int outputs = 10;
+  std::vector<double> times;
+  for (int k = 1; k <= outputs; ++k) times.push_back(scene.end * k / outputs);
+  const reference::SolveOptions options{.size = model::size(scene)};
+  const auto key = reference::cache_key(model::to_toml(scene), 0, times, options);
+  reference::Reference reference =
+      reference::cached(cache_, key, [&] { return reference::reference(cloth.ode, cloth.start, 0, times, options); });
+  try {
+    reference::certify(reference, agreement_, results::comparable_growth, options.size);
+  } catch (const reference::NotCertified& error) {
+    throw reference::NotCertified(
+        fmt::format("{}: {}; allow more by --agreement, or measure no errors (--no-reference)", scene.name, error.what()));
+  }
+  return reference;
+}
+
+results::ErrorRecord distance(const results::RunRecord& run, const reference::Reference& reference, const model::Scene& scene,
+                              const model::Cloth& cloth) {
+  const double size = model::size(scene), end = reference.trajectory.times.back();
+  const State &y = reference.trajectory.states.back(), &perturbed = reference.perturbed.states.back();
+  const double energy = total_energy(cloth, end, y), scale = energy_scale(cloth, reference.trajectory);
+  return {.rms = reference::rms_distance(run.final_state.x, y.x) / size,
+          .maximum = (run.final_state.x - y.x).rowwise().norm().maxCoeff() / size,
+          .reference = fmt::format("{} + {}", reference.name, reference.witness),
+          .reference_tolerance = reference.tolerance,
+          .reference_error = std::ranges::max(reference.error) / size,
+          .growth = std::ranges::max(reference.growth),
+          .energy = std::abs(total_energy(cloth, end, run.final_state) - energy) / scale,
+          .energy_spread = std::abs(total_energy(cloth, end, perturbed) - energy) / scale,
+          .centre = centre_distance(cloth, run.final_state, y) / size,
+          .centre_spread = centre_distance(cloth, perturbed, y) / size};
+}
+
+}  // namespace drape::bench

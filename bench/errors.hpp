@@ -1,0 +1,33 @@
+#pragma once
+
+#include "model/cloth.hpp"
+#include "reference/cache.hpp"
+#include "results/run_record.hpp"
+
+namespace drape::bench {
+
+/// References of scenes, from the cache where they are known.
+class References {
+ public:
+  /// `agreement`: largest disagreement of the two families, over the size of the scene.
+  explicit References(double agreement) : agreement_(agreement) {}
+
+  /// Says what went wrong with the cache.
+  ~References();
+  References(const References&) = delete;
+  References& operator=(const References&) = delete;
+
+  /// At several times up to the scene's end: the uncertainty at a single time may be small by chance. Throws
+  /// reference::ReferenceError if there is none, and reference::NotCertified, naming the scene, if it cannot be trusted.
+  reference::Reference operator()(const model::Scene& scene, const model::Cloth& cloth);
+
+ private:
+  double agreement_;
+  reference::Cache cache_;
+};
+
+/// Distance of a run's final state from a reference of its scene that ends at the same time.
+results::ErrorRecord distance(const results::RunRecord& run, const reference::Reference& reference, const model::Scene& scene,
+                              const model::Cloth& cloth);
+
+}  // namespace drape::bench

@@ -1,0 +1,30 @@
+#include "reference/families.hpp"
+
+#include "reference/arkode.hpp"
+#include "reference/cvode.hpp"
+#include "reference/ida.hpp"
+#include "solver/named.hpp"
+
+namespace drape::reference {
+namespace {
+
+Trajectory ida_trajectory(const solver::SplitOde& ode, const solver::State& y0, double t0, std::span<const double> times,
+                          const SolveOptions& options) {
+  return ida(ode, y0, t0, times, options).trajectory;
+}
+
+}  // namespace
+
+std::span<const Family> families() {
+  static constexpr Family table[] = {
+      {"cvode-bdf", "CVODE: BDF of orders 1 to 5 with stability limit detection", cvode},
+      {"arkode-esdirk", "ARKODE: ESDIRK method of order 5, everything implicit", arkode_esdirk},
+      {"arkode-imex", "ARKODE: additive Runge-Kutta pair of order 5 on the split of the thesis", arkode_imex},
+      {"ida-bdf", "IDA: BDF of orders 1 to 5 on the residual form, pins as algebraic equations", ida_trajectory},
+  };
+  return table;
+}
+
+const Family& family(std::string_view name) { return solver::find_named(families(), "family of solvers", name); }
+
+}  // namespace drape::reference

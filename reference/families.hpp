@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string_view>
+
+#include "reference/trajectory.hpp"
+
+namespace drape::reference {
+
+/// A general solver that follows the same equation of motion by a family of methods of its own.
+struct Family {
+  std::string_view name;
+  std::string_view description;
+  Trajectory (*solve)(const solver::SplitOde& ode, const solver::State& y0, double t0, std::span<const double> times,
+                      const SolveOptions& options);
+};
+
+/// All families: linear multistep methods, Runge-Kutta methods, and the residual form.
+std::span<const Family> families();
+
+/// The family with this name. Throws std::invalid_argument, naming all that there are.
+const Family& family(std::string_view name);
+
+}  // namespace drape::reference

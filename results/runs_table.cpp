@@ -1,0 +1,98 @@
+#include "results/runs_table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+#include "solver/outcome.hpp"
+
+namespace drape::results {
+namespace {
+
+/// A column and where a run has its value.
+struct RunColumn {
+  std::string_view name;
+  std::string_view title;
+  std::string_view unit;
+  Cell (*cell)(const RunRecord&);
+  std::string (*shown)(const RunRecord&) = nullptr;  ///< if people see something else
+};
+
+/// The time below which a share of the repetitions is: 0 minimum, 0.5 median, 1 maximum; interpolated between two times.
+Cell quantile(const RunRecord& run, double share) {
+  if (run.times_ms.empty()) return {};
+  std::vector<double> sorted = run.times_ms;
+  std::ranges::sort(sorted);
+  const double position = share * static_cast<double>(sorted.size() - 1);
+  const auto below = static_cast<std::size_t>(position);
+  const auto above = std::min(below + 1, sorted.size() - 1);
+  return std::lerp(sorted[below], sorted[above], position - static_cast<double>(below));
+}
+
+template <class Value>
+Cell of_error(const RunRecord& run, Value ErrorRecord::*member) {
+  return run.error ? Cell((*run.error).*member) : Cell();
+}
+
+using Run = const RunRecord&;
+
+/// Why there is no error, and no digits of an error that the reference is too uncertain to resolve.
+std::string shown_error(Run run) {
+  if (run.outcome != to_string(solver::Outcome::success)) return fmt::format("{} at {:.4g} s", run.outcome, run.last_good_time);
+  if (!run.error) return {};
+  if (!comparable(*run.error)) return fmt::format("growth {:.1g}", run.error->growth);
+  if (!resolved(*run.error)) return fmt::format("< {:.1g}", resolution * run.error->reference_error);
+  return fmt::format("{:.4g}", run.error->rms);
+}
+
+/// A statistic with its uncertainty, for runs whose positions are not comparable.
+std::string shown_statistic(Run run, double ErrorRecord::*value, double ErrorRecord::*spread) {
+  if (!run.error || comparable(*run.error)) return {};
+  return fmt::format("{:.2g} ± {:.1g}", (*run.error).*value, (*run.error).*spread);
+}
+
+constexpr RunColumn columns[] = {
+    {"scene", "scene", "", [](Run run) -> Cell { return run.scene; }},
+    {"method", "method", "", [](Run run) -> Cell { return run.method; }},
+    {"step", "step", "s", [](Run run) -> Cell { return run.step; }},
+    {"outcome", "", "", [](Run run) -> Cell { return run.outcome; }},
+    {"message", "", "", [](Run run) -> Cell { return run.message; }},
+    {"steps", "steps", "1", [](Run run) -> Cell { return std::ssize(run.steps); }},
+    {"updates", "updates", "1", [](Run run) -> Cell { return work_count(run, "updates"); }},
+    {"cg_iterations", "CG", "1", [](Run run) -> Cell { return work_count(run, "cg_iterations"); }},
+    {"wall_ms_min", "wall min", "ms", [](Run run) { return quantile(run, 0); }},
+    {"wall_ms_median", "median", "ms", [](Run run) { return quantile(run, 0.5); }},
+    {"wall_ms_max", "max", "ms", [](Run run) { return quantile(run, 1); }},
+    {"error_rms", "rms error", "1", [](Run run) { return of_error(run, &ErrorRecord::rms); }, shown_error},
+    {"reference", "reference", "", [](Run run) { return of_error(run, &ErrorRecord::reference); }},
+    {"reference_error", "its error", "1", [](Run run) { return of_error(run, &ErrorRecord::reference_error); }},
+    {"error_max", "", "1", [](Run run) { return of_error(run, &ErrorRecord::maximum); }},
+    {"growth", "", "1", [](Run run) { return of_error(run, &ErrorRecord::growth); }},
+    {"energy_error", "energy error", "1", [](Run run) { return of_error(run, &ErrorRecord::energy); },
+     [](Run run) { return shown_statistic(run, &ErrorRecord::energy, &ErrorRecord::energy_spread); }},
+    {"centre_error", "centre error", "1", [](Run run) { return of_error(run, &ErrorRecord::centre); },
+     [](Run run) { return shown_statistic(run, &ErrorRecord::centre, &ErrorRecord::centre_spread); }},
+    {"numerical_stiffness", "ν_h", "1", [](Run run) -> Cell { return run.numerical_stiffness; }},
+    {"stiffness_to_damping", "h k/d", "1", [](Run run) -> Cell { return run.stiffness_to_damping; }},
+    {"last_good_time", "", "s", [](Run run) -> Cell { return run.last_good_time; }},
+    {"set", "set", "", [](Run run) -> Cell { return run.overrides; }},
+};
+
+}  // namespace
+
+Table to_table(std::span<const RunRecord> runs) {
+  Table table{"runs", "one row for each run", {}};
+  for (const RunColumn& column : columns) {
+    Column& c = table.columns.emplace_back(
+        Column{std::string(column.name), std::string(column.title), std::string(column.unit), "", {}, {}});
+    for (const RunRecord& run : runs) {
+      c.cells.push_back(column.cell(run));
+      if (column.shown) c.shown.push_back(column.shown(run));
+    }
+  }
+  return table;
+}
+
+}  // namespace drape::results

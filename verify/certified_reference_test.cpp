@@ -1,0 +1,153 @@
+// A reference is believed because two solvers of different families agree, and used where the problem is well conditioned.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "model/cloth.hpp"
+#include "model/scene_file.hpp"
+#include "reference/reference.hpp"
+#include "verify/small_problems.hpp"
+
+namespace drape::verify {
+namespace {
+
+using namespace small_problems;
+using reference::certify;
+using reference::NotCertified;
+using reference::Reference;
+using reference::rms_distance;
+using testing::AllOf;
+using testing::Each;
+using testing::Ge;
+using testing::HasSubstr;
+using testing::Le;
+
+const std::vector<double> times{start_time + 0.2, start_time + 0.7, start_time + 1, start_time + 1.5};
+
+Reference reference_of(const Problem& problem, double rtol) {
+  return reference::reference(problem.ode, problem.start, start_time, times, {.rtol = rtol});
+}
+
+class CertifiedReferenceOf : public testing::TestWithParam<std::string> {
+ protected:
+  const Problem problem = problem_named(GetParam());
+
+  double worst_error(const Reference& reference) const {
+    double worst = 0;
+    for (std::size_t k = 0; k < times.size(); ++k)
+      worst = std::max(worst, rms_distance(reference.trajectory.states[k].x, problem.exact(times[k]).x));
+    return worst;
+  }
+};
+INSTANTIATE_TEST_SUITE_P(, CertifiedReferenceOf, testing::ValuesIn(names(problems())),
+                         [](const auto& test) { return test.param; });
+
+TEST_P(CertifiedReferenceOf, DisagreesByItsErrorNeitherMoreNorLess) {
+  for (const double rtol : {1e-6, 1e-8, 1e-10}) {
+    const Reference reference = reference_of(problem, rtol);
+    const double error = worst_error(reference), uncertainty = std::ranges::max(reference.error);
+    EXPECT_GE(uncertainty, error / 2) << "at rtol = " << rtol;
+    EXPECT_LE(uncertainty, 30 * error) << "at rtol = " << rtol;
+    EXPECT_GE(std::ranges::max(reference.tolerance_effect), 3 * uncertainty) << "at rtol = " << rtol;
+    EXPECT_EQ(reference.tolerance, rtol);
+  }
+}
+
+TEST_P(CertifiedReferenceOf, NamesBothFamiliesAndHasAnUncertaintyForEveryTime) {
+  const Reference reference = reference_of(problem, 1e-6);
+  EXPECT_EQ(reference.name, "cvode-bdf");
+  EXPECT_EQ(reference.witness, "arkode-esdirk");
+  EXPECT_EQ(reference.trajectory.times, times);
+  for (const auto* series : {&reference.error, &reference.tolerance_effect, &reference.growth})
+    EXPECT_EQ(series->size(), times.size());
+}
+
+TEST(CertifiedReference, SeesThatTwoFamiliesFollowDifferentForces) {
+  // ARKODE asks for the force at other times than CVODE: a force that flickers is not the same to both.
+  Problem problem = free_particles();
+  problem.ode.force = [force = problem.ode.force](double t, const Vectors& x, const Vectors& v, Vectors& f) {
+    force(t, x, v, f);
+    f.array() += 1e-3 * std::sin(1e7 * t);
+  };
+  const Reference reference = reference::reference(problem.ode, problem.start, start_time, times, {.rtol = 1e-4});
+  EXPECT_THROW(certify(reference, 1e-9, 1e9, 1), NotCertified);
+}
+
+/// Families that disagree by 2 µm, and perturbations that grow 200-fold later.
+Reference some_reference() {
+  Reference reference;
+  reference.name = "a";
+  reference.witness = "b";
+  reference.error = {2e-6, 5e-6};
+  reference.growth = {1, 200};
+  reference.trajectory.times = {0.1, 0.2};
+  return reference;
+}
+
+std::string complaint(const Reference& reference, double agreement, double growth, double size) {
+  try {
+    certify(reference, agreement, growth, size);
+    return "";
+  } catch (const NotCertified& error) {
+    return error.what();
+  }
+}
+
+TEST(Certificate, IsRefusedWhereFamiliesDisagreeByMoreThanAllowed) {
+  const Reference reference = some_reference();
+  EXPECT_EQ(complaint(reference, 1.1e-5, 1000, 0.5), "");
+  EXPECT_THAT(complaint(reference, 0.9e-5, 1000, 0.5),
+              AllOf(HasSubstr("a and b disagree by 1e-05"), HasSubstr("t = 0.2 s"), HasSubstr("at most 9e-06")));
+  EXPECT_THAT(complaint(reference, 3e-6, 1000, 0.5), HasSubstr("t = 0.1 s")) << "the first time is named";
+}
+
+TEST(Certificate, IsNotAskedForWherePerturbationsGrow) {
+  EXPECT_EQ(complaint(some_reference(), 5e-6, 100, 0.5), "");
+  EXPECT_NE(complaint(some_reference(), 5e-6, 201, 0.5), "");
+}
+
+TEST(Certificate, IsRefusedIfTheDisagreementIsNotANumber) {
+  Reference reference = some_reference();
+  reference.error[0] = std::nan("");
+  EXPECT_THAT(complaint(reference, 1, 100, 1), HasSubstr("nan"));
+}
+
+/// Two coordinates that neither pull nor push, one that oscillates or runs away:  x'' = sign x.
+Reference growth_of(double sign) {
+  SplitOde ode;
+  const SparseMatrix none(1, 1);
+  ode.mass = Eigen::VectorXd::Ones(1);
+  ode.force = [=](double, const Vectors& x, const Vectors&, Vectors& f) { f << sign * x(0, 0), 0, 0; };
+  ode.jacobian = [=](double, const Vectors&, const Vectors&, SparseMatrix& df_dx, SparseMatrix& df_dv) {
+    df_dx.resize(3, 3);
+    df_dv.resize(3, 3);
+    df_dx.insert(0, 0) = sign;
+  };
+  ode.pins = {{.particle = 0, .fixed = {false, true, true}}};
+  return reference::reference(ode, known_motions::single({1, 0, 0}, {0, 0, 0}), 0, std::vector{2.0, 5.0, 10.0}, {.rtol = 1e-9});
+}
+
+TEST(Growth, IsThatOfTheLinearMotion) {
+  // The second perturbation is what the first became and grows like e^t; the first may grow more by its velocity.
+  const Reference unstable = growth_of(1);
+  for (std::size_t k = 0; k < 3; ++k)
+    EXPECT_THAT(unstable.growth[k] / std::exp(unstable.trajectory.times[k]), AllOf(Ge(0.99), Le(2.0)));
+  EXPECT_THAT(growth_of(-1).growth, Each(AllOf(Ge(0.0), Le(3.0))));
+}
+
+TEST(Growth, TellsAFoldingSheetFromADampedOne) {
+  const auto growth = [](const char* damping) {
+    const model::Scene scene =
+        model::load_scene("hung-corners", std::vector<model::Override>{{"grid.n", "8"}, {"material.damping", damping}});
+    const model::Cloth cloth = compile(scene);
+    return std::ranges::max(
+        reference::reference(cloth.ode, cloth.start, 0, std::vector{0.4}, {.rtol = 1e-9, .size = 0.8}).growth);
+  };
+  EXPECT_LE(growth("50"), 2);
+  EXPECT_GE(growth("0"), 30);
+}
+
+}  // namespace
+}  // namespace drape::verify
