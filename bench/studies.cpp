@@ -9,6 +9,9 @@ std::span<const Study> studies() {
       {"hung-sheets",
        "all methods on the sheet of table 3.2 (without the table), hung by its edge and by two corners, d = 50 and 0.5",
        hung_sheets, nullptr},
+      {"convergence",
+       "figure 2.11: equilibria against exact solutions, 5 to 160 particles a side, forces consistent and as printed", nullptr,
+       convergence},
   };
   return table;
 }

@@ -108,7 +108,7 @@ SparseMatrix Forces::scalar_matrix(std::function<void(std::vector<Eigen::Triplet
 Eigen::VectorXd masses(const Sheet& sheet) {
   Eigen::VectorXd mass(sheet.grid.particles());
   for (int b = 0; b < sheet.grid.nv; ++b)
-    for (int a = 0; a < sheet.grid.nu; ++a) mass[sheet.grid.index(a, b)] = sheet.material.density * sheet.grid.dual_area(a, b);
+    for (int a = 0; a < sheet.grid.nu; ++a) mass[sheet.grid.index(a, b)] = sheet.material.density * sheet.grid.cell_area(a, b);
   return mass;
 }
 

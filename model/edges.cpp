@@ -9,10 +9,9 @@ std::vector<Edge> edges(const Grid& grid) {
   std::vector<Edge> all;
   for (int b = 0; b < grid.nv; ++b)
     for (int a = 0; a + 1 < grid.nu; ++a)
-      all.push_back({grid.index(a, b), grid.index(a + 1, b), true, lu, Grid::dual_width(b, grid.nv) * lv});
+      all.push_back({grid.index(a, b), grid.index(a + 1, b), true, lu, grid.cell_width_v(b)});
   for (int b = 0; b + 1 < grid.nv; ++b)
-    for (int a = 0; a < grid.nu; ++a)
-      all.push_back({grid.index(a, b), grid.index(a, b + 1), false, lv, Grid::dual_width(a, grid.nu) * lu});
+    for (int a = 0; a < grid.nu; ++a) all.push_back({grid.index(a, b), grid.index(a, b + 1), false, lv, grid.cell_width_u(a)});
   return all;
 }
 

@@ -6,6 +6,10 @@
 
 namespace drape::model {
 
+/// What particles on a border weigh and springs along it pull with: half of those inside, as their dual cells are, or as much,
+/// as the algorithms of the thesis print it.
+enum class BorderCells { dual, whole };
+
 /// The parameter domain of a rectangular sheet: nu × nv particles; u is the weft direction, v the warp direction.
 ///
 /// A direction with a single particle makes a chain [Etzmuß 2002, 2.2]: its spacing is then the width of the strip that
@@ -15,6 +19,7 @@ struct Grid {
   int nv = 2;
   double size_u = 1;  ///< [m]
   double size_v = 1;  ///< [m]
+  BorderCells border_cells = BorderCells::dual;
 
   int particles() const { return nu * nv; }
   int index(int a, int b) const { return a + nu * b; }
@@ -24,8 +29,12 @@ struct Grid {
   /// Width of the dual cell at place a of n as a part of the spacing: 1 inside, ½ on a border, 1 if there is but one.
   static double dual_width(int a, int n) { return n > 1 && (a == 0 || a == n - 1) ? 0.5 : 1.0; }
 
-  /// Area of the dual cell of particle (a, b) [m²].
-  double dual_area(int a, int b) const { return dual_width(a, nu) * dual_width(b, nv) * spacing_u() * spacing_v(); }
+  /// Width of the cell that column a or line b stands for [m].
+  double cell_width_u(int a) const { return (border_cells == BorderCells::whole ? 1 : dual_width(a, nu)) * spacing_u(); }
+  double cell_width_v(int b) const { return (border_cells == BorderCells::whole ? 1 : dual_width(b, nv)) * spacing_v(); }
+
+  /// Area that particle (a, b) stands for [m²].
+  double cell_area(int a, int b) const { return cell_width_u(a) * cell_width_v(b); }
 
   /// Positions (u, v) of all particles as (x, y), z = 0: N × 3 [m].
   solver::Vectors parameters() const;

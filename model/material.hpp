@@ -23,6 +23,7 @@ enum class ShearForm {
 enum class BendForm {
   membrane,  ///< second order [Etzmuß 2002, (2.24)]; always projected onto the normal
   plate,     ///< fourth order [Etzmuß 2002, (2.26)]
+  printed,   ///< the plate of Algorithm 4: not consistent on borders and without twist; always projected
 };
 
 /// Elastic moduli and their viscous counterparts (Kelvin–Voigt). Zero: the force does not exist.

@@ -9,7 +9,8 @@ namespace {
 
 constexpr std::string_view damping_forms[] = {"linear", "projected"};
 constexpr std::string_view shear_forms[] = {"conservative", "printed"};
-constexpr std::string_view bend_forms[] = {"membrane", "plate"};
+constexpr std::string_view bend_forms[] = {"membrane", "plate", "printed"};
+constexpr std::string_view border_cells[] = {"dual", "whole"};
 constexpr std::string_view planes[] = {"horizontal", "vertical"};
 constexpr std::string_view pin_keys[] = {"where", "particles", "directions", "velocity"};
 
@@ -119,6 +120,10 @@ constexpr SceneKey table[] = {
        return written(WeftWarp{s.sheet.grid.size_u, s.sheet.grid.size_v});
      }},
 
+    {"grid.border_cells", "\"dual\" (half on borders) or \"whole\" (as the algorithms of the thesis print it)",
+     [](const Value& v, Scene& s) { s.sheet.grid.border_cells = static_cast<BorderCells>(v.one_of(border_cells)); },
+     [](const Scene& s) { return written(border_cells, s.sheet.grid.border_cells); }},
+
     {"material.density", "ρ [kg/m²]", [](const Value& v, Scene& s) { s.sheet.material.density = v.positive(); },
      [](const Scene& s) { return fmt::format("{}", s.sheet.material.density); }},
     {"material.tension", "k1, k2 [N/m]: one number for both, or [weft, warp]",
@@ -150,7 +155,7 @@ constexpr SceneKey table[] = {
     {"material.bend_damping", "viscous counterparts of B1, B2",
      [](const Value& v, Scene& s) { s.sheet.material.bend_damping = v.weft_warp(&Value::non_negative); },
      [](const Scene& s) { return written(s.sheet.material.bend_damping); }},
-    {"material.bend_form", "\"plate\" (fourth order) or \"membrane\" (second order)",
+    {"material.bend_form", "\"plate\" (fourth order), \"membrane\" (second order) or \"printed\" (Algorithm 4 of the thesis)",
      [](const Value& v, Scene& s) { s.sheet.material.bend_form = static_cast<BendForm>(v.one_of(bend_forms)); },
      [](const Scene& s) { return written(bend_forms, s.sheet.material.bend_form); }},
     {"material.bend_projected", "plate only: forces along the vertex normal (as the thesis) or, if false, in all directions",

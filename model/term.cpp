@@ -12,6 +12,7 @@ std::span<const TermKind> term_kinds() {
       {"contraction", "transverse contraction (2.22) with its viscous part", make_contraction},
       {"membrane", "membrane bending (2.24) with its viscous part", make_membrane},
       {"plate", "thin-plate bending (2.26) with its viscous part", make_plate},
+      {"printed-plate", "thin-plate bending as Algorithm 4 prints it", make_printed_plate},
       {"gravity", "weight", make_gravity},
   };
   return table;

@@ -70,6 +70,7 @@ std::optional<Term> make_printed_shear(const Sheet& sheet);
 std::optional<Term> make_contraction(const Sheet& sheet);
 std::optional<Term> make_membrane(const Sheet& sheet);
 std::optional<Term> make_plate(const Sheet& sheet);
+std::optional<Term> make_printed_plate(const Sheet& sheet);
 std::optional<Term> make_gravity(const Sheet& sheet);
 
 }  // namespace drape::model

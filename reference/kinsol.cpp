@@ -54,6 +54,7 @@ class Kinsol {
   const Vectors& guess_;
   const Vectors at_rest_;
   Coordinates coordinates_;
+  const int strategy_;
   Session session_;
   Memory memory_;
 };
@@ -63,6 +64,7 @@ Kinsol::Kinsol(const solver::SplitOde& ode, const Vectors& guess, const Equilibr
       guess_(guess),
       at_rest_(Vectors::Zero(ode.particles(), 3)),
       coordinates_(ode),
+      strategy_(options.line_search ? KIN_LINESEARCH : KIN_NONE),
       session_("KINSOL", "kinsol", std::ssize(coordinates_.free), *ode.work),
       memory_(require_created(KINCreate(session_.context())), [](void* memory) { KINFree(&memory); }) {
   for (std::size_t r = 0; r < coordinates_.free.size(); ++r)
@@ -105,7 +107,7 @@ WideSparseMatrix Kinsol::jacobian(N_Vector u) const {
 Equilibrium Kinsol::solve() {
   const auto ones = session_.new_vector();
   values(ones.get()).setOnes();
-  require(KINSol(memory_.get(), session_.y(), KIN_LINESEARCH, ones.get(), ones.get()));
+  require(KINSol(memory_.get(), session_.y(), strategy_, ones.get(), ones.get()));
   long iterations = 0;
   require(KINGetNumNonlinSolvIters(memory_.get(), &iterations));
   ode_.work->counter("kinsol/iterations", "Newton iterations of KINSOL") += iterations;

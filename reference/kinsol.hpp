@@ -17,6 +17,8 @@ struct EquilibriumOptions {
   double force = 1e-12;
   double step = 1e-13;
   int max_iterations = 200;
+  bool line_search =
+      true;  ///< on the sum of squares of the forces; near the solution plain Newton steps do better on stiff sheets
 };
 
 /// Solves f(t, x, 0) = 0 for the free coordinates with KINSOL: Newton's method with line search and the exact sparse Jacobian

@@ -52,7 +52,7 @@ inline solver::Vectors equilibrium(const model::Scene& scene, solver::Vectors x)
 inline double rms_distance(const model::Grid& grid, const solver::Vectors& a, const solver::Vectors& b) {
   double sum = 0;
   for (int i = 0; i < grid.particles(); ++i)
-    sum += grid.dual_area(i % grid.nu, i / grid.nu) * (a.row(i) - b.row(i)).squaredNorm();
+    sum += grid.cell_area(i % grid.nu, i / grid.nu) * (a.row(i) - b.row(i)).squaredNorm();
   return std::sqrt(sum / (grid.size_u * grid.size_v));
 }
 

@@ -85,7 +85,7 @@ TEST(ExactForces, PlateForcesOfPolynomialsInside) {
         const double exact = -B1 * power(u, p, 4) * power(v, q, 0) - (B1 + B2) * power(u, p, 2) * power(v, q, 2) -
                              B2 * power(u, p, 0) * power(v, q, 4);
         const double rounding = 1000 * epsilon * (B1 + B2) / std::pow(spacing(grid), 4);
-        EXPECT_NEAR(f(grid.index(a, b), 2) / grid.dual_area(a, b), exact, rounding) << "u^" << p << " v^" << q;
+        EXPECT_NEAR(f(grid.index(a, b), 2) / grid.cell_area(a, b), exact, rounding) << "u^" << p << " v^" << q;
       }
   }
 }
@@ -101,7 +101,7 @@ TEST(ExactForces, MembraneForcesOfConstantCurvatureOnBordersToo) {
   const double exact = 2 * (B1 * c1 + B2 * c2);
   for (int b = 0; b < grid.nv; ++b)
     for (int a = 0; a < grid.nu; ++a)
-      EXPECT_NEAR(f(grid.index(a, b), 2) / grid.dual_area(a, b), exact, 1e-9 * exact) << a << ", " << b;
+      EXPECT_NEAR(f(grid.index(a, b), 2) / grid.cell_area(a, b), exact, 1e-9 * exact) << a << ", " << b;
 }
 
 /// Experiment (a) of figure 2.11 in all four directions: the exact solution is in equilibrium at all nodes but the fixed.
@@ -135,7 +135,7 @@ TEST_P(PulledFrom, HasItsExactSolutionAtTheNodes) {
     for (int b = 0; b < grid.nv; ++b)
       for (int a = 0; a < grid.nu; ++a) {
         if ((along_v ? b : a) == (from_end ? n - 1 : 0)) continue;
-        EXPECT_LE(largest(f.row(grid.index(a, b))), 1e-10 * sheet.body_force * grid.dual_area(a, b))
+        EXPECT_LE(largest(f.row(grid.index(a, b))), 1e-10 * sheet.body_force * grid.cell_area(a, b))
             << n << ": " << a << ", " << b;
       }
   }

@@ -34,6 +34,7 @@ inline void printed_shear(Material& m) { shear(m), m.shear_form = ShearForm::pri
 inline void contraction(Material& m) { m.contraction = 1.1, m.contraction_damping = 0.3; }
 inline void membrane(Material& m) { m.bend = {0.9, 0.6}, m.bend_damping = {0.2, 0.3}, m.bend_form = BendForm::membrane; }
 inline void plate(Material& m) { m.bend = {0.06, 0.04}, m.bend_damping = {0.01, 0.02}; }
+inline void printed_plate(Material& m) { plate(m), m.bend_form = BendForm::printed; }
 inline void unprojected_plate(Material& m) { plate(m), m.bend_projected = false; }
 
 template <class... Parts>
@@ -71,6 +72,7 @@ inline std::vector<ForceCase> force_cases() {
           {"contraction",         made_of(contraction),       true,    true,    true,    false,    true,    false},
           {"membrane",            made_of(membrane),          false,   false,   false,   false,    false,   false},
           {"plate",               made_of(plate),             false,   false,   false,   false,    false,   false},
+          {"printed_plate",       made_of(printed_plate),     false,   false,   false,   false,    false,   false},
           {"unprojected_plate",   made_of(unprojected_plate), true,    true,    true,    true,     false,   true},
           {"gravity",             Material{},                 true,    false,   false,   true,     true,    true,  g},
           {"all_with_energies",   energies,                   true,    false,   false,   true,     false,   true,  g},

@@ -75,7 +75,7 @@ const std::vector<BadScene> bad_scenes = {
     {"number_for_a_vector", "forces.gravity = -9", "a.toml:2: forces.gravity = -9: expected a list of 3 numbers"},
     {"short_vector", "forces.gravity = [0, -9]", "a.toml:2: forces.gravity = [ 0, -9 ]: expected a list of 3 numbers"},
     {"long_list", "material.tension = [1, 2, 3]", "a.toml:2: material.tension = [ 1, 2, 3 ]: expected a list of 2 numbers"},
-    {"unknown_word", "material.bend_form = 'disk'", "a.toml:2: material.bend_form = 'disk': expected one of \"membrane\", \"plate\""},
+    {"unknown_word", "material.bend_form = 'disk'", "a.toml:2: material.bend_form = 'disk': expected one of \"membrane\", \"plate\", \"printed\""},
     {"number_for_a_word", "start.plane = 3", "a.toml:2: start.plane = 3: expected one of \"horizontal\", \"vertical\""},
 
     {"one_particle", "[grid]\nn = 1", "a.toml:3: grid.n = 1: expected at least 2 particles"},

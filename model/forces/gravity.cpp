@@ -10,7 +10,7 @@ std::optional<Term> make_gravity(const Sheet& sheet) {
   term.constant.resize(grid.particles(), 3);
   for (int b = 0; b < grid.nv; ++b)
     for (int a = 0; a < grid.nu; ++a)
-      term.constant.row(grid.index(a, b)) = sheet.material.density * grid.dual_area(a, b) * sheet.gravity.transpose();
+      term.constant.row(grid.index(a, b)) = sheet.material.density * grid.cell_area(a, b) * sheet.gravity.transpose();
   term.energy = [weight = term.constant](const Vectors& x) { return -weight.cwiseProduct(x).sum(); };
   return term;
 }

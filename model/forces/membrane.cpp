@@ -19,7 +19,7 @@ SparseMatrix membrane_matrix(const Grid& grid, const WeftWarp& B) {
   for (int b = 0; b < grid.nv; ++b)
     for (int a = 0; a < grid.nu; ++a) {
       const int i = grid.index(a, b);
-      const double area = grid.dual_area(a, b);
+      const double area = grid.cell_area(a, b);
       if (grid.nu > 2) {
         const int c = std::clamp(a, 1, grid.nu - 2);
         add(i, grid.index(c - 1, b), grid.index(c, b), grid.index(c + 1, b), area * B.weft / (lu * lu));

@@ -10,7 +10,7 @@ SparseMatrix plate_matrix(const Grid& grid, const WeftWarp& B) {
   std::vector<Eigen::Triplet<double>> entries;
   for (int b = 0; b < grid.nv; ++b)
     for (int a = 0; a < grid.nu; ++a) {
-      const double area = grid.dual_area(a, b);
+      const double area = grid.cell_area(a, b);
       if (a > 0 && a < grid.nu - 1)
         add_quadratic(entries, {{index(a - 1, b), 1}, {index(a, b), -2}, {index(a + 1, b), 1}},
                       area * B.weft / (lu * lu * lu * lu));

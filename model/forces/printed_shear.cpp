@@ -91,7 +91,7 @@ std::optional<Term> make_printed_shear(const Sheet& sheet) {
   Printed printed{stars(grid), {}, m.shear / (4 * lu * lv), m.shear_damping / (4 * lu * lv), 1 / (2 * lu), 1 / (2 * lv)};
   printed.area.resize(grid.particles());
   for (int b = 0; b < grid.nv; ++b)
-    for (int a = 0; a < grid.nu; ++a) printed.area[grid.index(a, b)] = grid.dual_area(a, b);
+    for (int a = 0; a < grid.nu; ++a) printed.area[grid.index(a, b)] = grid.cell_area(a, b);
   const auto shared = std::make_shared<const Printed>(std::move(printed));
 
   Term term;

@@ -1,0 +1,243 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <memory>
+
+#include "bench/order_fit.hpp"
+#include "bench/studies.hpp"
+#include "bench/table_builder.hpp"
+#include "model/cloth.hpp"
+#include "model/scene_file.hpp"
+#include "reference/exact/bending.hpp"
+#include "reference/exact/shear.hpp"
+#include "reference/exact/tension.hpp"
+#include "reference/kinsol.hpp"
+
+namespace drape::bench {
+namespace {
+
+using model::Override;
+using solver::Vectors;
+
+/// One line of figure 2.11: a scene, the form of its forces, and where its particles should come to rest.
+struct Experiment {
+  std::string name, form;
+  double order;  ///< declared; 0: exact at the nodes; NaN: none
+  std::vector<Override> overrides;
+  bool strip;  ///< all is constant across: three lines of the sheet are enough
+  int still;   ///< the coordinate in which nothing moves
+  int finest = 160;
+  std::function<Eigen::Vector3d(double u, double v)> exact;
+  double uncertainty = 0;  ///< of the exact solution [m]
+};
+
+const std::vector<Override> as_printed{{"grid.border_cells", "whole"}};
+
+std::vector<Override> operator+(std::vector<Override> a, const std::vector<Override>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+/// (a): the fixed edge is at the right.
+std::vector<Experiment> tension() {
+  const auto exact = [](double u, double v) { return Eigen::Vector3d(1 - reference::pulled_position({}, 1 - u), v, 0); };
+  const auto still = 2;
+  return {{.name = "tension", .form = "consistent", .order = 0, .overrides = {}, .strip = true, .still = still, .exact = exact},
+          {.name = "tension",
+           .form = "printed",
+           .order = 1,
+           .overrides = as_printed,
+           .strip = true,
+           .still = still,
+           .exact = exact}};
+}
+
+/// (b): with k = 10⁹ no mesh resolves the layers along the free edges, and with f = 10 and k from 10³ on the compressed fibres
+/// buckle; so f = 1 and k = 100 for the order, and f = 10, k = 10⁹ beside the inextensible limit for the thesis' picture.
+std::vector<Experiment> shear() {
+  const auto sheet = std::make_shared<const reference::ShearedSheet>(
+      reference::SideloadedSheet{.side = 1, .modulus = 100, .shear = 100, .body_force = 1});
+  const auto exact = [sheet](double u, double v) -> Eigen::Vector3d {
+    return ((*sheet)(u, v).homogeneous() - Eigen::Vector3d::UnitZ());
+  };
+  const auto limit = [](double u, double v) -> Eigen::Vector3d {
+    return reference::inextensible_position({}, u, v).homogeneous() - Eigen::Vector3d::UnitZ();
+  };
+  const std::vector<Override> printed{{"material.shear_form", "printed"}};
+  const std::vector<Override> thesis{{"material.tension", "1e9"}, {"forces.gravity", "[0, 10, 0]"}};
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  return {{.name = "shear",
+           .form = "consistent",
+           .order = 2,
+           .overrides = {},
+           .strip = false,
+           .still = 2,
+           .exact = exact,
+           .uncertainty = sheet->error()},
+          {.name = "shear",
+           .form = "printed",
+           .order = none,
+           .overrides = as_printed + printed,
+           .strip = false,
+           .still = 2,
+           .exact = exact,
+           .uncertainty = sheet->error()},
+          {.name = "shear, f = 10, k = 1e9",
+           .form = "consistent",
+           .order = none,
+           .overrides = thesis,
+           .strip = false,
+           .still = 2,
+           .finest = 40,
+           .exact = limit},
+          {.name = "shear, f = 10, k = 1e9",
+           .form = "printed",
+           .order = none,
+           .overrides = thesis + as_printed + printed,
+           .strip = false,
+           .still = 2,
+           .finest = 40,
+           .exact = limit}};
+}
+
+Experiment bending(double B, reference::BendingForce force, const std::string& form, double order,
+                   std::vector<Override> overrides) {
+  const auto strip = std::make_shared<const reference::BentStrip>(reference::BentSheet{.bend = B, .force = force});
+  const auto exact = [strip](double u, double v) {
+    const Eigen::Vector2d xz = (*strip)(u);
+    return Eigen::Vector3d(xz[0], v, xz[1]);
+  };
+  overrides.push_back({"material.bend", fmt::format("{}", B)});
+  return {.name = fmt::format("bending, B = {:g}", B),
+          .form = form,
+          .order = order,
+          .overrides = overrides,
+          .strip = true,
+          .still = 1,
+          .exact = exact,
+          .uncertainty = strip->error()};
+}
+
+/// (c), and with large deflections.
+std::vector<Experiment> bending() {
+  using enum reference::BendingForce;
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  std::vector<Experiment> all{
+      bending(5, along_normal, "consistent", 2, {}),
+      bending(5, along_normal, "printed", none, as_printed + std::vector<Override>{{"material.bend_form", "printed"}})};
+  for (const double B : {0.01, 0.005}) {
+    all.push_back(bending(B, along_normal, "consistent", 2, {}));
+    all.push_back(bending(B, whole, "unprojected", 2, {{"material.bend_projected", "false"}}));
+  }
+  return all;
+}
+
+model::Scene scene_of(const Experiment& experiment, int n) {
+  std::vector<Override> overrides = experiment.overrides;
+  overrides.push_back({"grid.n", experiment.strip ? fmt::format("[{}, 3]", n) : std::to_string(n)});
+  if (experiment.strip) overrides.push_back({"grid.size", fmt::format("[1, {}]", 2.0 / (n - 1))});
+  return model::load_scene(experiment.name.substr(0, experiment.name.find(',')), overrides);
+}
+
+/// Pins one coordinate of all particles.
+void hold_still(std::vector<solver::Pin>& pins, int particles, int coordinate) {
+  std::vector<solver::Pin> all(static_cast<std::size_t>(particles));
+  for (int i = 0; i < particles; ++i) all[i] = {.particle = i, .fixed = {false, false, false}};
+  for (const solver::Pin& pin : pins) all[pin.particle] = pin;
+  for (solver::Pin& pin : all) pin.fixed[coordinate] = true;
+  pins = std::move(all);
+}
+
+/// Distances [m] of the equilibrium from the exact one.
+struct Errors {
+  double rms, maximum;  ///< the mean weighted with dual cells: the L2 norm
+  double residual;      ///< [N]
+};
+
+Errors errors(const Experiment& experiment, int n) {
+  const model::Scene scene = scene_of(experiment, n);
+  model::Cloth cloth = model::compile(scene);
+  hold_still(cloth.ode.pins, cloth.ode.particles(), experiment.still);
+  const model::Grid& grid = scene.sheet.grid;
+  const Vectors uv = grid.parameters();
+  Vectors exact(uv.rows(), 3);
+  for (Eigen::Index i = 0; i < uv.rows(); ++i) exact.row(i) = experiment.exact(uv(i, 0), uv(i, 1)).transpose();
+  const Vectors guess = exact + 0.01 * (exact - uv);  // near, but not there: it has to be found
+  const reference::Equilibrium found = reference::equilibrium(cloth.ode, guess, {.line_search = false});
+  const Eigen::VectorXd squares = (found.x - exact).rowwise().squaredNorm();
+  double sum = 0, area = 0;
+  for (int i = 0; i < grid.particles(); ++i) {
+    const double weight = model::Grid::dual_width(i % grid.nu, grid.nu) * model::Grid::dual_width(i / grid.nu, grid.nv);
+    sum += weight * squares[i];
+    area += weight;
+  }
+  return {std::sqrt(sum / area), std::sqrt(squares.maxCoeff()), found.residual};
+}
+
+/// What all rows of a table have in common, in words of a verdict.
+std::string conclusion(const Experiment& experiment, const std::optional<OrderFit>& fit, double finest_error) {
+  constexpr double round_off = 1e-10;
+  if (experiment.order == 0) return finest_error <= round_off ? "exact as declared" : "NOT exact";
+  if (std::isnan(experiment.order)) return fit ? "" : "no order to be seen";
+  return verdict(fit, experiment.order);
+}
+
+/// The curve of one experiment, and its order.
+results::Table figure(const std::string& name, const std::string& title, const std::vector<Experiment>& experiments,
+                      const std::vector<int>& resolutions, Progress& progress) {
+  TableBuilder table(name, title);
+  for (const Experiment& experiment : experiments) {
+    std::vector<double> spacings, rms;
+    for (const int n : resolutions) {
+      progress.show(fmt::format("{}, {}, {} × {}", experiment.name, experiment.form, n, n));
+      table.row();
+      table.text("experiment", "experiment", "which, with what differs from the scene of that name", experiment.name);
+      table.text("form", "form", "of the forces: consistent, or as the algorithms of the thesis print them", experiment.form);
+      table.count("n", "n", "particles in one direction", n);
+      if (n <= experiment.finest) try {
+          const Errors e = errors(experiment, n);
+          table.number("rms", "rms error", "m", "root mean square distance of the nodes from the exact equilibrium (L2)",
+                       e.rms);
+          table.number("maximum", "maximum", "m", "largest distance", e.maximum);
+          if (!rms.empty())
+            table.number("order", "order", "1", "between this resolution and the one before, of the rms error",
+                         std::log(rms.back() / e.rms) / std::log(spacings.back() * (n - 1)));
+          table.number("residual", "", "N", "largest force that was left", e.residual);
+          rms.push_back(e.rms);
+          spacings.push_back(1.0 / (n - 1));
+        } catch (const reference::ReferenceError& error) {
+          table.text("remark", "remark", "why there is no number", error.what());
+        }
+      table.number("uncertainty", "", "m", "of the exact solution", experiment.uncertainty);
+      progress.advance();
+    }
+    const auto fit = fit_order(spacings, rms, experiment.uncertainty);
+    table.text("verdict", "verdict", "at the finest resolution: whether the order is the declared one",
+               conclusion(experiment, fit, rms.empty() ? NAN : rms.back()));
+    if (!fit) continue;
+    table.number("fitted_order", "fitted", "1", "order by least squares over the window that the program found", fit->order);
+    table.text("spread", "between", "orders between neighbours in the window",
+               fmt::format("{:.3f} … {:.3f}", fit->lowest, fit->highest));
+  }
+  return table.finish();
+}
+
+}  // namespace
+
+std::vector<TableJob> convergence(bool quick) {
+  const std::vector<int> resolutions = quick ? std::vector{5, 10, 20} : std::vector{5, 10, 20, 40, 80, 160};
+  const auto job = [&](const char* name, const char* title, int experiments, auto make) {
+    return TableJob{experiments * static_cast<int>(resolutions.size()), [=](Progress& progress) {
+                      progress.show(fmt::format("exact solution of {}", name));
+                      return figure(name, title, make(), resolutions, progress);
+                    }};
+  };
+  return {job("figure-2.11a", "Figure 2.11 (a), tension: error of the equilibrium against the resolution", 2, tension),
+          job("figure-2.11b", "Figure 2.11 (b), shear: error of the equilibrium against the resolution", 4, shear),
+          job("figure-2.11c", "Figure 2.11 (c), bending: error of the equilibrium against the resolution", 6,
+              [] { return bending(); })};
+}
+
+}  // namespace drape::bench

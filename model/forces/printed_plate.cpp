@@ -1,0 +1,35 @@
+#include "model/edges.hpp"
+#include "model/linear_operator.hpp"
+
+namespace drape::model {
+namespace {
+
+/// The matrix of Σ_edges b/l² (x_j − x_i), b being the edge's own of two moduli.
+SparseMatrix laplacian(const Grid& grid, const WeftWarp& b) {
+  std::vector<Eigen::Triplet<double>> entries;
+  for (const Edge& edge : edges(grid))
+    if (along(b, edge) != 0) add_spring(entries, edge.i, edge.j, along(b, edge) / (edge.length * edge.length));
+  SparseMatrix matrix(grid.particles(), grid.particles());
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  return matrix;
+}
+
+/// Minus the Laplacian of the Laplacian, times the area of a particle: the algorithm gives force densities.
+SparseMatrix printed_plate_matrix(const Grid& grid, const WeftWarp& B) {
+  Eigen::VectorXd area(grid.particles());
+  for (int i = 0; i < grid.particles(); ++i) area[i] = grid.cell_area(i % grid.nu, i / grid.nu);
+  const SparseMatrix bilaplacian = laplacian(grid, B) * laplacian(grid, {1, 1});
+  return -(area.asDiagonal() * bilaplacian);
+}
+
+}  // namespace
+
+/// Thin plate as printed: the Laplacian over the edges of a particle, and the Laplacian of that [Etzmuß 2002, Alg. 4], with the
+/// sign that removes energy. On free borders it imposes Δs = 0, and it knows no twist: it stands here to be compared.
+std::optional<Term> make_printed_plate(const Sheet& sheet) {
+  const Material& m = sheet.material;
+  if ((!m.bend.any() && !m.bend_damping.any()) || m.bend_form != BendForm::printed) return {};
+  return projected(sheet.grid, {printed_plate_matrix(sheet.grid, m.bend), printed_plate_matrix(sheet.grid, m.bend_damping)});
+}
+
+}  // namespace drape::model
