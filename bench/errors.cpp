@@ -41,7 +41,7 @@ reference::Reference References::operator()(const model::Scene& scene, const mod
   constexpr int outputs = 10;
   std::vector<double> times;
   for (int k = 1; k <= outputs; ++k) times.push_back(scene.end * k / outputs);
-  const reference::SolveOptions options{.size = model::size(scene)};
+  const reference::SolveOptions options{.rtol = rtol_, .size = model::size(scene)};
   const auto key = reference::cache_key(model::to_toml(scene), 0, times, options);
   reference::Reference reference =
       reference::cached(cache_, key, [&] { return reference::reference(cloth.ode, cloth.start, 0, times, options); });

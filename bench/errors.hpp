@@ -9,8 +9,8 @@ namespace drape::bench {
 /// References of scenes, from the cache where they are known.
 class References {
  public:
-  /// `agreement`: largest disagreement of the two families, over the size of the scene.
-  explicit References(double agreement) : agreement_(agreement) {}
+  /// `agreement`: largest disagreement of the two families, over the size of the scene. `rtol`: their tolerance.
+  explicit References(double agreement, double rtol = reference::SolveOptions().rtol) : agreement_(agreement), rtol_(rtol) {}
 
   /// Says what went wrong with the cache.
   ~References();
@@ -22,7 +22,7 @@ class References {
   reference::Reference operator()(const model::Scene& scene, const model::Cloth& cloth);
 
  private:
-  double agreement_;
+  double agreement_, rtol_;
   reference::Cache cache_;
 };
 

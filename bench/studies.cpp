@@ -12,6 +12,10 @@ std::span<const Study> studies() {
       {"convergence",
        "figure 2.11: equilibria against exact solutions, 5 to 160 particles a side, forces consistent and as printed", nullptr,
        convergence},
+      {"orders", "the order of every method in time, in a window that the program finds", nullptr, orders},
+      {"modes", "amplification of linear modes by the running code: stability limits, artificial inertia and damping", nullptr,
+       modes},
+      {"references", "CVODE, ARKODE and IDA on the hung sheets: how far they agree, and at what cost", nullptr, references},
   };
   return table;
 }

@@ -37,5 +37,6 @@ std::vector<Group> hung_sheets(bool quick);
 std::vector<TableJob> convergence(bool quick);
 std::vector<TableJob> orders(bool quick);
 std::vector<TableJob> modes(bool quick);
+std::vector<TableJob> references(bool quick);
 
 }  // namespace drape::bench

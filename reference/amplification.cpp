@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "solver/decompositions.hpp"
 #include "solver/stage_solver.hpp"
 
 namespace drape::reference {
@@ -116,10 +117,23 @@ std::vector<std::complex<double>> amplification_factors(const solver::Method& me
   const auto unit = [&](Eigen::Index i) { return i % 2 == 1 ? omega : 1; };
   const Eigen::MatrixXd scaled =
       Eigen::MatrixXd::NullaryExpr(G.rows(), G.cols(), [&](auto i, auto j) { return G(i, j) * unit(j) / unit(i); });
-  const Eigen::VectorXcd eigenvalues = scaled.eigenvalues();
+  const Eigen::VectorXcd eigenvalues = solver::eigenvalues(scaled);
   std::vector<std::complex<double>> factors(eigenvalues.begin(), eigenvalues.end());
   std::ranges::sort(factors, std::ranges::greater{}, [](const std::complex<double>& factor) { return std::abs(factor); });
   return factors;
+}
+
+double distance_from_theory(const solver::Method& method, const Mode& mode, const Mode& theory) {
+  Eigen::VectorXcd measured = Eigen::VectorXcd::Ones(1);  // Π (z − factor), the constant first
+  for (const std::complex<double>& factor : amplification_factors(method, mode)) {
+    Eigen::VectorXcd next = Eigen::VectorXcd::Zero(measured.size() + 1);
+    next.tail(measured.size()) = measured;
+    next.head(measured.size()) -= factor * measured;
+    measured = next;
+  }
+  const Eigen::VectorXd exact = characteristic_polynomial(method.name, theory);
+  if (measured.size() != exact.size()) return std::numeric_limits<double>::infinity();
+  return (measured - exact).cwiseAbs().maxCoeff<Eigen::PropagateNaN>() / exact.cwiseAbs().maxCoeff();
 }
 
 double spectral_radius(const solver::Method& method, const Mode& mode) {

@@ -59,6 +59,10 @@ ModeBehaviour exact_behaviour(const Mode& mode);
 /// Characteristic polynomial of the amplification matrix, coefficients from the constant to the leading one, which is 1.
 Eigen::VectorXd characteristic_polynomial(std::string_view method, const Mode& mode);
 
+/// Distance of the characteristic polynomial of the running step on one mode from that in theory of another (or the same),
+/// relative to its largest coefficient; infinite if the degrees differ.
+double distance_from_theory(const solver::Method& method, const Mode& mode, const Mode& theory);
+
 /// The factor by which an update of the fixed-point loop multiplies the error, γ² |κ − ω²|/(1 + γ² κ + γ c). 0 for methods
 /// that have no loop.
 double loop_contraction(std::string_view method, const Mode& mode);

@@ -88,6 +88,7 @@ std::string to_text(const Table& table) {
     append_column(lines, cells, column.unit.empty());
   }
   lines.insert(lines.begin() + 2, std::string(display_width(lines.front()), '-'));
+  if (lines[1].find_first_not_of(' ') == std::string::npos) lines.erase(lines.begin() + 1);  // no column has a unit
   return fmt::format("{}\n", fmt::join(lines, "\n"));
 }
 

@@ -4,6 +4,8 @@
 #include <limits>
 #include <random>
 
+#include "solver/decompositions.hpp"
+
 namespace drape::solver {
 namespace {
 
@@ -39,7 +41,7 @@ double amplification(double W, double s) {
   G.row(0) << 1, 1, 0.5;
   G.row(2) << -W, -W - s, -W / 2 - s;
   G.row(1) = Eigen::RowVector3d(0, 1, 0.5) + 0.5 * G.row(2);
-  return G.eigenvalues().cwiseAbs().maxCoeff();
+  return eigenvalues(G).cwiseAbs().maxCoeff();
 }
 
 }  // namespace

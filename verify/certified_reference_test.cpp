@@ -115,7 +115,7 @@ TEST(Certificate, IsRefusedIfTheDisagreementIsNotANumber) {
 }
 
 /// Two coordinates that neither pull nor push, one that oscillates or runs away:  x'' = sign x.
-Reference growth_of(double sign) {
+Reference growth_of(double sign, double size = 1) {
   SplitOde ode;
   const SparseMatrix none(1, 1);
   ode.mass = Eigen::VectorXd::Ones(1);
@@ -126,14 +126,17 @@ Reference growth_of(double sign) {
     df_dx.insert(0, 0) = sign;
   };
   ode.pins = {{.particle = 0, .fixed = {false, true, true}}};
-  return reference::reference(ode, known_motions::single({1, 0, 0}, {0, 0, 0}), 0, std::vector{2.0, 5.0, 10.0}, {.rtol = 1e-9});
+  return reference::reference(ode, known_motions::single({1, 0, 0}, {0, 0, 0}), 0, std::vector{2.0, 5.0, 10.0},
+                              {.rtol = 1e-9, .size = size});
 }
 
 TEST(Growth, IsThatOfTheLinearMotion) {
   // The second perturbation is what the first became and grows like e^t; the first may grow more by its velocity.
-  const Reference unstable = growth_of(1);
-  for (std::size_t k = 0; k < 3; ++k)
-    EXPECT_THAT(unstable.growth[k] / std::exp(unstable.trajectory.times[k]), AllOf(Ge(0.99), Le(2.0)));
+  for (const double size : {1.0, 10.0}) {
+    const Reference unstable = growth_of(1, size);
+    for (std::size_t k = 0; k < 3; ++k)
+      EXPECT_THAT(unstable.growth[k] / std::exp(unstable.trajectory.times[k]), AllOf(Ge(0.99), Le(2.0))) << size;
+  }
   EXPECT_THAT(growth_of(-1).growth, Each(AllOf(Ge(0.0), Le(3.0))));
 }
 

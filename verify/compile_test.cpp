@@ -90,8 +90,8 @@ TEST(Compile, PlansAForceThatIsViscousOnly) {
 
 TEST(Compile, PlansNormalsOnlyIfAForceAsks) {
   for (const ForceCase& force : force_cases()) {
-    const bool asks = force.name == "membrane" || force.name == "plate" || force.name == "printed_plate" || force.name.starts_with("all_of") ||
-                      force.name == "all_with_a_membrane";
+    const bool asks = force.name == "membrane" || force.name == "plate" || force.name == "printed_plate" ||
+                      force.name.starts_with("all_of") || force.name == "all_with_a_membrane";
     EXPECT_EQ(cloth_of(force.name).plan.normals, asks) << force.name;
   }
 }

@@ -71,6 +71,10 @@ TEST(ConjugateGradients, NeedOneIterationWithAnExactFactor) {
 
 TEST(ConjugateGradients, NeedMoreWithAnIncompleteOne) { EXPECT_GE(iterations(solver::linear_solver("ic0"), sheet(20, 20)), 5); }
 
+TEST(ConjugateGradients, RememberTheDirectionsBefore) {
+  EXPECT_LE(iterations(solver::linear_solver("ic0"), sheet(20, 20)), 50) << "steepest descent needs 175";
+}
+
 TEST_P(ConjugateGradientsWith, SolveInTheFreeCoordinates) {
   const std::vector<Pin> pins = {{.particle = 0, .fixed = {true, false, false}},
                                  {.particle = 3, .fixed = {false, true, true}},

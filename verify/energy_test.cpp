@@ -8,6 +8,7 @@
 
 #include "verify/convergence.hpp"
 #include "verify/pinned_sheet.hpp"
+#include "verify/small_problems.hpp"
 
 namespace drape::verify {
 namespace {

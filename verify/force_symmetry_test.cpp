@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "model/normals.hpp"
+#include "solver/decompositions.hpp"
 #include "verify/model_fixtures.hpp"
 
 namespace drape::verify {
@@ -120,7 +121,7 @@ TEST_P(PhysicsOf, RotationsMeetNoViscousForceWhereTheTableSaysSo) {
 /// Viscous forces are linear in v, so that their power is a quadratic form: no velocity at all may give it a positive value.
 TEST_P(PhysicsOf, ViscousForcesDissipateWhereTheTableSaysSo) {
   const Eigen::MatrixXd dv = by_velocities(), form = (dv + dv.transpose()) / 2;
-  const double greatest = form.selfadjointView<Eigen::Lower>().eigenvalues().maxCoeff();
+  const double greatest = solver::symmetric_eigen(form).values.maxCoeff();
   if (force.dissipates)
     EXPECT_LE(greatest, rounding * largest(dv));
   else

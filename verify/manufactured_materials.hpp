@@ -27,46 +27,18 @@ struct NamedMaterial {
   std::string name;
   Material material;
 };
-inline std::ostream& operator<<(std::ostream& out, const NamedMaterial& named) { return out << named.name; }
+std::ostream& operator<<(std::ostream& out, const NamedMaterial& named);
 
 /// All forces together: as in the thesis but for its shear, all that have energies, and with the membrane.
-inline std::vector<NamedMaterial> joint_materials() {
-  return {
-      {"all", made_of(tension, little_damping, soft_shear, soft_contraction, soft_plate)},
-      {"all_with_energies", made_of(tension, little_projected_damping, soft_shear, soft_contraction, soft_unprojected_plate)},
-      {"all_with_a_membrane", made_of(tension, little_damping, soft_shear, soft_contraction, soft_membrane)}};
-}
+std::vector<NamedMaterial> joint_materials();
 
-inline std::vector<NamedMaterial> with_joint_materials(std::vector<NamedMaterial> materials) {
-  for (const NamedMaterial& joint : joint_materials()) materials.push_back(joint);
-  return materials;
-}
+std::vector<NamedMaterial> with_joint_materials(std::vector<NamedMaterial> materials);
 
 /// For a few particles, whose motion is well posed whatever their forces.
-inline std::vector<NamedMaterial> single_materials() {
-  return with_joint_materials({{"tension", made_of(tension)},
-                               {"damping", made_of(damping)},
-                               {"projected_damping", made_of(projected_damping)},
-                               {"shear", made_of(soft_shear)},
-                               {"printed_shear", made_of(soft_shear, [](Material& m) { m.shear_form = ShearForm::printed; })},
-                               {"contraction", made_of(soft_contraction)},
-                               {"membrane", made_of(soft_membrane)},
-                               {"plate", made_of(soft_plate)},
-                               {"unprojected_plate", made_of(soft_unprojected_plate)}});
-}
+std::vector<NamedMaterial> single_materials();
 
 /// For finer and finer grids. Forces that alone have no well-posed motion in the continuum are carried by tension: projected
 /// damping resists stretching only, shear and contraction are indefinite; viscous contraction moreover wants d12² < d1 d2.
-inline std::vector<NamedMaterial> carried_materials() {
-  return with_joint_materials({{"tension", made_of(tension)},
-                               {"damping", made_of(damping)},
-                               {"projected_damping", made_of(tension, little_projected_damping)},
-                               {"shear", made_of(tension, soft_shear)},
-                               {"contraction", made_of(tension, little_projected_damping, soft_contraction)},
-                               {"membrane", made_of(soft_membrane)},
-                               {"membrane_with_tension", made_of(tension, soft_membrane)},
-                               {"plate", made_of(soft_plate)},
-                               {"unprojected_plate", made_of(soft_unprojected_plate)}});
-}
+std::vector<NamedMaterial> carried_materials();
 
 }  // namespace drape::verify::manufactured

@@ -67,7 +67,8 @@ std::vector<Case> cases() {
   std::vector<Case> all;
   for (const ForceCase& force : force_cases())
     for (const Motion& motion : motions()) {
-      const bool consistent = force.material.shear_form == ShearForm::conservative && force.gravity.isZero();
+      const bool consistent = force.material.shear_form == ShearForm::conservative &&
+                              force.material.bend_form != BendForm::printed && force.gravity.isZero();
       if (consistent && acts(force.name, motion)) all.emplace_back(force.name, motion);
     }
   for (const Motion& motion : motions())

@@ -14,6 +14,7 @@
 #include "reference/cvode.hpp"
 #include "verify/convergence.hpp"
 #include "verify/pinned_sheet.hpp"
+#include "verify/small_problems.hpp"
 
 namespace drape::verify {
 namespace {

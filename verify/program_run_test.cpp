@@ -70,14 +70,14 @@ std::string h5py(const BenchIntegrators& program, const std::string& script, con
 
 TEST(ProgramRun, PrintsARowOfCsvForEveryMethodAndStep) {
   const BenchIntegrators program;
-  const std::vector<Row> rows = csv(program, tiny + Words{"--method", "bdf2,sbdf2/cholesky", "--step", "0.01,0.005"});
+  const std::vector<Row> rows = csv(program, tiny + Words{"--method", "sbdf2/cholesky,bdf2", "--step", "0.01,0.005"});
   Words order;
   for (const Row& row : rows) {
     order.push_back(row.at("method") + " " + row.at("step"));
     EXPECT_THAT(row, IsSupersetOf<Row::value_type>({{"scene", "hung-edge"}, {"outcome", "success"}, {"message", ""}}));
     EXPECT_EQ(row.at("reference"), "cvode-bdf + arkode-esdirk");
   }
-  EXPECT_THAT(order, ElementsAre("bdf2 0.01", "bdf2 0.005", "sbdf2/cholesky 0.01", "sbdf2/cholesky 0.005"));
+  EXPECT_THAT(order, ElementsAre("sbdf2/cholesky 0.01", "sbdf2/cholesky 0.005", "bdf2 0.01", "bdf2 0.005"));
 }
 
 TEST(ProgramRun, PrintsSaneNumbers) {
@@ -98,6 +98,18 @@ TEST(ProgramRun, PrintsSaneNumbers) {
     EXPECT_THAT(number(row, "reference_error"), AllOf(Gt(0), Lt(1e-6)));
   }
   EXPECT_THAT(number(rows[3], "error_rms"), Lt(number(rows[2], "error_rms") / 2)) << "sbdf2 with half the step";
+}
+
+TEST(ProgramRun, DividesErrorsByTheSizeOfTheScene) {
+  const BenchIntegrators program;
+  const std::vector<Row> rows = csv(program, tiny + Words{"--method", "imex-euler,verlet", "--step", "0.01",
+                                                          "--verlet-fraction", "0.3", "--repeat", "1", "--out", "a.h5"});
+  const double distance = std::stod(h5py(program,
+                                         "x, y = [run['final_state/x'][:] for run in files[0]['runs'].values()]\n"
+                                         "print(((x - y) ** 2).sum(axis=1).mean() ** 0.5)",
+                                         {"a.h5"}));
+  ASSERT_THAT(number(rows[1], "error_rms"), Lt(number(rows[0], "error_rms") / 100));
+  EXPECT_NEAR(number(rows[0], "error_rms") * 0.8 / distance, 1, 0.01) << "the sides are 0.8 m long";
 }
 
 TEST(ProgramRun, PrintsTheSameAsJson) {

@@ -157,6 +157,14 @@ TEST(Table, ShowsFourDigitsAndUnits) {
   EXPECT_THAT(lines[3], AllOf(StartsWith("flag "), HasSubstr(" 1.235e-05 "), HasSubstr(" 0.3333 ")));
 }
 
+TEST(Table, HasTheUnitsOfItsColumns) {
+  const auto table = to_table(runs);
+  std::string units;
+  for (const Column& column : table.columns)
+    if (!column.unit.empty() && column.unit != "1") units += column.name + " [" + column.unit + "] ";
+  EXPECT_EQ(units, "step [s] wall_ms_min [ms] wall_ms_median [ms] wall_ms_max [ms] last_good_time [s] ");
+}
+
 TEST(Table, FailedRunShowsHowAndWhenInPlaceOfItsError) {
   const auto lines = lines_of(to_text(to_table(runs)));
   EXPECT_THAT(lines[4], AllOf(HasSubstr("not converged at 0.02 s"), Not(HasSubstr("e-05"))));

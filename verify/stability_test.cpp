@@ -4,10 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
-
 #include "model/cloth.hpp"
 #include "model/scene_file.hpp"
+#include "solver/decompositions.hpp"
 #include "verify/small_problems.hpp"
 
 namespace drape::verify {
@@ -80,7 +79,7 @@ double dense_eigenvalue(const solver::SplitOde& ode, double t, const State& y, V
   for (const Pin& pin : ode.pins)
     for (int c = 0; c < 3; ++c)
       if (pin.fixed[c]) J.row(3 * pin.particle + c).setZero(), J.col(3 * pin.particle + c).setZero();
-  return J.eigenvalues().cwiseAbs().maxCoeff();
+  return solver::eigenvalues(J).cwiseAbs().maxCoeff();
 }
 
 /// The estimate is 1 % to the safe side.

@@ -180,6 +180,7 @@ TEST(StageSolver, DoesNotTakeAMatrixThatBrokeDownForPrepared) {
   StageSolver solver(c.problem.ode, c.options);
   EXPECT_EQ(solver.solve(c.stage(), c.y).outcome, Outcome::breakdown);
   EXPECT_EQ(solver.solve(c.stage(), c.y).outcome, Outcome::breakdown);
+  EXPECT_EQ(c.count("factorizations"), 2);
 }
 
 TEST(StageSolver, SeesForcesThatAreNotFinite) {

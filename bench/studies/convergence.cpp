@@ -5,15 +5,15 @@
 #include <limits>
 #include <memory>
 
-#include "bench/order_fit.hpp"
 #include "bench/studies.hpp"
-#include "bench/table_builder.hpp"
 #include "model/cloth.hpp"
 #include "model/scene_file.hpp"
 #include "reference/exact/bending.hpp"
 #include "reference/exact/shear.hpp"
 #include "reference/exact/tension.hpp"
 #include "reference/kinsol.hpp"
+#include "results/order_fit.hpp"
+#include "results/table_builder.hpp"
 
 namespace drape::bench {
 namespace {
@@ -177,17 +177,17 @@ Errors errors(const Experiment& experiment, int n) {
 }
 
 /// What all rows of a table have in common, in words of a verdict.
-std::string conclusion(const Experiment& experiment, const std::optional<OrderFit>& fit, double finest_error) {
+std::string conclusion(const Experiment& experiment, const std::optional<results::OrderFit>& fit, double finest_error) {
   constexpr double round_off = 1e-10;
   if (experiment.order == 0) return finest_error <= round_off ? "exact as declared" : "NOT exact";
   if (std::isnan(experiment.order)) return fit ? "" : "no order to be seen";
-  return verdict(fit, experiment.order);
+  return results::verdict(fit, experiment.order);
 }
 
 /// The curve of one experiment, and its order.
 results::Table figure(const std::string& name, const std::string& title, const std::vector<Experiment>& experiments,
                       const std::vector<int>& resolutions, Progress& progress) {
-  TableBuilder table(name, title);
+  results::TableBuilder table(name, title);
   for (const Experiment& experiment : experiments) {
     std::vector<double> spacings, rms;
     for (const int n : resolutions) {
@@ -213,13 +213,8 @@ results::Table figure(const std::string& name, const std::string& title, const s
       table.number("uncertainty", "", "m", "of the exact solution", experiment.uncertainty);
       progress.advance();
     }
-    const auto fit = fit_order(spacings, rms, experiment.uncertainty);
-    table.text("verdict", "verdict", "at the finest resolution: whether the order is the declared one",
-               conclusion(experiment, fit, rms.empty() ? NAN : rms.back()));
-    if (!fit) continue;
-    table.number("fitted_order", "fitted", "1", "order by least squares over the window that the program found", fit->order);
-    table.text("spread", "between", "orders between neighbours in the window",
-               fmt::format("{:.3f} … {:.3f}", fit->lowest, fit->highest));
+    const auto fit = results::fit_order(spacings, rms, experiment.uncertainty);
+    results::add_fit(table, fit, conclusion(experiment, fit, rms.empty() ? NAN : rms.back()));
   }
   return table.finish();
 }
@@ -227,7 +222,7 @@ results::Table figure(const std::string& name, const std::string& title, const s
 }  // namespace
 
 std::vector<TableJob> convergence(bool quick) {
-  const std::vector<int> resolutions = quick ? std::vector{5, 10, 20} : std::vector{5, 10, 20, 40, 80, 160};
+  const std::vector<int> resolutions = quick ? std::vector{20, 28, 36, 48} : std::vector{5, 10, 20, 40, 80, 160};
   const auto job = [&](const char* name, const char* title, int experiments, auto make) {
     return TableJob{experiments * static_cast<int>(resolutions.size()), [=](Progress& progress) {
                       progress.show(fmt::format("exact solution of {}", name));

@@ -1,7 +1,6 @@
 #include "reference/exact/collocation.hpp"
 
 #include <Eigen/Sparse>
-#include <Eigen/SparseLU>
 #include <cmath>
 #include <complex>
 #include <stdexcept>
@@ -9,6 +8,7 @@
 #include <vector>
 
 #include "reference/exact/polynomials.hpp"
+#include "solver/decompositions.hpp"
 
 namespace drape::reference {
 namespace {
@@ -93,16 +93,15 @@ Eigen::VectorXd PiecewisePolynomial::operator()(double X) const {
 }
 
 void collocate(const BoundaryValueProblem& problem, PiecewisePolynomial& y) {
-  Eigen::SparseLU<Eigen::SparseMatrix<double>> lu;
   Eigen::SparseMatrix<double> jacobian(y.values().size(), y.values().size());
   for (int iteration = 0; iteration < 30; ++iteration) {
     Linearised system{Eigen::VectorXd(y.values().size()), {}};
     add_pieces(problem, y, system);
     add_conditions(problem, y, system);
     jacobian.setFromTriplets(system.jacobian.begin(), system.jacobian.end());
-    lu.compute(jacobian);
-    if (lu.info() != Eigen::Success) break;
-    const Eigen::VectorXd update = lu.solve(system.residual);
+    const auto inverse = solver::lu_inverse(jacobian);
+    if (!inverse) break;
+    const Eigen::VectorXd update = inverse(system.residual);
     y.values().reshaped() -= update;
     // Convergence is quadratic: after an update so small nothing is left but rounding.
     const double size = update.lpNorm<Eigen::Infinity>();

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "solver/decompositions.hpp"
+
 namespace drape::reference {
 namespace {
 
@@ -21,8 +23,8 @@ Eigen::ArrayXd barycentric_weights(const Eigen::VectorXd& nodes) {
 Quadrature gauss(int n) {
   Eigen::MatrixXd jacobi = Eigen::MatrixXd::Zero(n, n);
   for (int k = 1; k < n; ++k) jacobi(k, k - 1) = k / std::sqrt(4.0 * k * k - 1);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(jacobi);
-  return {(eigen.eigenvalues().array() + 1) / 2, eigen.eigenvectors().row(0).array().square().transpose()};
+  const auto [values, vectors] = solver::symmetric_eigen(jacobi);
+  return {(values.array() + 1) / 2, vectors.row(0).array().square().transpose()};
 }
 
 Eigen::VectorXd chebyshev(int degree) {

@@ -1,8 +1,8 @@
-#include "bench/table_builder.hpp"
+#include "results/table_builder.hpp"
 
 #include <algorithm>
 
-namespace drape::bench {
+namespace drape::results {
 
 void TableBuilder::text(const char* name, const char* title, const char* description, std::string value) {
   put(name, title, "", description, std::move(value));
@@ -16,17 +16,17 @@ void TableBuilder::count(const char* name, const char* title, const char* descri
   put(name, title, "1", description, value);
 }
 
-void TableBuilder::put(const char* name, const char* title, const char* unit, const char* description, results::Cell value) {
-  auto column = std::ranges::find(table_.columns, name, &results::Column::name);
+void TableBuilder::put(const char* name, const char* title, const char* unit, const char* description, Cell value) {
+  auto column = std::ranges::find(table_.columns, name, &Column::name);
   if (column == table_.columns.end())
     column = table_.columns.insert(table_.columns.end(), {name, title, unit, description, {}, {}});
   column->cells.resize(rows_);
   column->cells.back() = std::move(value);
 }
 
-results::Table TableBuilder::finish() {
-  for (results::Column& column : table_.columns) column.cells.resize(rows_);
+Table TableBuilder::finish() {
+  for (Column& column : table_.columns) column.cells.resize(rows_);
   return std::move(table_);
 }
 
-}  // namespace drape::bench
+}  // namespace drape::results

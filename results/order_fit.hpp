@@ -4,7 +4,9 @@
 #include <span>
 #include <string>
 
-namespace drape::bench {
+#include "results/table_builder.hpp"
+
+namespace drape::results {
 
 /// The order of convergence of a series of errors.
 struct OrderFit {
@@ -22,4 +24,7 @@ std::optional<OrderFit> fit_order(std::span<const double> h, std::span<const dou
 /// "2 as declared", or how it is not: within ±0.1.
 std::string verdict(const std::optional<OrderFit>& fit, double declared);
 
-}  // namespace drape::bench
+/// The columns of a fit and its verdict, in the current row.
+void add_fit(TableBuilder& table, const std::optional<OrderFit>& fit, const std::string& verdict);
+
+}  // namespace drape::results

@@ -1,4 +1,4 @@
-#include "bench/order_fit.hpp"
+#include "results/order_fit.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 
 #include "results/run_record.hpp"
 
-namespace drape::bench {
+namespace drape::results {
 namespace {
 
 constexpr int fewest = 4;
@@ -29,9 +29,7 @@ double slope(std::span<const double> h, std::span<const double> errors, int firs
 
 std::optional<OrderFit> fit_order(std::span<const double> h, std::span<const double> errors, double uncertainty) {
   const int n = static_cast<int>(errors.size());
-  const auto usable = [&](int k) {
-    return std::isfinite(errors[k]) && errors[k] > 0 && errors[k] >= results::resolution * uncertainty;
-  };
+  const auto usable = [&](int k) { return std::isfinite(errors[k]) && errors[k] > 0 && errors[k] >= resolution * uncertainty; };
   std::optional<OrderFit> best;
   for (int first = 0; first + fewest <= n; ++first) {
     double lowest = INFINITY, highest = -INFINITY;
@@ -49,9 +47,17 @@ std::optional<OrderFit> fit_order(std::span<const double> h, std::span<const dou
 }
 
 std::string verdict(const std::optional<OrderFit>& fit, double declared) {
-  if (!fit) return fmt::format("NOT {:g}: no order to be seen", declared);
+  if (!fit) return "no order to be seen";
   if (std::abs(fit->order - declared) <= tolerance) return fmt::format("{:g} as declared", declared);
   return fmt::format("NOT {:g}", declared);
 }
 
-}  // namespace drape::bench
+void add_fit(TableBuilder& table, const std::optional<OrderFit>& fit, const std::string& verdict) {
+  table.text("verdict", "verdict", "whether the order is the declared one", verdict);
+  if (!fit) return;
+  table.number("fitted_order", "fitted", "1", "order by least squares over the window that the program found", fit->order);
+  table.text("spread", "between", "lowest and highest order between neighbours in the window",
+             fmt::format("{:.3f} … {:.3f}", fit->lowest, fit->highest));
+}
+
+}  // namespace drape::results

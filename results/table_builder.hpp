@@ -4,7 +4,7 @@
 
 #include "results/table.hpp"
 
-namespace drape::bench {
+namespace drape::results {
 
 /// Builds a table row by row. A column exists from its first value on; rows without one have an empty cell.
 class TableBuilder {
@@ -20,13 +20,13 @@ class TableBuilder {
   void count(const char* name, const char* title, const char* description, std::int64_t value);
 
   /// The table, all columns filled up to the same length.
-  results::Table finish();
+  Table finish();
 
  private:
-  void put(const char* name, const char* title, const char* unit, const char* description, results::Cell value);
+  void put(const char* name, const char* title, const char* unit, const char* description, Cell value);
 
-  results::Table table_;
+  Table table_;
   std::size_t rows_ = 0;
 };
 
-}  // namespace drape::bench
+}  // namespace drape::results

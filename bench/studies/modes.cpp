@@ -1,0 +1,159 @@
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "bench/studies.hpp"
+#include "reference/amplification.hpp"
+#include "results/table_builder.hpp"
+
+namespace drape::bench {
+namespace {
+
+using reference::LinearMode;
+using reference::Mode;
+using reference::Motion;
+using reference::PinnedSheet;
+using solver::Method;
+
+/// A linear mode of a sheet, for people.
+struct NamedMode {
+  std::string name;
+  LinearMode mode;
+};
+
+/// The gravest modes of the sheet of table 3.2, 20 × 20 particles, k = 10⁴ N/m, ρ = 1 kg/m², pinned all round and stretched.
+std::vector<NamedMode> modes_of_the_sheet() {
+  const auto sheet = [](double strain, double damping, double bend) {
+    return PinnedSheet{.nu = 20,
+                       .nv = 20,
+                       .size_u = 0.8,
+                       .size_v = 0.8,
+                       .strain_u = strain,
+                       .strain_v = strain,
+                       .k1 = 1e4,
+                       .k2 = 1e4,
+                       .d1 = damping,
+                       .d2 = damping,
+                       .B1 = bend,
+                       .B2 = bend};
+  };
+  const auto mode = [](const PinnedSheet& s, Motion motion) { return linear_mode(s, {.m = 1, .n = 1, .motion = motion}); };
+  return {{"in plane", mode(sheet(0.01, 0, 0), Motion::along_u)},
+          {"in plane, d = 50", mode(sheet(0.01, 50, 0), Motion::along_u)},
+          {"transverse, strain 0.1", mode(sheet(0.1, 0, 0), Motion::transverse)},
+          {"transverse, strain 0.001", mode(sheet(0.001, 0, 0), Motion::transverse)},
+          {"transverse, strain 0.001, B = 0.01", mode(sheet(0.001, 0, 0.01), Motion::transverse)},
+          {"transverse, strain 0.001, d = 50", mode(sheet(0.001, 50, 0), Motion::transverse)}};
+}
+
+std::vector<double> stiffnesses(bool quick) {
+  if (quick) return {1e-2, 1e2, 1e6};
+  return {1e-2, 1e-1, 1, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6};
+}
+
+void add_method(results::TableBuilder& table, const Method& method) {
+  table.text("method", "method", "time integrator", std::string(method.name));
+}
+
+void add_mode(results::TableBuilder& table, const std::string& name, const Mode& mode) {
+  table.text("mode", "mode", "what moves", name);
+  table.number("nu", "ν", "1", "h² κ: numerical stiffness of the mode, the part that the split treats implicitly", mode.nu);
+  table.number("W", "W", "1", "h² ω²", mode.W);
+  table.number("s", "h c", "1", "h times the damping rate c", mode.s);
+}
+
+void add_verdict(results::TableBuilder& table, const std::string& verdict) {
+  table.text("verdict", "verdict", "whether the running code does what theory says", verdict);
+}
+
+/// The running step against its characteristic polynomial, mode by mode.
+results::Table amplification(bool quick, Progress& progress) {
+  results::TableBuilder table("amplification", "Amplification by the running code against the characteristic polynomials");
+  constexpr double agreement = 1e-10, far_outside = 1e3;
+  for (const Method& method : solver::methods()) {
+    progress.show(fmt::format("amplification of {}", method.name));
+    for (const NamedMode& named : modes_of_the_sheet())
+      for (const double nu : stiffnesses(quick)) {
+        const Mode mode = at_step(named.mode, std::sqrt(nu / named.mode.kappa));
+        if (!method.implicit() && std::max(mode.W, mode.s) > far_outside) continue;  // far outside its limit
+        const double distance = distance_from_theory(method, mode, mode);
+        table.row();
+        add_method(table, method);
+        add_mode(table, named.name, mode);
+        table.number("radius", "|z|", "1", "largest modulus of the amplification factors", spectral_radius(method, mode));
+        table.number("distance", "from theory", "1",
+                     "largest difference of coefficients of the characteristic polynomial, over the largest coefficient",
+                     distance);
+        add_verdict(table, distance <= agreement ? "as in theory" : "NOT as in theory");
+      }
+    progress.advance();
+  }
+  return table.finish();
+}
+
+/// Where methods become unstable: bisection on the spectral radius of the running step.
+results::Table stability(bool, Progress& progress) {
+  results::TableBuilder table("stability", "Largest stable W = h² ω² by bisection, for shares ω²/κ of the implicit part");
+  for (const Method& method : solver::methods()) {
+    progress.show(fmt::format("stability limit of {}", method.name));
+    for (const double share : {2.5, 1.5, 1.0, 0.1, 1e-3}) {
+      const double h = reference::stability_limit(method, {1 / share, 1, 0}), W = h * h;
+      const double bound = reference::stability_bound(method.name, W / share, 0);
+      table.row();
+      add_method(table, method);
+      table.number("share", "ω²/κ", "1", "1 in plane, much less transversally, more than 1 with stiff explicit forces", share);
+      table.number("limit", "W at the limit", "1", "largest stable h² ω²; 0: none, infinite: no limit up to h ω = 1600", W);
+      table.number("bound", "in theory", "1", "the same in closed form, at the ν of the limit", bound);
+      const bool equal = std::isinf(W) ? bound > 1e6 : std::abs(W - bound) <= 1e-6 * bound || (W == 0 && bound == 0);
+      add_verdict(table, equal ? "as in theory" : "NOT as in theory");
+    }
+    progress.advance();
+  }
+  return table.finish();
+}
+
+/// How transverse motion lags and is damped: figure 3.3 as numbers.
+results::Table artificial(bool quick, Progress& progress) {
+  results::TableBuilder table("artificial", "Artificial inertia and damping of a transverse mode, h ω = 0.01, undamped");
+  constexpr double W = 1e-4, tolerance = 1e-3;
+  for (const Method& method : solver::methods()) {
+    progress.show(fmt::format("artificial inertia of {}", method.name));
+    for (const double nu : stiffnesses(quick)) {
+      if (nu < W) continue;
+      const Mode mode{nu, W, 0};
+      const auto measured = measured_behaviour(method, mode), exact = exact_behaviour(mode);
+      const auto predicted = predicted_behaviour(method.name, mode);
+      const auto added = reference::artificial(method.name, mode);
+      table.row();
+      add_method(table, method);
+      table.number("nu", "ν", "1", "h² κ", nu);
+      table.number("frequency", "frequency", "1", "measured, over the true one", measured.frequency / exact.frequency);
+      table.number("predicted_frequency", "predicted", "1", "the same by the artificial inertia and damping",
+                   predicted.frequency / exact.frequency);
+      table.number("damping", "damping", "1", "decay of the amplitude in one true period",
+                   measured.decay * 2 * std::numbers::pi / exact.frequency);
+      table.number("predicted_damping", "predicted", "1", "the same by the artificial inertia and damping",
+                   predicted.decay * 2 * std::numbers::pi / exact.frequency);
+      table.number("inertia", "inertia added", "1", "over the true one", added.inertia);
+      const double scale = std::hypot(predicted.frequency, predicted.decay);
+      const double distance = std::hypot(measured.frequency - predicted.frequency, measured.decay - predicted.decay);
+      add_verdict(table, distance <= tolerance * scale ? "as predicted" : "NOT as predicted");
+    }
+    progress.advance();
+  }
+  return table.finish();
+}
+
+}  // namespace
+
+std::vector<TableJob> modes(bool quick) {
+  const int parts = static_cast<int>(solver::methods().size());
+  std::vector<TableJob> jobs;
+  for (auto* compute : {amplification, stability, artificial})
+    jobs.push_back({parts, [=](Progress& progress) { return compute(quick, progress); }});
+  return jobs;
+}
+
+}  // namespace drape::bench

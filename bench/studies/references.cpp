@@ -1,0 +1,94 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "bench/studies.hpp"
+#include "model/cloth.hpp"
+#include "model/scene_file.hpp"
+#include "reference/families.hpp"
+#include "reference/reference.hpp"
+#include "results/table_builder.hpp"
+
+namespace drape::bench {
+namespace {
+
+constexpr double rtol = 1e-10;
+constexpr double agreement = 1e-8;  ///< of the size of the scene
+constexpr int outputs = 10;
+
+const std::vector<std::string> names{"cvode-bdf", "arkode-esdirk", "ida-bdf"};
+const std::vector<std::string> dampings{"50", "5", "0.5"};
+const std::vector<std::string> scenes{"hung-edge", "hung-corners"};
+
+/// What a family computes of a scene, what it counted, and how long it took [s].
+struct Solution {
+  reference::Trajectory trajectory;
+  std::int64_t steps, factorisations;
+  double seconds;
+};
+
+Solution solve(const std::string& family, const model::Scene& scene) {
+  const model::Cloth cloth = model::compile(scene);
+  std::vector<double> times;
+  for (int k = 1; k <= outputs; ++k) times.push_back(scene.end * k / outputs);
+  const auto begin = std::chrono::steady_clock::now();
+  Solution solution{
+      reference::family(family).solve(cloth.ode, cloth.start, 0, times, {.rtol = rtol, .size = model::size(scene)}), 0, 0, 0};
+  solution.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const std::string prefix = family.substr(0, family.find('-'));
+  solution.steps = cloth.ode.work->count(prefix + "/steps");
+  solution.factorisations = cloth.ode.work->count(prefix + "/factorisations");
+  return solution;
+}
+
+/// Largest distance of positions at the output times, over the size of the scene.
+double distance(const Solution& a, const Solution& b, double size) {
+  double largest = 0;
+  for (std::size_t k = 0; k < a.trajectory.states.size(); ++k)
+    largest = std::max(largest, reference::rms_distance(a.trajectory.states[k].x, b.trajectory.states[k].x) / size);
+  return largest;
+}
+
+void add_row(results::TableBuilder& table, const model::Scene& scene, const std::string& family, const Solution& solution,
+             const Solution& first) {
+  table.row();
+  table.text("scene", "scene", "its name", scene.name);
+  table.number("damping", "d", "N s/m", "linear damping", scene.sheet.material.damping.weft);
+  table.text("family", "family", "the solver and its methods", family);
+  table.count("steps", "steps", "steps of the solver", solution.steps);
+  table.count("factorisations", "LU", "factorisations of the sparse Newton matrix", solution.factorisations);
+  table.number("wall", "wall", "s", "wall time, once", solution.seconds);
+  if (&solution == &first) return;
+  const double apart = distance(solution, first, model::size(scene));
+  table.number("distance", "from CVODE", "1", "largest distance of positions at ten times, over the size of the scene", apart);
+  table.text("verdict", "verdict", "whether it agrees with CVODE to 1e-8", apart <= agreement ? "agrees" : "NOT in agreement");
+}
+
+results::Table compare(bool quick, Progress& progress) {
+  results::TableBuilder table("references",
+                              fmt::format("Three families of solvers on the same equation of motion, rtol = {:g}", rtol));
+  for (const std::string& name : scenes)
+    for (const std::string& damping : dampings) {
+      std::vector<model::Override> overrides{{"material.damping", damping}};
+      if (quick) overrides.insert(overrides.end(), {{"grid.n", "6"}, {"end.time", "0.2"}});
+      const model::Scene scene = model::load_scene(name, overrides);
+      std::vector<Solution> solutions;
+      for (const std::string& family : names) {
+        progress.show(fmt::format("{}, d = {}, {}", name, damping, family));
+        solutions.push_back(solve(family, scene));
+        progress.advance();
+      }
+      for (std::size_t k = 0; k < names.size(); ++k) add_row(table, scene, names[k], solutions[k], solutions.front());
+    }
+  return table.finish();
+}
+
+}  // namespace
+
+std::vector<TableJob> references(bool quick) {
+  const auto parts = static_cast<int>(scenes.size() * dampings.size() * names.size());
+  return {{parts, [quick](Progress& progress) { return compare(quick, progress); }}};
+}
+
+}  // namespace drape::bench

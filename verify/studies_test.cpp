@@ -1,0 +1,219 @@
+// The studies: their quick forms answer their questions as theory wants it, and what they find is recorded.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "results/order_fit.hpp"
+#include "results/run_file.hpp"
+#include "results/table_builder.hpp"
+#include "verify/bench_integrators.hpp"
+#include "verify/temporary_folder.hpp"
+
+namespace drape::verify {
+namespace {
+
+using results::Cell;
+using results::Column;
+using results::fit_order;
+using results::Table;
+using results::TableBuilder;
+using results::verdict;
+using testing::AllOf;
+using testing::Contains;
+using testing::Each;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::SizeIs;
+
+// --- The window of an order --------------------------------------------------------------------------------------------------
+
+/// h = 1, ½, ¼, … and errors given.
+struct Series {
+  std::vector<double> h, errors;
+
+  explicit Series(std::vector<double> e) : errors(std::move(e)) {
+    for (std::size_t k = 0; k < errors.size(); ++k) h.push_back(std::exp2(-double(k)));
+  }
+  auto fit(double uncertainty = 0) const { return fit_order(h, errors, uncertainty); }
+};
+
+TEST(OrderFit, FindsTheWindowBetweenThePreasymptoticAndTheRoundOffEnd) {
+  const auto fit = Series({0.3, 0.25, 4e-2, 1e-2, 2.5e-3, 6.25e-4, 5e-4, 6e-4}).fit();
+  ASSERT_TRUE(fit);
+  EXPECT_EQ(fit->first, 2);
+  EXPECT_EQ(fit->last, 5);
+  EXPECT_NEAR(fit->order, 2, 1e-12);
+  EXPECT_NEAR(fit->lowest, 2, 1e-12);
+  EXPECT_NEAR(fit->highest, 2, 1e-12);
+}
+
+TEST(OrderFit, LeavesOutErrorsThatTheReferenceCannotResolve) {
+  const Series series({64, 16, 4, 1, 0.25});
+  EXPECT_EQ(series.fit(0.02)->last, 4);
+  EXPECT_EQ(series.fit(0.03)->last, 3);
+  EXPECT_FALSE(series.fit(0.11)) << "three errors are two refinements";
+}
+
+TEST(OrderFit, NeedsThreeRefinementsOfASteadyOrder) {
+  EXPECT_FALSE(Series({64, 16, 4}).fit());
+  EXPECT_TRUE(Series({64, 16, 4, 1}).fit());
+  EXPECT_FALSE(Series({64, 16, 4, 4 / std::exp2(2.11)}).fit());
+  EXPECT_TRUE(Series({64, 16, 4, 4 / std::exp2(2.09)}).fit());
+  EXPECT_FALSE(Series({64, 16, std::nan(""), 1}).fit());
+  EXPECT_FALSE(Series({64, 16, 4, 0}).fit());
+}
+
+TEST(OrderFit, TakesTheFinestOfEquallyLongWindows) {
+  const auto fit = Series({4096, 2048, 1024, 512, 64, 8, 1}).fit();
+  ASSERT_TRUE(fit);
+  EXPECT_NEAR(fit->order, 3, 1e-12);
+}
+
+TEST(OrderFit, KnowsUnequalRefinements) {
+  EXPECT_NEAR(fit_order(std::vector{1.0, 0.7, 0.2, 0.1}, std::vector{1.0, 0.49, 0.04, 0.01}, 0)->order, 2, 1e-12);
+}
+
+TEST(Verdict, IsWithinATenthToBothSides) {
+  const auto of = [](double order) { return verdict(results::OrderFit{order, order, order, 0, 3}, 2); };
+  EXPECT_EQ(of(2.09), "2 as declared");
+  EXPECT_EQ(of(1.91), "2 as declared");
+  EXPECT_EQ(of(2.11), "NOT 2");
+  EXPECT_EQ(of(1.89), "NOT 2");
+  EXPECT_EQ(verdict(std::nullopt, 2), "no order to be seen");
+}
+
+// --- Tables ------------------------------------------------------------------------------------------------------------------
+
+/// A table with all kinds of cells, and gaps.
+Table some_table() {
+  TableBuilder table("some", "Some table");
+  table.row();
+  table.text("name", "name", "who", "Ähre");
+  table.count("n", "n", "how many", 3);
+  table.row();
+  table.text("name", "name", "who", "b, c");
+  table.number("x", "x", "m", "where", 0.1 + 0.2);
+  table.count("n", "n", "how many", 4);
+  table.row();
+  table.number("hidden", "", "1", "not shown", 7);
+  return table.finish();
+}
+
+TEST(StudyTable, HasEquallyLongColumns) {
+  for (const Column& column : some_table().columns) EXPECT_THAT(column.cells, SizeIs(3)) << column.name;
+}
+
+TEST(StudyTable, IsShownWithoutItsHiddenColumns) {
+  EXPECT_EQ(to_text(some_table()),
+            "name  n    x\n"
+            "         [m]\n"
+            "------------\n"
+            "Ähre  3     \n"
+            "b, c  4  0.3\n"
+            "            \n");
+}
+
+TEST(StudyTable, HasAllColumnsInCsv) {
+  EXPECT_EQ(to_csv(some_table()),
+            "name,n,x,hidden\n"
+            "Ähre,3,,\n"
+            "\"b, c\",4,0.30000000000000004,\n"
+            ",,,7\n");
+}
+
+TEST(StudyTable, IsReadBackFromItsFile) {
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "tables.h5";
+  results::RunFile file(path, {});
+  file.add(some_table());
+  EXPECT_THAT(results::read_tables(path), SizeIs(1)) << "on disk at once";
+  Table second = some_table();
+  second.name = "other";
+  file.add(second);
+  const auto tables = results::read_tables(path);
+  ASSERT_THAT(tables, SizeIs(2));
+  EXPECT_EQ(tables[0].name, "other");
+  const Table &read = tables[1], written = some_table();
+  EXPECT_EQ(read.description, written.description);
+  ASSERT_EQ(read.columns.size(), written.columns.size());
+  for (std::size_t k = 0; k < read.columns.size(); ++k) {
+    EXPECT_EQ(read.columns[k].name, written.columns[k].name);
+    EXPECT_EQ(read.columns[k].title, written.columns[k].title);
+    EXPECT_EQ(read.columns[k].unit, written.columns[k].unit);
+    EXPECT_EQ(read.columns[k].description, written.columns[k].description);
+  }
+  EXPECT_EQ(to_text(read), to_text(written));
+  EXPECT_EQ(to_csv(read), to_csv(written));
+}
+
+TEST(StudyTable, IsRefusedTwice) {
+  const TemporaryFolder folder;
+  results::RunFile file(folder.path() / "tables.h5", {});
+  file.add(some_table());
+  EXPECT_THROW(file.add(some_table()), results::FileError);
+  EXPECT_THAT(results::read_tables(folder.path() / "tables.h5"), SizeIs(1)) << "and does no harm";
+}
+
+// --- The studies of the program
+// ------------------------------------------------------------------------------------------------
+
+/// All verdicts of a table, without the empty ones.
+std::vector<std::string> verdicts(const Table& table) {
+  std::vector<std::string> found;
+  const auto column = std::ranges::find(table.columns, "verdict", &Column::name);
+  if (column == table.columns.end()) return found;
+  for (const Cell& cell : column->cells)
+    if (const auto* text = std::get_if<std::string>(&cell); text && !text->empty()) found.push_back(*text);
+  return found;
+}
+
+class ProgramStudies : public testing::Test {
+ protected:
+  const BenchIntegrators program;
+
+  std::vector<Table> tables(const std::string& study) const {
+    program.output({"study", study, "--quick", "--out", "study.h5"});
+    return results::read_tables(program.folder() / "study.h5");
+  }
+};
+
+TEST_F(ProgramStudies, ModesAreAsInTheory) {
+  const auto all = tables("modes");
+  EXPECT_THAT(all, SizeIs(3));
+  for (const Table& table : all) {
+    EXPECT_THAT(verdicts(table), SizeIs(table.columns[0].cells.size())) << table.name << ": one for each row";
+    EXPECT_THAT(verdicts(table), Each(Not(HasSubstr("NOT")))) << table.name;
+  }
+}
+
+TEST_F(ProgramStudies, OrdersAreAsDeclared) {
+  const auto all = tables("orders");
+  ASSERT_THAT(all, SizeIs(1));
+  EXPECT_THAT(verdicts(all[0]), ElementsAre("1 as declared", "1 as declared", "2 as declared", "2 as declared", "2 as declared",
+                                            "2 as declared", "2 as declared"));
+}
+
+TEST_F(ProgramStudies, EquilibriaConvergeAsDeclared) {
+  const auto all = tables("convergence");
+  ASSERT_THAT(all, SizeIs(3));
+  EXPECT_THAT(verdicts(all[0]), ElementsAre("exact as declared", "1 as declared"));
+  EXPECT_THAT(verdicts(all[1]), Contains("2 as declared"));
+  EXPECT_THAT(verdicts(all[2]), Contains("2 as declared").Times(5));
+  for (const Table& table : all) EXPECT_THAT(verdicts(table), Each(Not(HasSubstr("NOT")))) << table.name;
+}
+
+TEST_F(ProgramStudies, ReferencesAgree) {
+  const auto all = tables("references");
+  ASSERT_THAT(all, SizeIs(1));
+  EXPECT_THAT(verdicts(all[0]), AllOf(SizeIs(12), Each("agrees")));
+}
+
+}  // namespace
+}  // namespace drape::verify
