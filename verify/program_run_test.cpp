@@ -20,6 +20,7 @@ using testing::IsSupersetOf;
 using testing::Le;
 using testing::Lt;
 using testing::MatchesRegex;
+using testing::Not;
 using testing::Pair;
 using testing::SizeIs;
 
@@ -289,6 +290,22 @@ TEST(ProgramRepeated, TakesTheReferenceFromTheCache) {
   EXPECT_EQ(references(), before) << "computed again";
   EXPECT_THAT(csv(program, one_run + Words{"--set", "material.damping=5"}), Each(Contains(Pair("outcome", "success"))));
   EXPECT_THAT(references(), SizeIs(2)) << "another scene needs another reference";
+}
+
+TEST(ProgramRun, StopsWhereTheTwoFamiliesDisagreeByMoreThanAllowed) {
+  const BenchIntegrators program;
+  const auto result = program.run(one_run + Words{"--agreement", "1e-15"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.err, AllOf(HasSubstr("hung-edge: cvode-bdf and arkode-esdirk disagree"), HasSubstr("--agreement")));
+  EXPECT_THAT(program.files(), Not(testing::Contains(testing::Key(testing::EndsWith(".h5")))));
+}
+
+TEST(ProgramRun, OffersStatisticsWherePerturbationsGrow) {
+  const BenchIntegrators program;
+  const Words folding{"run",     "--scene", "hung-corners", "--set",  "grid.n=8", "--set", "material.damping=0",
+                      "--until", "0.4",     "--method",     "verlet", "--step",   "0.01"};
+  EXPECT_THAT(program.output(folding), AllOf(HasSubstr("growth "), HasSubstr("energy error"), HasSubstr("centre error")));
+  EXPECT_THAT(program.output(one_run), Not(HasSubstr("energy error")));
 }
 
 }  // namespace
