@@ -47,7 +47,7 @@ class Arkode {
 void* create(Split split, double t0, Session& session) {
   using P = FirstOrderProblem;
   if (split == Split::none) return ARKStepCreate(nullptr, P::derivative<Part::whole>, t0, session.y(), session.context());
-  return ARKStepCreate(P::derivative<Part::explicit_>, P::derivative<Part::implicit>, t0, session.y(), session.context());
+  return ARKStepCreate(P::derivative<Part::remainder>, P::derivative<Part::linear>, t0, session.y(), session.context());
 }
 
 Arkode::Arkode(const FirstOrderOde& ode, Split split, solver::Work& work, double t0, double end, const SolveOptions& options)
@@ -71,7 +71,7 @@ Arkode::Arkode(const FirstOrderOde& ode, Split split, solver::Work& work, double
   require(ARKStepSetLinearSolver(arkode, session_.klu(), session_.matrix()), ARKStepGetLinReturnFlagName);
   if (split == Split::imex) require(ARKStepSetLinear(arkode, 0));
   const auto jacobian =
-      split == Split::imex ? FirstOrderProblem::jacobian<Part::implicit> : FirstOrderProblem::jacobian<Part::whole>;
+      split == Split::imex ? FirstOrderProblem::jacobian<Part::linear> : FirstOrderProblem::jacobian<Part::whole>;
   require(ARKStepSetJacFn(arkode, jacobian), ARKStepGetLinReturnFlagName);
 }
 

@@ -52,7 +52,7 @@ State FirstOrderOde::state(double t, const Eigen::Ref<const Eigen::VectorXd>& y)
 }
 
 Vectors FirstOrderOde::force(double t, const State& s, Part part) const {
-  if (part == Part::implicit) return ode_.stiffness * s.x + ode_.damping * s.v;
+  if (part == Part::linear) return ode_.stiffness * s.x + ode_.damping * s.v;
   Vectors f(ode_.particles(), 3);
   (part == Part::whole ? ode_.force : ode_.explicit_force)(t, s.x, s.v, f);
   return f;
@@ -62,7 +62,7 @@ void FirstOrderOde::derivative(double t, const Eigen::Ref<const Eigen::VectorXd>
                                Part part) const {
   const int n = size() / 2;
   const Vectors f = force(t, state(t, y), part);
-  if (part == Part::explicit_)
+  if (part == Part::remainder)
     dy.head(n).setZero();
   else
     dy.head(n) = y.tail(n);

@@ -4,14 +4,14 @@
 
 namespace drape::reference {
 
-/// The split of the equation of motion: K x + D v is implicit, f_expl explicit [Etzmuß 2002, (3.20)].
-enum class Part { whole, implicit, explicit_ };
+/// The split of the equation of motion: K x + D v is linear, f_expl the remainder [Etzmuß 2002, (3.20)].
+enum class Part { whole, linear, remainder };
 
 /// The split equation of motion as  dy/dt = g(t, y)  for a general ODE solver.
 ///
 /// y = (positions [m], velocities [m/s]) of the n free coordinates, in the order of their index 3i + c: 2n numbers. Pinned
 /// coordinates are no unknowns: they are at x0 + w (t - t0) with the velocity w, and are put in before every evaluation.
-/// dx/dt = v belongs to the implicit part. The ODE must outlive this object. Evaluations throw std::runtime_error if the
+/// dx/dt = v belongs to the linear part. The ODE must outlive this object. Evaluations throw std::runtime_error if the
 /// result is not finite.
 class FirstOrderOde {
  public:
@@ -31,7 +31,7 @@ class FirstOrderOde {
   void derivative(double t, const Eigen::Ref<const Eigen::VectorXd>& y, Eigen::Ref<Eigen::VectorXd> dy,
                   Part part = Part::whole) const;
 
-  /// ∂g/∂y = [0 I; M⁻¹ ∂f/∂x  M⁻¹ ∂f/∂v], 2n × 2n, of the whole or of the implicit part. Every diagonal entry is stored, so
+  /// ∂g/∂y = [0 I; M⁻¹ ∂f/∂x  M⁻¹ ∂f/∂v], 2n × 2n, of the whole or of the linear part. Every diagonal entry is stored, so
   /// that I - γ ∂g/∂y has the same pattern.
   WideSparseMatrix jacobian(double t, const Eigen::Ref<const Eigen::VectorXd>& y, Part part = Part::whole) const;
 

@@ -94,15 +94,15 @@ class FirstOrder : public testing::TestWithParam<std::string> {
 INSTANTIATE_TEST_SUITE_P(, FirstOrder, testing::ValuesIn(names(problems())), [](const auto& test) { return test.param; });
 
 TEST_P(FirstOrder, IsTheSumOfItsParts) {
-  const Eigen::VectorXd sum = derivative(y, Part::implicit) + derivative(y, Part::explicit_);
+  const Eigen::VectorXd sum = derivative(y, Part::linear) + derivative(y, Part::remainder);
   EXPECT_LE((derivative(y, Part::whole) - sum).norm(), 1e-13 * sum.norm());
-  EXPECT_GE(derivative(y, Part::explicit_).norm(), 0.01 * sum.norm());
+  EXPECT_GE(derivative(y, Part::remainder).norm(), 0.01 * sum.norm());
 }
 
 TEST_P(FirstOrder, HasTheConstantJacobianOfItsImplicitPart) {
-  const Eigen::MatrixXd J = ode.jacobian(t, y, Part::implicit);
+  const Eigen::MatrixXd J = ode.jacobian(t, y, Part::linear);
   const Eigen::VectorXd z = Eigen::VectorXd::LinSpaced(ode.size(), 3, -2);
-  EXPECT_LE((derivative(y + z, Part::implicit) - derivative(y, Part::implicit) - J * z).norm(), 1e-12 * (J * z).norm());
+  EXPECT_LE((derivative(y + z, Part::linear) - derivative(y, Part::linear) - J * z).norm(), 1e-12 * (J * z).norm());
 }
 
 TEST(Ida, YieldsTheForcesOfThePins) {
