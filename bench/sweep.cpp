@@ -19,26 +19,28 @@ std::string title(const Cell& cell) {
   return fmt::format("{} {} h = {} {}", cell.scene.name, cell.method_name(), cell.step, cell.overrides);
 }
 
-/// The reference that the runs of a group are measured by, or why there is none.
+/// What the runs of a group are measured by: their common scene, compiled once, and its reference or why there is none.
 struct Yardstick {
+  model::Cloth cloth;
   std::optional<reference::Reference> reference;
   std::string remark;
 };
 
-/// All cells of a group have the same scene.
 Yardstick find_reference(const model::Scene& scene, References& references) {
+  Yardstick yardstick{model::compile(scene), std::nullopt, ""};
   try {
-    return {references(scene, model::compile(scene)), ""};
+    yardstick.reference = references(scene, yardstick.cloth);
   } catch (const reference::ReferenceError& error) {
-    return {std::nullopt, fmt::format("no reference: {}", error.what())};
+    yardstick.remark = fmt::format("no reference: {}", error.what());
   }
+  return yardstick;
 }
 
 void measure_error(const Cell& cell, results::RunRecord& run, const Yardstick& yardstick) {
   if (!yardstick.reference)
     run.message += (run.message.empty() ? "" : "; ") + yardstick.remark;
   else if (run.outcome == to_string(solver::Outcome::success))
-    run.error = distance(run, *yardstick.reference, cell.scene, model::compile(cell.scene));
+    run.error = distance(run, *yardstick.reference, cell.scene, yardstick.cloth);
 }
 
 }  // namespace

@@ -108,6 +108,12 @@ TEST(Certificate, IsNotAskedForWherePerturbationsGrow) {
   EXPECT_NE(complaint(some_reference(), 5e-6, 201, 0.5), "");
 }
 
+TEST(Certificate, IsAskedForIfTheGrowthIsNotANumber) {
+  Reference reference = some_reference();
+  reference.growth[0] = std::nan("");
+  EXPECT_THAT(complaint(reference, 1e-6, 100, 1), HasSubstr("t = 0.1 s"));
+}
+
 TEST(Certificate, IsRefusedIfTheDisagreementIsNotANumber) {
   Reference reference = some_reference();
   reference.error[0] = std::nan("");
