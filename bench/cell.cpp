@@ -64,14 +64,16 @@ void choose_method(Cell& cell, const std::string& name) {
     throw std::invalid_argument(fmt::format("method '{}': expected {}, it solves no linear systems", name, cell.method->name));
 }
 
-results::RunRecord record(const Cell& cell) {
+results::RunRecord record(const Cell& cell, const solver::Observer& look) {
   const model::Cloth cloth = model::compile(cell.scene);
   const solver::SplitOde& ode = cloth.ode;
   results::RunRecord run = describe(cell, cloth.plan);
   solver::Integrator integrator(ode, *cell.method, cell.options, cloth.start);
+  if (look) look({0, 0, 0, 0, integrator.state(), {}});
   const solver::RunResult result = integrate(integrator, cell.scene.end, cell.step, [&](const solver::StepReport& step) {
     run.steps.push_back({step.t, step.h, step.updates, step.cg_iterations, solver::kinetic_energy(ode, step.y.v),
                          ode.potential_energy(step.t, step.y.x)});
+    if (look) look(step);
   });
   run.outcome = to_string(result.outcome);
   run.message = result.message;

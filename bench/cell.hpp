@@ -27,7 +27,7 @@ void choose_method(Cell& cell, const std::string& name);
 /// Cells that are compared with each other: repetitions are interleaved within a group and it is recorded as a whole.
 using Group = std::vector<Cell>;
 
-/// Runs a cell once and records everything but times and errors.
-results::RunRecord record(const Cell& cell);
+/// Runs a cell once and records everything but times and errors. `look` sees the start and every accepted step.
+results::RunRecord record(const Cell& cell, const solver::Observer& look = {});
 
 }  // namespace drape::bench

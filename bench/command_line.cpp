@@ -9,10 +9,12 @@
 
 #include "bench/argument_checks.hpp"
 #include "bench/choices.hpp"
+#include "bench/frames.hpp"
 #include "bench/studies.hpp"
 #include "bench/sweep.hpp"
 #include "bench/table_jobs.hpp"
 #include "model/scene_file.hpp"
+#include "results/atomic_file.hpp"
 #include "results/run_file.hpp"
 #include "results/runs_table.hpp"
 #include "solver/named.hpp"
@@ -41,6 +43,7 @@ struct Arguments {
   int repeat = 3;
   std::string out;
   std::string format = "table";
+  Frames frames;
   std::string command_line;
 };
 
@@ -128,6 +131,11 @@ void sweep_and_print(const std::vector<Group>& groups, const Arguments& a, const
   options.agreement = a.agreement;
   options.command_line = a.command_line;
   options.out = out_file(a, job);
+  if (!a.frames.folder.empty()) {
+    results::require_creatable(options.out);  // before a folder is made
+    make_folder(a.frames);
+    options.look = [&](const Cell& cell) { return frame_writer(cell, a.frames); };
+  }
   print_table(results::to_table(sweep(groups, options)), a.format);
   say_where(options.out, a.format);
 }
@@ -186,6 +194,17 @@ void add_solver_options(CLI::App& command, Arguments& a) {
       ->expected(2);
 }
 
+void add_frame_options(CLI::App& run, Arguments& a) {
+  CLI::Option* folder = run.add_option("--frames", a.frames.folder, "new folder for the runs as sequences of OBJ meshes")
+                            ->type_name("FOLDER")
+                            ->check(not_empty());
+  run.add_option("--every", a.frames.every, "simulated seconds between two frames")
+      ->type_name("SECONDS")
+      ->check(positive())
+      ->needs(folder)
+      ->capture_default_str();
+}
+
 void add_run(CLI::App& app, Arguments& a) {
   CLI::App& run = *app.add_subcommand("run", "run methods on a scene and compare them with the reference");
   run.add_option("--scene", a.scene, "built-in scene or TOML file")->required()->type_name("NAME|FILE.toml");
@@ -203,6 +222,7 @@ void add_run(CLI::App& app, Arguments& a) {
   run.add_option("--until", a.until, "end time in seconds [the scene's]")->type_name("T")->check(positive());
   run.add_option("--set", a.sets, "override a key of the scene (repeatable)")->type_name("key=value")->allow_extra_args(false);
   add_solver_options(run, a);
+  add_frame_options(run, a);
   add_output_options(run, a);
   run.footer(fmt::format("{}\n{}\n{}\n{}", paragraph("Scenes", scene_choices()), paragraph("Methods", method_choices()),
                          paragraph("Linear solvers", linear_solver_choices()),

@@ -72,14 +72,14 @@ void cg_iteration(benchmark::State& state, const solver::LinearSolver& linear_so
   constexpr int iterations = 10;
   const model::Cloth cloth = compile(sheet(static_cast<int>(state.range(0)), {}));
   const SparseMatrix A = stage_matrix(cloth.ode, 0.01);
-  solver::ConjugateGradients cg(linear_solver.make(), {}, iterations, *cloth.ode.work);
+  solver::ConjugateGradients cg(linear_solver.make(), iterations, *cloth.ode.work);
   cg.analyze(A);
   if (cg.factor(A) != solver::Outcome::success) return state.SkipWithError("the matrix is not positive definite");
   const Vectors b = perturbed(cloth.start.x, 1);
   Vectors r = b, d = b;
   for (auto _ : state) {
     r = b;
-    benchmark::DoNotOptimize(cg.solve(A, r, d, -std::numeric_limits<double>::infinity()));
+    benchmark::DoNotOptimize(cg.solve(A, {}, r, d, -std::numeric_limits<double>::infinity()));
   }
   per_particle(state, A.rows() * iterations);
 }

@@ -64,7 +64,7 @@ std::vector<results::RunRecord> sweep(const std::vector<Group>& groups, const Sw
     std::vector<results::RunRecord> runs;
     for (const Cell& cell : group) {
       progress.show(title(cell));
-      runs.push_back(record(cell));
+      runs.push_back(record(cell, options.look ? options.look(cell) : solver::Observer()));
       if (options.reference) measure_error(cell, runs.back(), yardstick);
       progress.advance();
     }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@ struct SweepOptions {
   double agreement = 1e-7;  ///< largest disagreement of the families behind a reference, over the size of the scene
   std::filesystem::path out;
   std::string command_line;
+  std::function<solver::Observer(const Cell&)> look;  ///< what sees the run of a cell that is recorded; may be empty
 };
 
 /// Runs all groups; after each its runs are on disk. Progress on a terminal; remarks on standard error. Throws

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "model/normals.hpp"
+#include "model/reaction.hpp"
 
 namespace drape::model {
 namespace {
@@ -118,6 +119,29 @@ int count_fixed(const std::vector<solver::Pin>& pins) {
   return count;
 }
 
+/// Lets the obstacles act, by constraints in the solver or by forces.
+void respond(const ContactRule& rule, const std::shared_ptr<Contacts>& contacts, solver::SplitOde& ode) {
+  if (rule.response == ResponseKind::constraint) {
+    ode.contacts = [contacts](double t, double h, const solver::State& y, std::vector<solver::Contact>& found) {
+      contacts->find(t, h, y, found);
+    };
+    return;
+  }
+  const auto reaction = std::make_shared<Reaction>(contacts, rule, ode.mass);
+  const auto whole = std::make_shared<Vectors>(ode.particles(), 3);
+  const auto force = ode.force;
+  ode.force = [=](double t, const Vectors& x, const Vectors& v, Vectors& f) {
+    force(t, x, v, f);
+    if (reaction->acts(t, x)) reaction->add(v, f, f);
+  };
+  ode.explicit_force = [=, rest = ode.explicit_force](double t, const Vectors& x, const Vectors& v, Vectors& f) {
+    rest(t, x, v, f);
+    if (!reaction->acts(t, x)) return;
+    force(t, x, v, *whole);
+    reaction->add(v, *whole, f);
+  };
+}
+
 }  // namespace
 
 Cloth compile(const Scene& scene) {
@@ -134,8 +158,13 @@ Cloth compile(const Scene& scene) {
   ode.jacobian = [forces](double t, const Vectors& x, const Vectors& v, SparseMatrix& df_dx, SparseMatrix& df_dv) {
     forces->jacobian(t, x, v, df_dx, df_dv);
   };
+  if (!scene.obstacles.empty()) {
+    cloth.contacts = std::make_shared<Contacts>(scene, *ode.work);
+    respond(scene.contact, cloth.contacts, ode);
+  }
   cloth.start = start(scene);
   solver::prescribe(ode.pins, cloth.start.v);
+  cloth.plan.obstacles = static_cast<int>(scene.obstacles.size());
   cloth.plan.particles = ode.particles();
   cloth.plan.pinned_dofs = count_fixed(ode.pins);
   cloth.plan.stiffness_entries = static_cast<int>(ode.stiffness.nonZeros());
@@ -144,10 +173,11 @@ Cloth compile(const Scene& scene) {
 }
 
 std::string to_string(const Plan& plan) {
-  return fmt::format("{} particles, {} of {} degrees of freedom pinned; forces: {}; normals: {}; entries of K: {}, of D: {}",
-                     plan.particles, plan.pinned_dofs, 3 * plan.particles,
-                     plan.terms.empty() ? "none" : fmt::format("{}", fmt::join(plan.terms, ", ")), plan.normals ? "yes" : "no",
-                     plan.stiffness_entries, plan.damping_entries);
+  return fmt::format(
+      "{} particles, {} of {} degrees of freedom pinned; forces: {}; normals: {}; obstacles: {}; entries of K: {}, of D: {}",
+      plan.particles, plan.pinned_dofs, 3 * plan.particles,
+      plan.terms.empty() ? "none" : fmt::format("{}", fmt::join(plan.terms, ", ")), plan.normals ? "yes" : "no", plan.obstacles,
+      plan.stiffness_entries, plan.damping_entries);
 }
 
 }  // namespace drape::model

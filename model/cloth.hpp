@@ -1,8 +1,10 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "model/contacts.hpp"
 #include "model/scene.hpp"
 
 namespace drape::model {
@@ -13,6 +15,7 @@ struct Plan {
   bool normals = false;            ///< whether any of them asks for normals
   int particles = 0;
   int pinned_dofs = 0;  ///< of 3N
+  int obstacles = 0;
   int stiffness_entries = 0, damping_entries = 0;
 };
 
@@ -21,6 +24,7 @@ struct Cloth {
   solver::SplitOde ode;
   solver::State start;
   Plan plan;
+  std::shared_ptr<Contacts> contacts;  ///< null without obstacles
 };
 
 /// Compiles a scene: only forces with nonzero coefficients are built, and normals only if one of these asks for them.

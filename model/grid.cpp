@@ -9,4 +9,10 @@ solver::Vectors Grid::parameters() const {
   return x;
 }
 
+Eigen::VectorXd Grid::cell_areas() const {
+  Eigen::VectorXd areas(particles());
+  for (int i = 0; i < particles(); ++i) areas[i] = cell_area(i % nu, i / nu);
+  return areas;
+}
+
 }  // namespace drape::model

@@ -36,6 +36,9 @@ struct Grid {
   /// Area that particle (a, b) stands for [m²].
   double cell_area(int a, int b) const { return cell_width_u(a) * cell_width_v(b); }
 
+  /// These areas of all particles [m²].
+  Eigen::VectorXd cell_areas() const;
+
   /// Positions (u, v) of all particles as (x, y), z = 0: N × 3 [m].
   solver::Vectors parameters() const;
 };

@@ -72,8 +72,7 @@ Term projected(const Grid& grid, LinearOperators operators) {
     for_each(evaluate->operators.viscous, [&](int i, int j, double b) { entries.add_dv(i, j, b * NN(i)); });
     const Vectors& q = (*evaluate)(c);
     for (int i = 0; i < q.rows(); ++i) {
-      const Eigen::Vector3d N = c.normals.row(i), qi = q.row(i);
-      const Eigen::Matrix3d by_N = N.dot(qi) * Eigen::Matrix3d::Identity() + N * qi.transpose();
+      const Eigen::Matrix3d by_N = projection_by_normal(q.row(i), c.normals.row(i));
       for (const auto& [j, dN] : normals.derivative(c.x, i)) entries.add_dx(i, j, by_N * dN);
     }
   };

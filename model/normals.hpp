@@ -27,4 +27,9 @@ class Normals {
   Grid grid_;
 };
 
+/// The derivative of <q, N> N, a projection onto a normal, by that normal.
+inline Eigen::Matrix3d projection_by_normal(const Eigen::Vector3d& q, const Eigen::Vector3d& N) {
+  return N.dot(q) * Eigen::Matrix3d::Identity() + N * q.transpose();
+}
+
 }  // namespace drape::model

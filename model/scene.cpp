@@ -1,8 +1,10 @@
 #include "model/scene.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
+#include <numbers>
 #include <string_view>
 #include <tuple>
 
@@ -48,6 +50,19 @@ std::vector<int> pinned_particles(const Grid& grid, const PinRule& rule) {
   return found;
 }
 
+/// Bends all lines along u, which are straight, into waves along z whose chords are as long as their edges are.
+void pleat(const Pleats& pleats, const Grid& grid, solver::Vectors& x) {
+  const double l = x(1, 0) - x(0, 0), steepest = pleats.degrees * std::numbers::pi / 180;
+  for (int a = 1; a < grid.nu; ++a) {
+    const double theta = steepest * std::sin(2 * std::numbers::pi * pleats.count * (a - 0.5) / (grid.nu - 1));
+    for (int b = 0; b < grid.nv; ++b) {
+      const int i = grid.index(a, b);
+      x(i, 0) = x(i - 1, 0) + l * std::cos(theta);
+      x(i, 2) = x(i - 1, 2) + l * std::sin(theta);
+    }
+  }
+}
+
 }  // namespace
 
 const std::vector<std::string>& pin_places() {
@@ -80,6 +95,7 @@ solver::State start(const Scene& scene) {
   y.x = scene.sheet.grid.parameters();
   y.x.col(0) *= scene.start.stretch.weft;
   y.x.col(1) *= scene.start.stretch.warp;
+  if (scene.start.pleats.count > 0) pleat(scene.start.pleats, scene.sheet.grid, y.x);
   if (scene.start.plane == Plane::vertical) y.x.col(1).swap(y.x.col(2));
   y.v = scene.start.velocity.transpose().replicate(y.x.rows(), 1);
   return y;
@@ -88,7 +104,8 @@ solver::State start(const Scene& scene) {
 double size(const Scene& scene) { return std::max(scene.sheet.grid.size_u, scene.sheet.grid.size_v); }
 
 double numerical_stiffness(const Scene& scene, double h) {
-  const auto& [grid, material, gravity] = scene.sheet;
+  const Grid& grid = scene.sheet.grid;
+  const Material& material = scene.sheet.material;
   const double lu = grid.spacing_u(), lv = grid.spacing_v();
   return h * h / material.density * std::max(material.tension.weft / (lu * lu), material.tension.warp / (lv * lv));
 }

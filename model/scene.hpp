@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "model/obstacle.hpp"
 #include "model/term.hpp"
 #include "solver/split_ode.hpp"
 
@@ -20,11 +21,32 @@ struct PinRule {
 
 enum class Plane { horizontal, vertical };  ///< u along x; v along y or along z
 
-/// Where and how the sheet begins: flat, stretched, moving as a whole.
+/// Waves along the weft, out of the plane of the sheet: a curtain. Edge k of a line has the direction
+/// θ_k = θ sin(2π count (k + ½)/(n_u − 1)), so that all keep their lengths.
+struct Pleats {
+  int count = 0;
+  double degrees = 0;  ///< θ, the steepest
+};
+
+/// Where and how the sheet begins: flat or pleated, stretched, moving as a whole.
 struct Start {
   Plane plane = Plane::horizontal;
   WeftWarp stretch{1, 1};
+  Pleats pleats;
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< [m/s]
+};
+
+enum class ResponseKind {
+  constraint,  ///< velocities of colliding particles are constrained in the step's linear systems [Etzmuß 2002, 4.4]
+  reaction,    ///< forces on colliding particles are replaced by a damped spring [Etzmuß 2002, 4.3]
+};
+
+/// How particles and obstacles meet.
+struct ContactRule {
+  double distance = 5e-3;   ///< d: what is nearer than this is in the collision area [m]
+  double relaxation = 0.5;  ///< ω: part of its depth in the collision area that a particle loses in a step (4.4)
+  ResponseKind response = ResponseKind::constraint;
+  double reaction_time = 0.02;  ///< τ [s]: the springs of reaction constraints have k = m/τ² and d = 2m/τ
 };
 
 /// A scene as people describe it. A value: copy it, change it, compile it.
@@ -33,6 +55,8 @@ struct Scene {
   std::string description;
   Sheet sheet;
   std::vector<PinRule> pins;
+  std::vector<ObstacleRule> obstacles;
+  ContactRule contact;
   Start start;
   double end = 1;  ///< [s]
 };

@@ -85,6 +85,9 @@ void check_together(const Scene& scene, const std::string& origin) {
     fail("material.bend_projected = false: expected true, the membrane acts along the normal only");
   if (bends && m.bend_projected && (grid.nu < 2 || grid.nv < 2))
     fail("material.bend: expected bend_form = \"plate\" with bend_projected = false, a chain has no normals");
+  if (scene.sheet.wind.needs_normals() && (grid.nu < 2 || grid.nv < 2))
+    fail("forces.wind: expected forces.drag = forces.lift, a chain has no normals");
+  if (scene.sheet.air != 0 && (grid.nu < 2 || grid.nv < 2)) fail("forces.air: expected 0, a chain has no normals");
   const std::vector<solver::Pin> all = pins(scene);
   if (std::ssize(all) == grid.particles() && std::ranges::all_of(all, &solver::Pin::all))
     fail("pins: expected at least one coordinate that is free to move");

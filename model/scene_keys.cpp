@@ -4,6 +4,9 @@
 
 #include <algorithm>
 
+#include "model/obstacle_keys.hpp"
+#include "model/toml_text.hpp"
+
 namespace drape::model {
 namespace {
 
@@ -12,20 +15,8 @@ constexpr std::string_view shear_forms[] = {"conservative", "printed"};
 constexpr std::string_view bend_forms[] = {"membrane", "plate", "printed"};
 constexpr std::string_view border_cells[] = {"dual", "whole"};
 constexpr std::string_view planes[] = {"horizontal", "vertical"};
+constexpr std::string_view responses[] = {"constraint", "reaction"};
 constexpr std::string_view pin_keys[] = {"where", "particles", "directions", "velocity"};
-
-std::string in_quotes(std::string_view text) {
-  std::ostringstream out;
-  const toml::value<std::string> value{std::string(text)};
-  out << toml::toml_formatter{value, toml::format_flags::allow_unicode_strings};  // literal and multi-line ones lose characters
-  return out.str();
-}
-std::string written(const WeftWarp& m) { return fmt::format("[{}, {}]", m.weft, m.warp); }
-std::string written(const Eigen::Vector3d& a) { return fmt::format("[{}, {}, {}]", a[0], a[1], a[2]); }
-template <class Enum>
-std::string written(std::span<const std::string_view> names, Enum value) {
-  return in_quotes(names[static_cast<std::size_t>(value)]);
-}
 
 std::array<bool, 3> read_directions(const Value& value) {
   const std::string text = value.text();
@@ -69,7 +60,7 @@ PinRule read_pin(const Value& value, const Grid& grid) {
   return rule;
 }
 
-std::string written(const PinRule& rule) {
+std::string written_pin(const PinRule& rule) {
   std::string directions;
   for (int c = 0; c < 3; ++c)
     if (rule.directions[c]) directions += static_cast<char>('x' + c);
@@ -80,12 +71,6 @@ std::string written(const PinRule& rule) {
     place += "]";
   }
   return fmt::format("{{ {}, directions = \"{}\", velocity = {} }}", place, directions, written(rule.velocity));
-}
-
-std::string written(const std::vector<PinRule>& rules) {
-  std::string text = "[";
-  for (const PinRule& rule : rules) text += (text.size() > 1 ? ", " : "") + written(rule);
-  return text + "]";
 }
 
 void read_grid_n(const Value& value, Scene& scene) {
@@ -100,6 +85,20 @@ void read_grid_n(const Value& value, Scene& scene) {
   constexpr double most = 1e7;
   if (grid.nu * static_cast<double>(grid.nv) < 2) value.fail("at least 2 particles");
   if (grid.nu * static_cast<double>(grid.nv) > most) value.fail("at most ten million particles");
+}
+
+void read_pleats(const Value& value, Scene& scene) {
+  const std::vector<Value> parts = value.list(2);
+  const double count = parts[0].non_negative(), degrees = parts[1].non_negative();
+  const int most = (scene.sheet.grid.nu - 1) / 2;
+  if (count > most || count != static_cast<int>(count) || degrees >= 90)
+    value.fail(fmt::format("a whole number of at most {} waves, for two edges each, and an angle below 90 degrees", most));
+  scene.start.pleats = {static_cast<int>(count), degrees};
+}
+
+void read_relaxation(const Value& value, Scene& scene) {
+  scene.contact.relaxation = value.positive();
+  if (scene.contact.relaxation > 1) value.fail("a number above 0 and at most 1");
 }
 
 constexpr SceneKey table[] = {
@@ -164,12 +163,51 @@ constexpr SceneKey table[] = {
 
     {"forces.gravity", "[x, y, z] in m/s²", [](const Value& v, Scene& s) { s.sheet.gravity = v.vector(); },
      [](const Scene& s) { return written(s.sheet.gravity); }},
+    {"forces.wind", "w: [x, y, z] in N/m²; the wind is (a + sin ωt) w",
+     [](const Value& v, Scene& s) { s.sheet.wind.load = v.vector(); },
+     [](const Scene& s) { return written(s.sheet.wind.load); }},
+    {"forces.wind_constant", "a: the steady part of the wind",
+     [](const Value& v, Scene& s) { s.sheet.wind.constant = v.number(); },
+     [](const Scene& s) { return fmt::format("{}", s.sheet.wind.constant); }},
+    {"forces.wind_frequency", "ω [rad/s]; 0: a steady wind",
+     [](const Value& v, Scene& s) { s.sheet.wind.frequency = v.non_negative(); },
+     [](const Scene& s) { return fmt::format("{}", s.sheet.wind.frequency); }},
+    {"forces.drag", "c_drag: part of the wind that acts along the normals",
+     [](const Value& v, Scene& s) { s.sheet.wind.drag = v.non_negative(); },
+     [](const Scene& s) { return fmt::format("{}", s.sheet.wind.drag); }},
+    {"forces.lift", "c_lift: part of the wind that acts across the normals",
+     [](const Value& v, Scene& s) { s.sheet.wind.lift = v.non_negative(); },
+     [](const Scene& s) { return fmt::format("{}", s.sheet.wind.lift); }},
+    {"forces.air", "c_w ρ_air [N s/m³]: resistance of the air to motion across the sheet",
+     [](const Value& v, Scene& s) { s.sheet.air = v.non_negative(); },
+     [](const Scene& s) { return fmt::format("{}", s.sheet.air); }},
 
     {"pins", "list of { where | particles, directions, velocity }: prescribed motion",
      [](const Value& v, Scene& s) {
        for (const Value& pin : v.list()) s.pins.push_back(read_pin(pin, s.sheet.grid));
      },
-     [](const Scene& s) { return written(s.pins); }},
+     [](const Scene& s) { return written_list(s.pins, written_pin); }},
+
+    {"obstacles",
+     "list of { shape = plane | sphere | box | cylinder | mesh, size | radius | height | file | scale, friction, position, "
+     "rotation | motion = [{ time, position, rotation }, ...] }: a rotation is an axis times degrees; between two key frames "
+     "an obstacle turns the shorter way, by less than half a turn",
+     [](const Value& v, Scene& s) {
+       for (const Value& obstacle : v.list()) s.obstacles.push_back(read_obstacle(obstacle));
+     },
+     [](const Scene& s) { return written_list<ObstacleRule>(s.obstacles, written); }},
+    {"contact.distance", "d [m]: what is nearer to an obstacle than this is in its collision area",
+     [](const Value& v, Scene& s) { s.contact.distance = v.positive(); },
+     [](const Scene& s) { return fmt::format("{}", s.contact.distance); }},
+    {"contact.relaxation", "ω: part of its depth in the collision area that a particle loses in a step", read_relaxation,
+     [](const Scene& s) { return fmt::format("{}", s.contact.relaxation); }},
+    {"contact.response",
+     "\"constraint\" (of velocities in the linear systems) or \"reaction\" (damped springs instead of forces)",
+     [](const Value& v, Scene& s) { s.contact.response = static_cast<ResponseKind>(v.one_of(responses)); },
+     [](const Scene& s) { return written(responses, s.contact.response); }},
+    {"contact.reaction_time", "τ [s]: the springs of reactions have k = m/τ² and d = 2m/τ",
+     [](const Value& v, Scene& s) { s.contact.reaction_time = v.positive(); },
+     [](const Scene& s) { return fmt::format("{}", s.contact.reaction_time); }},
 
     {"start.plane", "\"horizontal\" (v along y) or \"vertical\" (v along z)",
      [](const Value& v, Scene& s) { s.start.plane = static_cast<Plane>(v.one_of(planes)); },
@@ -177,6 +215,8 @@ constexpr SceneKey table[] = {
     {"start.stretch", "factors along weft and warp at t = 0",
      [](const Value& v, Scene& s) { s.start.stretch = v.weft_warp(&Value::positive); },
      [](const Scene& s) { return written(s.start.stretch); }},
+    {"start.pleats", "[count, degrees]: waves along the weft without strain, and how steep they are at t = 0", read_pleats,
+     [](const Scene& s) { return fmt::format("[{}, {}]", s.start.pleats.count, s.start.pleats.degrees); }},
     {"start.velocity", "[x, y, z] in m/s of all particles at t = 0",
      [](const Value& v, Scene& s) { s.start.velocity = v.vector(); }, [](const Scene& s) { return written(s.start.velocity); }},
 

@@ -14,6 +14,8 @@ std::span<const TermKind> term_kinds() {
       {"plate", "thin-plate bending (2.26) with its viscous part", make_plate},
       {"printed-plate", "thin-plate bending as Algorithm 4 prints it", make_printed_plate},
       {"gravity", "weight", make_gravity},
+      {"wind", "wind, divided by the normals into drag and lift (2.35), (2.36)", make_wind},
+      {"air", "resistance of the air (2.37), against the motion", make_air},
   };
   return table;
 }

@@ -80,6 +80,10 @@ const toml::table& Value::table() const {
   return *node_.as_table();
 }
 
+std::filesystem::path Value::folder() const {
+  return origin_.ends_with(".toml") ? std::filesystem::path(origin_).parent_path() : std::filesystem::path();
+}
+
 Eigen::Vector3d Value::vector() const {
   const std::vector<Value> values = list(3);
   return {values[0].number(), values[1].number(), values[2].number()};

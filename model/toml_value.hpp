@@ -2,6 +2,7 @@
 
 #include <toml++/toml.h>
 
+#include <filesystem>
 #include <span>
 #include <string>
 #include <string_view>
@@ -31,6 +32,10 @@ class Value {
   std::vector<Value> list(std::size_t size) const;  ///< an array of so many values
   std::vector<Value> list() const;                  ///< an array
   const toml::table& table() const;
+
+  /// The folder of the scene's file; of overrides and built-in scenes the working folder.
+  std::filesystem::path folder() const;
+
   bool is_list() const { return node_.is_array(); }
 
   /// A node inside this one, called "key.name".

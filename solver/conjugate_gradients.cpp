@@ -7,12 +7,8 @@
 
 namespace drape::solver {
 
-ConjugateGradients::ConjugateGradients(std::unique_ptr<Preconditioner> preconditioner, std::vector<Pin> filtered,
-                                       int max_iterations, Work& work)
-    : preconditioner_(std::move(preconditioner)),
-      filtered_(std::move(filtered)),
-      max_iterations_(max_iterations),
-      work_(work) {}
+ConjugateGradients::ConjugateGradients(std::unique_ptr<Preconditioner> preconditioner, int max_iterations, Work& work)
+    : preconditioner_(std::move(preconditioner)), max_iterations_(max_iterations), work_(work) {}
 
 void ConjugateGradients::analyze(const SparseMatrix& A) {
   preconditioner_->analyze(A);
@@ -24,7 +20,7 @@ Outcome ConjugateGradients::factor(const SparseMatrix& A) {
   return preconditioner_->factor(A);
 }
 
-LinearResult ConjugateGradients::solve(const SparseMatrix& A, Vectors& r, Vectors& d, double target) {
+LinearResult ConjugateGradients::solve(const SparseMatrix& A, const Filter& filter, Vectors& r, Vectors& d, double target) {
   const auto n = A.rows();
   d.setZero();
   double rz = 0;
@@ -36,8 +32,8 @@ LinearResult ConjugateGradients::solve(const SparseMatrix& A, Vectors& r, Vector
 
     const double previous = rz;
     rz = preconditioner_->apply(r, z_);
-    if (!filtered_.empty()) {
-      filter(filtered_, z_);
+    if (!filter.empty()) {
+      filter(z_);
       rz = r.cwiseProduct(z_).sum();
     }
     if (k == 0)
@@ -45,8 +41,8 @@ LinearResult ConjugateGradients::solve(const SparseMatrix& A, Vectors& r, Vector
     else
       p_ = z_ + (rz / previous) * p_;
     double pq = multiply(A, p_, q_);
-    if (!filtered_.empty()) {
-      filter(filtered_, q_);
+    if (!filter.empty()) {
+      filter(q_);
       pq = p_.cwiseProduct(q_).sum();
     }
     ++work_.cg_iterations;

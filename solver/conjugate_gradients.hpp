@@ -1,12 +1,11 @@
 #pragma once
 
 #include <memory>
-#include <vector>
 
+#include "solver/filter.hpp"
 #include "solver/linear_work.hpp"
 #include "solver/outcome.hpp"
 #include "solver/preconditioner.hpp"
-#include "solver/split_ode.hpp"
 
 namespace drape::solver {
 
@@ -15,12 +14,10 @@ struct LinearResult {
   int iterations = 0;
 };
 
-/// Preconditioned conjugate gradients for A d = r, all three coordinates as one system, restricted to the coordinates that
-/// `filtered` leaves free [Etzmuß 2002, 3.4.2 and Alg. 7].
+/// Preconditioned conjugate gradients for A d = r, all three coordinates as one system [Etzmuß 2002, 3.4.2].
 class ConjugateGradients {
  public:
-  /// `filtered`: pins whose particles still have free coordinates; the others are expected to be gone from A.
-  ConjugateGradients(std::unique_ptr<Preconditioner> preconditioner, std::vector<Pin> filtered, int max_iterations, Work& work);
+  ConjugateGradients(std::unique_ptr<Preconditioner> preconditioner, int max_iterations, Work& work);
 
   /// Prepares for a pattern; allocates all that later calls need.
   void analyze(const SparseMatrix& A);
@@ -28,12 +25,12 @@ class ConjugateGradients {
   /// Prepares for new values.
   Outcome factor(const SparseMatrix& A);
 
-  /// Solves A d = r from d = 0 until |residual| ≤ target (Euclidean norm). r is overwritten with the residual.
-  LinearResult solve(const SparseMatrix& A, Vectors& r, Vectors& d, double target);
+  /// Solves P A P d = r from d = 0 until |residual| ≤ target (Euclidean norm), where P is the filter and P r = r
+  /// [Etzmuß 2002, Alg. 7]: d keeps to the free directions. r is overwritten with the residual.
+  LinearResult solve(const SparseMatrix& A, const Filter& filter, Vectors& r, Vectors& d, double target);
 
  private:
   std::unique_ptr<Preconditioner> preconditioner_;
-  std::vector<Pin> filtered_;
   int max_iterations_;
   Vectors z_, p_, q_;
   LinearWork work_;

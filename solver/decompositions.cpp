@@ -13,6 +13,8 @@ SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& A) {
   return {eigen.eigenvalues(), eigen.eigenvectors()};
 }
 
+Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& A) { return A.completeOrthogonalDecomposition().pseudoInverse(); }
+
 std::function<Eigen::VectorXd(const Eigen::VectorXd& b)> lu_inverse(const Eigen::SparseMatrix<double>& A) {
   const auto lu = std::make_shared<const Eigen::SparseLU<Eigen::SparseMatrix<double>>>(A);
   if (lu->info() != Eigen::Success) return {};

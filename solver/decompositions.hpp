@@ -19,6 +19,9 @@ struct SymmetricEigen {
 /// Eigenvalues and eigenvectors of a symmetric matrix, of which only the lower triangle is read.
 SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& A);
 
+/// The pseudo-inverse of a small matrix.
+Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& A);
+
 /// b ↦ A⁻¹ b by sparse LU decomposition with pivoting; empty if A is singular.
 std::function<Eigen::VectorXd(const Eigen::VectorXd& b)> lu_inverse(const Eigen::SparseMatrix<double>& A);
 

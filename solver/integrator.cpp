@@ -15,6 +15,9 @@ constexpr double same_step = 1e-9;  ///< relative difference of steps that is ro
 /// Below this part of the first step a run counts as stuck.
 constexpr double smallest_step = 1e-6;
 
+/// Part of the kinetic energy that an impact must stop to be a hard one.
+constexpr double hard_impact = 1e-2;
+
 /// A sum is finite only if all its terms are, and it is vectorised where a test of each would not be.
 bool finite(const State& y) { return std::isfinite(y.x.sum() + y.v.sum()); }
 
@@ -49,7 +52,12 @@ Integrator::Integrator(const SplitOde& ode, const Method& method, const Options&
       steps_(ode.work->counter("steps", "accepted steps")),
       rejected_(ode.work->counter("rejected_steps", "steps that failed and were not passed on")) {
   const LinearWork registered(*ode.work);  // so that explicit methods record zeros
-  if (method.implicit()) step_.stage = &stage_.emplace(ode, options_);
+  if (method.implicit()) {
+    ContactResponse* const contacts = ode.contacts ? &contacts_.emplace(ode) : nullptr;
+    step_.stage = &stage_.emplace(ode, options_, contacts);
+  } else if (ode.contacts) {
+    step_.impacts = &impacts_.emplace(ode);
+  }
 
   prescribe(ode.pins, y0.v);
   const Vectors force = method.keeps_force ? Vectors::Zero(ode.particles(), 3) : Vectors();
@@ -63,6 +71,7 @@ StageResult Integrator::step(double h) {
   step_.w = method_.two_step && h_before_ > 0 ? h / h_before_ : 0;
   step_.next.has_f = false;
   step_.result = {};
+  begin_contacts(h);
   method_.step(step_);
   StageResult& result = step_.result;
   if (result.outcome == Outcome::success && !finite(step_.next.y)) result.outcome = Outcome::not_finite;
@@ -71,11 +80,33 @@ StageResult Integrator::step(double h) {
     return result;
   }
   ++steps_;
+  h_before_ = h;
+  finish_contacts();
   if (method_.two_step) std::swap(step_.before, step_.now);
   std::swap(step_.now, step_.next);
-  h_before_ = h;
   advance_time(h);
   return result;
+}
+
+void Integrator::begin_contacts(double h) {
+  if (contacts_) contacts_->begin(step_.t, h, step_.now.y);
+  if (impacts_) impacts_->begin(step_.t, h, step_.now.y);
+}
+
+/// Velocities jump at contacts: where they were changed in the history, forces must be found anew, and after a hard impact,
+/// which makes the neighbours' velocities jump too, a method begins without history.
+void Integrator::finish_contacts() {
+  if (!contacts_) return;
+  const double kinetic = method_.two_step ? kinetic_energy(step_.ode, step_.now.y.v) : 0;
+  const Impact impact = contacts_->finish(step_.next.y, step_.now.y);
+  if (impact.happened) step_.now.has_f = false;
+  if (impact.energy > hard_impact * kinetic) h_before_ = 0;
+}
+
+ContactReport Integrator::contacts() const {
+  if (contacts_) return {contacts_->constrained(), contacts_->impulse()};
+  if (impacts_) return {impacts_->constrained(), impacts_->impulse()};
+  return {};
 }
 
 /// Compensated, or the round-off of a million steps would be a part of a step.
@@ -98,7 +129,8 @@ RunResult integrate(Integrator& integrator, double t_end, double h, const Observ
     if (result.outcome == Outcome::success) {
       ++run.steps;
       run.last_good_time = integrator.time();
-      if (observer) observer({integrator.time(), size, result.updates, result.cg_iterations, integrator.state()});
+      if (observer)
+        observer({integrator.time(), size, result.updates, result.cg_iterations, integrator.state(), integrator.contacts()});
       if (control.enabled()) h = controlled(control, h, result.updates);
       continue;
     }

@@ -8,6 +8,12 @@
 
 namespace drape::solver {
 
+/// What obstacles did in one step.
+struct ContactReport {
+  int constrained = 0;                                ///< particles that touched something
+  Eigen::Vector3d impulse = Eigen::Vector3d::Zero();  ///< given to the particles [N s]
+};
+
 /// Advances one ODE by one method. A step that fails leaves time and state as they were.
 class Integrator {
  public:
@@ -23,11 +29,18 @@ class Integrator {
   const State& state() const { return step_.now.y; }
   const Options& options() const { return options_; }
 
+  /// What obstacles did in the last step.
+  ContactReport contacts() const;
+
  private:
+  void begin_contacts(double h);
+  void finish_contacts();
   void advance_time(double h);
 
   const Options options_;
   const Method& method_;
+  std::optional<ContactResponse> contacts_;  ///< of implicit methods
+  std::optional<ImpactResponse> impacts_;    ///< of explicit ones
   std::optional<StageSolver> stage_;
   Step step_;
   double h_before_ = 0;
@@ -42,6 +55,7 @@ struct StepReport {
   int updates;
   int cg_iterations;
   const State& y;
+  ContactReport contacts;
 };
 using Observer = std::function<void(const StepReport&)>;
 

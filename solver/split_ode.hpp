@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "solver/contact.hpp"
 #include "solver/state.hpp"
 #include "solver/work.hpp"
 
@@ -38,6 +39,9 @@ struct SplitOde {
 
   /// ∂f/∂x and ∂f/∂v of the whole force, 3N × 3N; coordinate c of particle i has the index 3i + c.
   std::function<void(double t, const Vectors& x, const Vectors& v, SparseMatrix& df_dx, SparseMatrix& df_dv)> jacobian;
+
+  /// Finds what particles may touch in a step from t to t + h, ordered by particle; absent: there are no obstacles.
+  std::function<void(double t, double h, const State& y, std::vector<Contact>& found)> contacts;
 
   std::shared_ptr<Work> work = std::make_shared<Work>();
 

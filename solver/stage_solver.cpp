@@ -10,12 +10,6 @@
 namespace drape::solver {
 namespace {
 
-std::vector<Pin> partial(const std::vector<Pin>& pins) {
-  std::vector<Pin> found;
-  std::ranges::copy_if(pins, std::back_inserter(found), [](const Pin& pin) { return !pin.all(); });
-  return found;
-}
-
 /// The pattern of M − γ² K − γ D without the rows and columns of particles that are pinned in all directions.
 SparseMatrix stage_pattern(const SplitOde& ode) {
   std::vector<bool> gone(ode.particles(), false);
@@ -46,14 +40,18 @@ Eigen::ArrayXd thrice(const Eigen::VectorXd& values) { return values.replicate(1
 auto flat(const Vectors& a) { return Eigen::ArrayXd::Map(a.data(), a.size()); }
 auto flat(Vectors& a) { return Eigen::ArrayXd::Map(a.data(), a.size()); }
 
+constexpr double operations = 8;  ///< roundings that add up in the force on one particle
+
 SparseMatrix diagonal(const Eigen::VectorXd& mass) { return SparseMatrix(mass.asDiagonal()); }
 
 }  // namespace
 
-StageSolver::StageSolver(const SplitOde& ode, const Options& options)
+StageSolver::StageSolver(const SplitOde& ode, const Options& options, ContactResponse* contacts)
     : ode_(ode),
       options_(options),
-      cg_(options.linear_solver->make(), partial(ode.pins), options.max_cg_iterations, *ode.work),
+      contacts_(contacts),
+      pinned_(Filter::partial(ode.pins)),
+      cg_(options.linear_solver->make(), options.max_cg_iterations, *ode.work),
       A_(stage_pattern(ode)),
       mass_(aligned(A_, diagonal(ode.mass))),
       stiffness_(aligned(A_, ode.stiffness)),
@@ -79,77 +77,89 @@ Outcome StageSolver::prepare(double gamma) {
 /// |b| = |r + A v| over the free coordinates. At rest b vanishes like r does, but for the round-off of differences of
 /// positions times spring constants, which a relative test alone would never get below.
 StageSolver::Scale StageSolver::scale(const Vectors& residual, const State& y, double gamma) {
-  constexpr double operations = 8;                                         // roundings that add up in the force on one particle
   const double underflow = std::sqrt(std::numeric_limits<double>::min());  // squares of what is smaller vanish
   multiply(A_, y.v, q_);
   ++work_.products;
   work_.bytes += multiply_bytes(A_) + vector_bytes(A_.rows(), 3);
   q_ += residual;
   filter(ode_.pins, q_);
+  filtered()(q_);
   const double forces = (spring_ * flat(y.x)).matrix().norm();
   return {q_.norm(), operations * std::numeric_limits<double>::epsilon() * gamma * forces + underflow};
 }
 
-/// r = M (av − v) + γ f over the free coordinates; f may be r.
-void StageSolver::form_residual(const Stage& stage, const Vectors& v, const Vectors& f) {
-  flat(r_) = momentum_ * (flat(stage.av) - flat(v)) + stage.gamma * flat(f);
+/// x = ax + γ v and r = M (av − v) + γ f in all coordinates; f = K x + D v + f̂ if f̂ is given.
+void StageSolver::evaluate(const Stage& stage, const Vectors* f_explicit, State& y) {
+  y.x = stage.ax + stage.gamma * y.v;
+  if (touches()) contacts_->impose(stage, y);
+  if (f_explicit == nullptr) {
+    ode_.force(stage.t, y.x, y.v, r_);
+  } else {
+    multiply(ode_.stiffness, y.x, r_);
+    ++work_.products;
+    work_.bytes += multiply_bytes(ode_.stiffness) + vector_bytes(A_.rows(), 8);
+    if (ode_.damping.nonZeros() > 0) {
+      multiply(ode_.damping, y.v, q_);
+      r_ += q_;
+      ++work_.products;
+      work_.bytes += multiply_bytes(ode_.damping) + vector_bytes(A_.rows(), 3);
+    }
+    r_ += *f_explicit;
+  }
+  flat(r_) = momentum_ * (flat(stage.av) - flat(y.v)) + stage.gamma * flat(r_);
+}
+
+void StageSolver::filter_residual(double gamma) {
+  if (touches()) contacts_->add_friction(gamma, r_);
   filter(ode_.pins, r_);
+  filtered()(r_);
 }
 
 StageResult StageSolver::solve_linear(const Stage& stage, const Vectors& f_explicit, State& y) {
-  StageResult result;
-  result.outcome = prepare(stage.gamma);
-  if (result.outcome != Outcome::success) return result;
-  prescribe(ode_.pins, y.v);
-  const double gamma = stage.gamma;
-
-  // r = M (av − v) + γ (K (ax + γ v) + D v + f̂)
-  y.x = stage.ax + gamma * y.v;
-  multiply(ode_.stiffness, y.x, r_);
-  if (ode_.damping.nonZeros() > 0) {
-    multiply(ode_.damping, y.v, q_);
-    r_ += q_;
-    ++work_.products;
-    work_.bytes += multiply_bytes(ode_.damping) + vector_bytes(A_.rows(), 3);
-  }
-  ++work_.products;
-  work_.bytes += multiply_bytes(ode_.stiffness) + vector_bytes(A_.rows(), 8);
-  r_ += f_explicit;
-  form_residual(stage, y.v, r_);
-
-  const double target = scale(r_, y, gamma).target(options_.cg_tolerance);
-  const LinearResult linear = cg_.solve(A_, r_, d_, target);
-  ++work_.updates;
-  y.v += d_;
-  y.x = stage.ax + gamma * y.v;
-  return {linear.outcome, 1, linear.iterations};
+  return solve(stage, &f_explicit, y);
 }
 
-StageResult StageSolver::solve(const Stage& stage, State& y) {
+StageResult StageSolver::solve(const Stage& stage, State& y) { return solve(stage, nullptr, y); }
+
+StageResult StageSolver::solve(const Stage& stage, const Vectors* f_explicit, State& y) {
   StageResult result;
   result.outcome = prepare(stage.gamma);
   if (result.outcome != Outcome::success) return result;
   prescribe(ode_.pins, y.v);
-  const double gamma = stage.gamma;
+  const auto ended = [&](Outcome outcome) { return StageResult{outcome, result.updates, result.cg_iterations}; };
 
-  const double cg_tolerance = std::min(options_.cg_tolerance, options_.loop_tolerance / 2);  // or the loop could not end
+  const bool linear = f_explicit != nullptr, contacts = touches();
+  const double loop_tolerance = linear ? options_.cg_tolerance : options_.loop_tolerance;
+  const double cg_tolerance =
+      linear ? loop_tolerance : std::min(options_.cg_tolerance, loop_tolerance / 2);  // or it could not end
+  const int changing_updates = linear ? 10 : 50;
   Scale size{};
   for (;; ++result.updates, ++work_.updates) {
-    y.x = stage.ax + gamma * y.v;
-    ode_.force(stage.t, y.x, y.v, r_);
-    form_residual(stage, y.v, r_);
-    if (result.updates == 0) size = scale(r_, y, gamma);
+    evaluate(stage, f_explicit, y);
+    const bool solved = result.updates > 0;
+    const bool changed =
+        contacts && solved && contacts_->update(stage, y, r_, size.target(loop_tolerance), result.updates >= changing_updates);
+    if (changed) evaluate(stage, f_explicit, y);
+    const double whole = contacts ? r_.norm() : 0;
+    filter_residual(stage.gamma);
+    if (!solved) size = scale(r_, y, stage.gamma);
+    size.round_off = std::max(size.round_off, operations * std::numeric_limits<double>::epsilon() * whole);
 
     const double residual = r_.norm();
-    const double tolerance = result.updates == 0 ? cg_tolerance : options_.loop_tolerance;
-    if (!std::isfinite(residual)) return {Outcome::not_finite, result.updates, result.cg_iterations};
-    if (residual <= size.target(tolerance)) return {Outcome::success, result.updates, result.cg_iterations};
-    if (result.updates == options_.max_updates) return {Outcome::not_converged, result.updates, result.cg_iterations};
+    if (!std::isfinite(residual)) return ended(Outcome::not_finite);
+    const bool guessed = !linear && !contacts && residual <= size.target(cg_tolerance);
+    if (solved ? !changed && residual <= size.target(loop_tolerance) : guessed) return ended(Outcome::success);
+    if (result.updates == options_.max_updates) return ended(Outcome::not_converged);
 
-    const LinearResult linear = cg_.solve(A_, r_, d_, size.target(cg_tolerance));
-    result.cg_iterations += linear.iterations;
-    if (linear.outcome != Outcome::success) return {linear.outcome, result.updates, result.cg_iterations};
+    const LinearResult system = cg_.solve(A_, filtered(), r_, d_, size.target(cg_tolerance));
+    result.cg_iterations += system.iterations;
     y.v += d_;
+    if (linear && !contacts) {
+      y.x = stage.ax + stage.gamma * y.v;
+      ++work_.updates;
+      return {system.outcome, 1, system.iterations};
+    }
+    if (system.outcome != Outcome::success) return ended(system.outcome);
   }
 }
 

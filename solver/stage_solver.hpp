@@ -3,19 +3,11 @@
 #include <algorithm>
 
 #include "solver/conjugate_gradients.hpp"
+#include "solver/contact_response.hpp"
 #include "solver/options.hpp"
+#include "solver/stage.hpp"
 
 namespace drape::solver {
-
-/// The implicit stage to which every method reduces: given γ, ax, av find (x, v) with
-///
-///     x = ax + γ v,     M v = M av + γ f(t, x, v).
-struct Stage {
-  double gamma;  ///< [s]
-  double t;      ///< [s], where f is evaluated
-  const Vectors& ax;
-  const Vectors& av;
-};
 
 struct StageResult {
   Outcome outcome = Outcome::success;
@@ -29,9 +21,11 @@ struct StageResult {
 /// with a first guess of v; its prescribed velocities are set here. No call but the constructor allocates.
 class StageSolver {
  public:
-  StageSolver(const SplitOde& ode, const Options& options);
+  /// `contacts`: the response to contacts, null if there are no obstacles.
+  StageSolver(const SplitOde& ode, const Options& options, ContactResponse* contacts = nullptr);
 
-  /// The stage with f = K x + D v + f̂ and given f̂: one linear system   [Etzmuß 2002, (3.23), (3.30)].
+  /// The stage with f = K x + D v + f̂ and given f̂: one linear system   [Etzmuß 2002, (3.23), (3.30)], and one more
+  /// whenever contacts change.
   StageResult solve_linear(const Stage& stage, const Vectors& f_explicit, State& y);
 
   /// The whole stage by the fixed-point loop: a simplified Newton method with A for the Jacobian
@@ -46,11 +40,17 @@ class StageSolver {
   };
 
   Outcome prepare(double gamma);
-  void form_residual(const Stage& stage, const Vectors& v, const Vectors& f);
+  StageResult solve(const Stage& stage, const Vectors* f_explicit, State& y);
+  bool touches() const { return contacts_ != nullptr && !contacts_->empty(); }
+  const Filter& filtered() const { return touches() ? contacts_->filter() : pinned_; }
+  void evaluate(const Stage& stage, const Vectors* f_explicit, State& y);
+  void filter_residual(double gamma);
   Scale scale(const Vectors& residual, const State& y, double gamma);
 
   const SplitOde& ode_;
   const Options options_;
+  ContactResponse* const contacts_;
+  const Filter pinned_;  ///< partially pinned particles
   ConjugateGradients cg_;
   SparseMatrix A_;
   Eigen::ArrayXd mass_, stiffness_, damping_;  // each aligned with the entries of A

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "solver/impact_response.hpp"
 #include "solver/stage_solver.hpp"
 
 namespace drape::solver {
@@ -26,8 +27,9 @@ struct Step {
 
   Vectors ax, av, f_hat;  ///< scratch, N × 3
 
-  double explicit_limit = 0;  ///< largest stable sub-step of `verlet` [s], 0 until it is known
-  std::int64_t& substeps;     ///< work counter
+  ImpactResponse* impacts = nullptr;  ///< for explicit methods; null if there are no obstacles
+  double explicit_limit = 0;          ///< largest stable sub-step of `verlet` [s], 0 until it is known
+  std::int64_t& substeps;             ///< work counter
 
   StageResult result;
 

@@ -110,7 +110,8 @@ TEST_P(Allocations, DoNotHappenInStepsOfAHungSheet) {
 }
 
 TEST_P(Allocations, DoNotHappenInStepsWithAllForces) {
-  EXPECT_EQ(of_steps(model::compile(model::load_scene("pulled")), options), 0);
+  const model::Override windy[] = {{"forces.wind", "[1, 2, 3]"}, {"forces.lift", "0.5"}, {"forces.air", "0.1"}};
+  EXPECT_EQ(of_steps(model::compile(model::load_scene("pulled", windy)), options), 0);
 }
 
 TEST_P(Allocations, AreSeenIfTheForceAllocates) {

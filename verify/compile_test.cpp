@@ -68,6 +68,8 @@ TEST(Compile, CountsThePresentForcesAndLeavesTheAbsentAtZero) {
   EXPECT_THAT(work_of(cloth_of("unprojected_plate")), with(Pair("force/plate", 5)));
   EXPECT_THAT(work_of(cloth_of("gravity")), with(Pair("force/gravity", 1)));  // it never changes
   EXPECT_THAT(work_of(cloth_of("plate")), with(Pair("force/plate", 5), Pair("normals", 6)));
+  EXPECT_THAT(work_of(cloth_of("wind")), with(Pair("force/wind", 5), Pair("normals", 6)));
+  EXPECT_THAT(work_of(cloth_of("air")), with(Pair("force/air", 5), Pair("normals", 6)));
   EXPECT_THAT(work_of(cloth_of("membrane")), with(Pair("force/membrane", 5), Pair("normals", 6)));
 }
 
@@ -91,7 +93,8 @@ TEST(Compile, PlansAForceThatIsViscousOnly) {
 TEST(Compile, PlansNormalsOnlyIfAForceAsks) {
   for (const ForceCase& force : force_cases()) {
     const bool asks = force.name == "membrane" || force.name == "plate" || force.name == "printed_plate" ||
-                      force.name.starts_with("all_of") || force.name == "all_with_a_membrane";
+                      force.wind.needs_normals() || force.air != 0 || force.name.starts_with("all_of") ||
+                      force.name == "all_with_a_membrane";
     EXPECT_EQ(cloth_of(force.name).plan.normals, asks) << force.name;
   }
 }

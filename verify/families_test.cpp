@@ -179,8 +179,8 @@ TEST(Kinsol, FindsTheEquilibriumOfAPulledSheet) {
   filter(cloth.ode.pins, guess);
   guess = cloth.start.x + 0.01 * guess;
   const auto found = reference::equilibrium(cloth.ode, guess);
-  const auto& [grid, material, gravity] = scene.sheet;
-  const reference::PulledSheet exact{grid.size_u, material.tension.weft, std::abs(gravity[0])};
+  const model::Grid& grid = scene.sheet.grid;
+  const reference::PulledSheet exact{grid.size_u, scene.sheet.material.tension.weft, std::abs(scene.sheet.gravity[0])};
   EXPECT_GT(found.iterations, 0);
   EXPECT_LE(found.residual, 1e-10);
   for (int i = 0; i < cloth.ode.particles(); ++i) {

@@ -40,7 +40,7 @@ TEST(ExactForces, HomogeneousStrainsHaveNoForceInside) {
   const Grid grid{8, 7, 1, 1};
   const Vectors x = affine(grid, s_u, s_v);
   for (const ForceCase& force : force_cases()) {
-    if (!force.gravity.isZero()) continue;
+    if (!force.gravity.isZero() || force.wind.blows()) continue;
     const Vectors f = evaluate(ode_of(force, grid).force, {x, at_rest(x)});
     for (int b = 2; b < grid.nv - 2; ++b)
       for (int a = 2; a < grid.nu - 2; ++a)

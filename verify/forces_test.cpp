@@ -107,6 +107,7 @@ TEST_P(ForcesOf, HaveTheirDerivativesAsJacobians) {
   }
 }
 
+/// Also the air's resistance, of which only f(λv) = λ f(v) is true.
 TEST_P(ForcesOf, AreLinearInVelocities) {
   const State y = deformed(grid, 3);
   const Vectors whole = evaluate(ode.force, y), elastic = evaluate(ode.force, {y.x, at_rest(y.x)});

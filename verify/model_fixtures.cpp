@@ -9,7 +9,8 @@ std::vector<ForceCase> force_cases() {
   const Material energies = made_of(tension, projected_damping, shear, contraction, unprojected_plate);
   const Material thesis = made_of(tension, linear_damping, printed_shear, contraction, plate);
   const Material with_membrane = made_of(tension, linear_damping, shear, contraction, membrane);
-  const Eigen::Vector3d g(0.5, -0.3, -2);
+  const Eigen::Vector3d none = Eigen::Vector3d::Zero(), g(0.5, -0.3, -2);
+  const model::Wind w{.load = {0.7, -1.1, 1.5}, .constant = 1.2, .frequency = 3, .drag = 0.9, .lift = 0.4};
   // clang-format off
   //                                                        energy   momentum angular dissipates rotation chains
   return {{"tension",             made_of(tension),           true,    true,    true,    true,     true,    true},
@@ -23,9 +24,11 @@ std::vector<ForceCase> force_cases() {
           {"printed_plate",       made_of(printed_plate),     false,   false,   false,   false,    false,   false},
           {"unprojected_plate",   made_of(unprojected_plate), true,    true,    true,    true,     false,   true},
           {"gravity",             Material{},                 true,    false,   false,   true,     true,    true,  g},
+          {"wind",                Material{},                 false,   false,   false,   true,     true,    false, none, w},
+          {"air",                 Material{},                 false,   false,   true,    true,     false,   false, none, {}, 1.5},
           {"all_with_energies",   energies,                   true,    false,   false,   true,     false,   true,  g},
           {"all_of_the_thesis",   thesis,                     false,   false,   false,   false,    false,   false, g},
-          {"all_with_a_membrane", with_membrane,              false,   false,   false,   false,    false,   false, g}};
+          {"all_with_a_membrane", with_membrane,              false,   false,   false,   false,    false,   false, g, w, 1.5}};
   // clang-format on
 }
 
@@ -43,7 +46,7 @@ std::vector<NamedGrid> grids() {
 
 Scene scene_of(const ForceCase& force, const Grid& grid) {
   Scene scene;
-  scene.sheet = {grid, force.material, force.gravity};
+  scene.sheet = {grid, force.material, force.gravity, force.wind, force.air};
   return scene;
 }
 
@@ -72,8 +75,10 @@ Vectors random_vectors(int n, double amplitude, unsigned seed) {
 
 State deformed(const Grid& grid, unsigned seed) {
   const double amplitude = spacing(grid) / 4;
-  return {grid.parameters() + random_vectors(grid.particles(), amplitude, seed),
+  State y{grid.parameters() + random_vectors(grid.particles(), amplitude, seed),
           random_vectors(grid.particles(), amplitude, seed + 1000)};
+  y.v.col(2).array() += spacing(grid);
+  return y;
 }
 
 Vectors evaluate(const SplitOde::Force& force, const State& y) {

@@ -54,6 +54,8 @@ struct ForceCase {
   bool ignores_rotation;  ///< a rigid rotation meets no viscous force
   bool exists_on_chains;
   Eigen::Vector3d gravity = Eigen::Vector3d::Zero();
+  model::Wind wind = {};
+  double air = 0;  ///< its resistance is the only force that is not linear in v, and that knows who moves
 };
 
 std::vector<ForceCase> force_cases();
@@ -97,7 +99,8 @@ double spacing(const Grid& grid);
 Vectors random_vectors(int n, double amplitude, unsigned seed);
 
 /// Every particle moved by up to a quarter of the spacing in each direction, so that no edge is shorter than half of it; in
-/// a second every particle moves as far again.
+/// a second every particle moves as far again, while the whole rises by a spacing: faster than any falls, so that none comes
+/// near the kinks of the air's resistance.
 State deformed(const Grid& grid, unsigned seed);
 
 /// The force; what the memory held before must not matter.

@@ -137,6 +137,14 @@ const std::vector<BadInput> bad_inputs = {
     {"OutInNoFolder", run_with("--out", {"nowhere/a.h5"}), {"nowhere/a.h5", "folder nowhere", "No such file or directory"}},
     {"OutIsFolder", run_with("--out", {"folder.toml"}), {"folder.toml exists", "choose another --out"}},
     {"OutEmpty", run_with("--out", {""}), {"--out", "expected a name"}},
+    {"FramesAmongOthers",
+     run_with("--frames", {"."}) + Words{"--out", "a.h5"},
+     {".: expected a new or empty folder for the frames"}},
+    {"FramesInAFile", run_with("--frames", {"results/a"}) + Words{"--out", "a.h5"}, {"results/a", "cannot be created"}},
+    {"FramesEmpty", run_with("--frames", {""}) + Words{"--out", "a.h5"}, {"--frames", "expected a name"}},
+    {"FramesAndOutExists", run_with("--frames", {"new"}) + Words{"--out", "exists.h5"}, {"choose another --out"}},
+    {"EveryZero", run_with("--every", {"0"}) + Words{"--frames", "new"}, {"--every", "above 0", "'0'"}},
+    {"EveryAlone", run_with("--every", {"0.1"}), {"--every", "--frames"}},
     {"NoFolderForResults", run_with(), {"results/runs", "choose a file by --out"}},
 };
 

@@ -53,7 +53,7 @@ TEST(Provenance, SaysNativeJustIfTheFlagsDo) {
 TEST(Provenance, AgreesWithTheLibraries) {
   EXPECT_EQ(facts().at("eigen"), fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION));
   EXPECT_EQ(facts().at("fmt"), fmt::format("{}.{}.{}", FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100));
-  for (const char* library : {"sundials", "cholmod", "hdf5", "google_benchmark", "cli11", "tomlplusplus"})
+  for (const char* library : {"sundials", "cholmod", "hdf5", "google_benchmark", "cli11", "tomlplusplus", "assimp"})
     EXPECT_THAT(facts().at(library), MatchesRegex("[0-9]+\\.[0-9]+\\.[0-9]+")) << library;
 }
 

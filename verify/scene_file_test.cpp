@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <tuple>
 
 #include "model/cloth.hpp"
 #include "verify/temporary_folder.hpp"
@@ -40,7 +41,7 @@ const std::string complete = R"(
 name = "all"
 description = "says \"everything\", with a \\ and a ü"
 [grid]
-n = [4, 3]
+n = [5, 3]
 size = [0.6, 0.4]
 [material]
 density = 0.3
@@ -58,26 +59,83 @@ bend_form = "membrane"
 bend_projected = true
 [forces]
 gravity = [0, 0.1, -9.81]
+wind = [1, 0, 0.5]
+wind_constant = -0.5
+wind_frequency = 6
+drag = 0.75
+lift = 0.25
+air = 0.02
 [[pins]]
 where = "left edge"
 [[pins]]
 particles = [[3, 0], [3, 2]]
 directions = "xz"
 velocity = [0.05, 0, 1]
+[[obstacles]]
+shape = "plane"
+[[obstacles]]
+shape = "box"
+size = [1, 2.5, 3]
+friction = 0.3
+position = [0.1, 0, -1]
+rotation = [0, 90, 0]
+[[obstacles]]
+shape = "sphere"
+radius = 0.75
+motion = [{ time = 0.5, position = [0, 0, 1] }, { time = 1, rotation = [0, 0, 45.5] }]
+[[obstacles]]
+shape = "cylinder"
+radius = 0.6
+height = 0.05
+[contact]
+distance = 2e-3
+relaxation = 1
+response = "reaction"
+reaction_time = 0.01
 [start]
 plane = "vertical"
 stretch = [1.1, 1]
+pleats = [2, 40.5]
 velocity = [0, 0.3, 0]
 [end]
 time = 0.5
 )";
 
+void expect_frame(const model::KeyFrame& frame, double t, const Eigen::Vector3d& position, const Eigen::Vector3d& rotation) {
+  EXPECT_EQ(frame.t, t);
+  EXPECT_EQ(frame.position, position);
+  EXPECT_EQ(frame.rotation, rotation);
+}
+
+/// The obstacles as `complete` says them.
+void expect_obstacles(const std::vector<model::ObstacleRule>& obstacles) {
+  ASSERT_EQ(obstacles.size(), 4u);
+  const auto& [plane, box, sphere, cylinder] = std::tie(obstacles[0], obstacles[1], obstacles[2], obstacles[3]);
+  EXPECT_EQ(plane.kind, model::ShapeKind::plane);
+  EXPECT_EQ(plane.friction, 0);
+  ASSERT_EQ(plane.motion.size(), 1u);
+  expect_frame(plane.motion[0], 0, {0, 0, 0}, {0, 0, 0});
+  EXPECT_EQ(box.kind, model::ShapeKind::box);
+  EXPECT_EQ(box.size, Eigen::Vector3d(1, 2.5, 3));
+  EXPECT_EQ(box.friction, 0.3);
+  ASSERT_EQ(box.motion.size(), 1u);
+  expect_frame(box.motion[0], 0, {0.1, 0, -1}, {0, 90, 0});
+  EXPECT_EQ(sphere.kind, model::ShapeKind::sphere);
+  EXPECT_EQ(sphere.radius, 0.75);
+  ASSERT_EQ(sphere.motion.size(), 2u);
+  expect_frame(sphere.motion[0], 0.5, {0, 0, 1}, {0, 0, 0});
+  expect_frame(sphere.motion[1], 1, {0, 0, 0}, {0, 0, 45.5});
+  EXPECT_EQ(cylinder.kind, model::ShapeKind::cylinder);
+  EXPECT_EQ(cylinder.radius, 0.6);
+  EXPECT_EQ(cylinder.height, 0.05);
+}
+
 /// Every key as `complete` says it.
 void expect_complete(const Scene& scene) {
   EXPECT_EQ(scene.name, "all");
   EXPECT_EQ(scene.description, "says \"everything\", with a \\ and a ü");
-  const auto& [grid, material, gravity] = scene.sheet;
-  EXPECT_THAT((std::array{grid.nu, grid.nv}), ElementsAre(4, 3));
+  const auto& [grid, material, gravity, wind, air] = scene.sheet;
+  EXPECT_THAT((std::array{grid.nu, grid.nv}), ElementsAre(5, 3));
   EXPECT_THAT((std::array{grid.size_u, grid.size_v}), ElementsAre(0.6, 0.4));
   EXPECT_EQ(material.density, 0.3);
   EXPECT_THAT(both(material.tension), Pair(2000, 1000));
@@ -93,10 +151,23 @@ void expect_complete(const Scene& scene) {
   EXPECT_EQ(material.bend_form, model::BendForm::membrane);
   EXPECT_TRUE(material.bend_projected);
   EXPECT_EQ(gravity, Eigen::Vector3d(0, 0.1, -9.81));
+  EXPECT_EQ(wind.load, Eigen::Vector3d(1, 0, 0.5));
+  EXPECT_EQ(wind.constant, -0.5);
+  EXPECT_EQ(wind.frequency, 6);
+  EXPECT_EQ(wind.drag, 0.75);
+  EXPECT_EQ(wind.lift, 0.25);
+  EXPECT_EQ(air, 0.02);
   EXPECT_EQ(scene.start.plane, model::Plane::vertical);
   EXPECT_THAT(both(scene.start.stretch), Pair(1.1, 1));
+  EXPECT_EQ(scene.start.pleats.count, 2);
+  EXPECT_EQ(scene.start.pleats.degrees, 40.5);
   EXPECT_EQ(scene.start.velocity, Eigen::Vector3d(0, 0.3, 0));
   EXPECT_EQ(scene.end, 0.5);
+  expect_obstacles(scene.obstacles);
+  EXPECT_EQ(scene.contact.distance, 2e-3);
+  EXPECT_EQ(scene.contact.relaxation, 1);
+  EXPECT_EQ(scene.contact.response, model::ResponseKind::reaction);
+  EXPECT_EQ(scene.contact.reaction_time, 0.01);
   ASSERT_EQ(scene.pins.size(), 2u);
   EXPECT_EQ(scene.pins[0].where, "left edge");
   EXPECT_THAT(scene.pins[0].directions, ElementsAre(true, true, true));

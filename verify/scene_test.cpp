@@ -3,9 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "model/cloth.hpp"
+#include "model/edges.hpp"
 
 namespace drape::verify {
 namespace {
@@ -89,6 +92,57 @@ TEST(Start, IsFlatInItsPlaneStretchedAndMovesAsAWhole) {
   EXPECT_EQ(horizontal.v, solver::Vectors(Eigen::RowVector3d(1, 2, 3).replicate(12, 1)));
   scene.start.plane = model::Plane::vertical;
   EXPECT_EQ(compile(scene).start.x.row(11), Eigen::RowVector3d(3 * 1.1, 0, 2 * 0.9));
+}
+
+/// A vertical sheet with three waves along the weft.
+Scene pleated() {
+  Scene scene;
+  scene.sheet.grid = {25, 4, 1.2, 0.6};
+  scene.start.plane = model::Plane::vertical;
+  scene.start.pleats = {3, 65};
+  return scene;
+}
+
+TEST(Start, WithPleatsKeepsTheLengthOfEveryEdge) {
+  Scene scene = pleated();
+  for (const double degrees : {0.0, 30.0, 65.0, 89.9}) {
+    scene.start.pleats.degrees = degrees;
+    const solver::State y = compile(scene).start;
+    for (const model::Edge& edge : edges(scene.sheet.grid))
+      EXPECT_NEAR((y.x.row(edge.j) - y.x.row(edge.i)).norm(), edge.length, 1e-15) << edge.i << " to " << edge.j;
+  }
+}
+
+TEST(Start, WithPleatsKeepsTheWarpStraightAndGathersTheWeft) {
+  const Scene scene = pleated();
+  const model::Grid& grid = scene.sheet.grid;
+  const solver::State y = compile(scene).start;
+  for (int b = 0; b < grid.nv; ++b)
+    for (int a = 0; a < grid.nu; ++a) {
+      const Eigen::RowVector3d below(y.x(grid.index(a, 0), 0), y.x(grid.index(a, 0), 1), b * grid.spacing_v());
+      EXPECT_LE((y.x.row(grid.index(a, b)) - below).norm(), 1e-15);
+    }
+  const double gathered = std::cyl_bessel_j(0, 65 * std::numbers::pi / 180);  // the mean of cos(θ sin φ)
+  EXPECT_NEAR(y.x(24, 0), 1.2 * gathered, 1e-6);
+  EXPECT_NEAR(y.x(24, 1), 0, 1e-15);
+}
+
+TEST(Start, WithPleatsHasSoManyWaves) {
+  const solver::State y = compile(pleated()).start;
+  const auto slope = [&](int edge) { return y.x(edge + 1, 1) - y.x(edge, 1); };
+  int turns = 0;
+  for (int edge = 0; edge + 1 < 24; ++edge) turns += slope(edge) * slope(edge + 1) < 0;
+  EXPECT_EQ(turns, 5);  // three crests and two troughs between them, the sheet begins and ends in troughs
+  EXPECT_NEAR(std::atan2(slope(0), y.x(1, 0)), 65 * std::numbers::pi / 180 * std::sin(2 * std::numbers::pi * 3 * 0.5 / 24),
+              1e-14);
+}
+
+TEST(Start, WithoutPleatsIsNotTouched) {
+  Scene scene = pleated();
+  scene.start.pleats = {};
+  solver::Vectors x = scene.sheet.grid.parameters();
+  x.col(1).swap(x.col(2));
+  EXPECT_EQ(compile(scene).start.x, x);
 }
 
 TEST(Start, OfPinnedParticlesHasThePrescribedVelocity) {

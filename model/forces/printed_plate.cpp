@@ -16,10 +16,8 @@ SparseMatrix laplacian(const Grid& grid, const WeftWarp& b) {
 
 /// Minus the Laplacian of the Laplacian, times the area of a particle: the algorithm gives force densities.
 SparseMatrix printed_plate_matrix(const Grid& grid, const WeftWarp& B) {
-  Eigen::VectorXd area(grid.particles());
-  for (int i = 0; i < grid.particles(); ++i) area[i] = grid.cell_area(i % grid.nu, i / grid.nu);
   const SparseMatrix bilaplacian = laplacian(grid, B) * laplacian(grid, {1, 1});
-  return -(area.asDiagonal() * bilaplacian);
+  return -(grid.cell_areas().asDiagonal() * bilaplacian);
 }
 
 }  // namespace

@@ -36,20 +36,27 @@ void verlet(Step& s) {
     a = s.ode.mass.cwiseInverse().asDiagonal() * a;
   };
 
+  const bool contacts = s.impacts != nullptr && !s.impacts->empty();
   y = s.y0();
   prescribe(s.ode.pins, y.v);
   if (s.now.has_f)
     a = s.now.f;
   else
     accelerate(s.t, y.v);
+  if (contacts) {
+    s.impacts->push_out(0, y.x);
+    s.impacts->stop(tau, true, y.v, a);
+  }
   for (double k = 1; k <= substeps; ++k) {
     y.x += tau * y.v + (0.5 * tau * tau) * a;
+    if (contacts) s.impacts->push_out(k * tau, y.x);
     y.v += (0.5 * tau) * a;        // the half of a0
     s.av = y.v + (0.5 * tau) * a;  // the velocity that a1 is evaluated with
     accelerate(s.t + k * tau, s.av);
     y.v += (0.5 * tau) * a;
+    if (contacts) s.impacts->stop(tau, false, y.v, a);
   }
-  s.next.has_f = true;
+  s.next.has_f = !contacts;  // what obstacles bear was taken from it
   s.substeps += static_cast<std::int64_t>(substeps);
 }
 

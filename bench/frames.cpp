@@ -1,0 +1,94 @@
+#include "bench/frames.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <fstream>
+#include <system_error>
+
+#include "bench/polygons.hpp"
+#include "results/atomic_file.hpp"
+
+namespace drape::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+void create(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw results::FileError(fmt::format("{}: cannot be created ({})", folder.string(), error.message()));
+}
+
+/// A name for a run that any file system takes.
+std::string run_name(const Cell& cell) {
+  std::string name = fmt::format("{}-{}-{}", cell.scene.name, cell.method_name(), cell.step);
+  std::ranges::replace_if(
+      name, [](unsigned char c) { return !std::isalnum(c) && c != '.' && c != '_'; }, '-');
+  return name;
+}
+
+void write(const fs::path& file, double t, const Polygons& polygons) {
+  std::ofstream out(file);
+  fmt::print(out, "# t = {} s\n", t);
+  write_obj(out, polygons);
+  out.close();
+  if (!out) throw results::FileError(fmt::format("{}: cannot be written; choose another --frames", file.string()));
+}
+
+/// An obstacle with its surface.
+struct Seen {
+  model::Obstacle obstacle;
+  Polygons surface;
+
+  Polygons at(double t) const {
+    Polygons posed = surface;
+    for (Eigen::Vector3d& vertex : posed.vertices) vertex = obstacle.pose(t).to_world(vertex);
+    return posed;
+  }
+};
+
+class Writer {
+ public:
+  Writer(const Cell& cell, const Frames& frames)
+      : folder_(frames.folder / run_name(cell)), every_(frames.every), grid_(cell.scene.sheet.grid) {
+    create(folder_);
+    for (const model::ObstacleRule& rule : cell.scene.obstacles)
+      obstacles_.push_back({model::Obstacle(rule), obstacle_polygons(rule, 4 * model::size(cell.scene))});
+  }
+
+  void see(double t, const solver::State& y) {
+    const double periods = std::floor(t / every_ + 1e-9);  // times are sums of steps
+    if (periods < due_) return;
+    due_ = periods + 1;
+    write(folder_ / fmt::format("sheet-{:04}.obj", frame_), t, sheet_polygons(grid_, y.x));
+    for (std::size_t k = 0; k < obstacles_.size(); ++k)
+      write(folder_ / fmt::format("obstacle-{}-{:04}.obj", k, frame_), t, obstacles_[k].at(t));
+    ++frame_;
+  }
+
+ private:
+  fs::path folder_;
+  double every_;
+  model::Grid grid_;
+  std::vector<Seen> obstacles_;
+  double due_ = 0;
+  int frame_ = 0;
+};
+
+}  // namespace
+
+void make_folder(const Frames& frames) {
+  create(frames.folder);
+  if (!fs::is_empty(frames.folder))
+    throw results::FileError(fmt::format("{}: expected a new or empty folder for the frames", frames.folder.string()));
+}
+
+solver::Observer frame_writer(const Cell& cell, const Frames& frames) {
+  return [writer = Writer(cell, frames)](const solver::StepReport& step) mutable { writer.see(step.t, step.y); };
+}
+
+}  // namespace drape::bench

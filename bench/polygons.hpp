@@ -1,0 +1,26 @@
+#pragma once
+
+#include <iosfwd>
+#include <vector>
+
+#include "model/grid.hpp"
+#include "model/obstacle.hpp"
+
+namespace drape::bench {
+
+/// A mesh of polygons, for looking at.
+struct Polygons {
+  std::vector<Eigen::Vector3d> vertices;
+  std::vector<std::vector<int>> faces;  ///< corners of a polygon, or the two ends of a line
+};
+
+/// A sheet as quadrilaterals, one for each cell, a chain as lines. Vertices are the particles.
+Polygons sheet_polygons(const model::Grid& grid, const solver::Vectors& x);
+
+/// The surface of an obstacle in its own frame; of a plane a square with the given side [m]. Throws as Obstacle does.
+Polygons obstacle_polygons(const model::ObstacleRule& rule, double plane_side);
+
+/// In Wavefront's OBJ format, numbers to the last bit.
+void write_obj(std::ostream& out, const Polygons& polygons);
+
+}  // namespace drape::bench

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <string>
+#include <vector>
+
+namespace drape::model {
+
+/// A closed surface of triangles whose corners go round counter-clockwise, seen from outside.
+struct TriangleMesh {
+  std::string name;  ///< for messages
+  std::vector<Eigen::Vector3d> vertices;
+  std::vector<std::array<int, 3>> triangles;
+};
+
+/// Turns a mesh round that is inside out.
+void turn_outward(TriangleMesh& mesh);
+
+using Corners = std::array<Eigen::Vector3d, 3>;
+
+Corners corners(const TriangleMesh& mesh, const std::array<int, 3>& triangle);
+
+/// Parts of a triangle: its face, the edges from corner k to the next, the corners.
+inline constexpr int face_part = 0, first_edge_part = 1, first_corner_part = 4, parts_of_triangle = 7;
+
+/// For every triangle the unit pseudo-normals of its parts [Bærentzen, Aanæs 2005]: p is outside where p minus the nearest
+/// point has a positive product with the pseudo-normal of the part on which that point lies. Throws std::invalid_argument with
+/// the name of the mesh unless every triangle has an area, every edge belongs to two triangles that agree on which side is
+/// outside, and the mesh encloses a volume.
+std::vector<std::array<Eigen::Vector3d, parts_of_triangle>> pseudo_normals(const TriangleMesh& mesh);
+
+/// The point of a triangle nearest to another, and the part on which it lies.
+struct TrianglePoint {
+  Eigen::Vector3d point;
+  int part;
+};
+
+/// [Ericson 2005, Real-Time Collision Detection, 5.1.5]
+TrianglePoint nearest_on_triangle(const Corners& corners, const Eigen::Vector3d& p);
+
+}  // namespace drape::model

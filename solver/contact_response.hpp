@@ -1,0 +1,121 @@
+#pragma once
+
+#include <vector>
+
+#include "solver/filter.hpp"
+#include "solver/stage.hpp"
+
+namespace drape::solver {
+
+/// What new constraints did to the state at the begin of the step.
+struct Impact {
+  bool happened = false;  ///< it was changed
+  double energy = 0;      ///< kinetic energy of the motion that was stopped [J]
+};
+
+/// Contacts within one step of an implicit method, answered by constraints: inelastic, with Coulomb friction
+/// [Etzmuß 2002, 4.4].
+///
+/// A particle that would leave its half-space is constrained along the normal n to the velocity that ends the step on the
+/// border (4.4), and released when the residual in that direction would have to pull it. Which particles are constrained is
+/// found together with the solution: at the end of the step <x, n> ≥ least, multipliers push, and one of the two is at its
+/// limit. A constrained particle sticks while its tangential multiplier stays below η times the normal one; else it slides, and
+/// η times the normal one acts against its motion. Friction lags: it is that of the multipliers and velocities of the step
+/// before, but for new contacts and for particles that it would turn round, which stick.
+///
+/// Constrained directions follow x0 + (t − t0) v in every method, so that one with history ends on the border as Euler does.
+/// After the step they move with the obstacle, and where they are new the history follows: an impact is a new beginning.
+class ContactResponse {
+ public:
+  explicit ContactResponse(const SplitOde& ode);
+
+  /// Finds what may be touched in the step from t0 to t0 + h. Starts with those constraints of the step before that may hold.
+  void begin(double t0, double h, const State& y0);
+
+  /// Whether nothing can be touched in this step.
+  bool empty() const { return touched_.empty(); }
+
+  /// Partially pinned particles and the constrained directions.
+  const Filter& filter() const { return filter_; }
+
+  /// Sets the constrained components of v, and those of x at the time of the stage.
+  void impose(const Stage& stage, State& y) const;
+
+  /// Adapts the constraints to a stage's solution y. r: the whole residual M (av − v) + γ f without friction; `noise`: what is
+  /// smaller in r says nothing. True if constraints changed, so that they must be imposed anew. `settled`: only adds
+  /// constraints, so that changes come to an end.
+  bool update(const Stage& stage, const State& y, const Vectors& r, double noise, bool settled);
+
+  /// Adds γ times friction to a residual.
+  void add_friction(double gamma, Vectors& r) const;
+
+  /// After the step: the constrained directions of y1 move with the obstacle, and where they are new, y0 becomes what
+  /// uniform motion would have come from.
+  Impact finish(State& y1, State& y0);
+
+  int constrained() const;          ///< particles that were in the last step
+  Eigen::Vector3d impulse() const;  ///< that the obstacles gave to the particles in the last step [N s]
+
+ private:
+  enum class Status { free, slides, sticks };
+
+  /// Three contacts hold a particle: it has no more at a time, and no memory for more.
+  static constexpr int most_contacts = 3;
+  using Columns = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, most_contacts>;
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::ColMajor, most_contacts, 3>;
+  using PerContact = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, most_contacts, 1>;
+
+  /// A particle that may touch something.
+  struct Touched {
+    int particle = 0;
+    std::size_t begin = 0, end = 0;  ///< its contacts
+    Eigen::Matrix3d allowed;         ///< projector on what its pins leave
+    Status status = Status::free;
+    bool fresh = false;                                  ///< constrained as it was not in the step before
+    Columns normals;                                     ///< of its active contacts, without pinned coordinates
+    Rows inverse;                                        ///< pseudo-inverse of these
+    Eigen::Matrix3d free;                                ///< projector on what pins and constraints leave
+    Eigen::Vector3d velocity;                            ///< v in the constrained directions [m/s]
+    Eigen::Vector3d obstacle;                            ///< w [m/s]
+    bool rubs = false;                                   ///< whether its friction is decided
+    Eigen::Vector3d friction = Eigen::Vector3d::Zero();  ///< [N]
+    Eigen::Vector3d holding = Eigen::Vector3d::Zero();   ///< tangential multiplier of the constraints [N]
+    double bound = 0;                                    ///< Σ η λ, its limit [N]
+    Eigen::Vector3d force = Eigen::Vector3d::Zero();     ///< f of the stage [N]
+    Eigen::Vector3d impulse = Eigen::Vector3d::Zero();   ///< of the obstacles in the step [N s]
+
+    Eigen::Matrix3d constrained() const { return allowed - free; }
+    Eigen::Matrix3d tangent() const { return allowed - normals * inverse; }
+  };
+
+  /// What a contact was in the step before.
+  struct Past {
+    int particle, obstacle;
+    Status status;
+    Eigen::Vector3d holding;
+    double bound;
+  };
+
+  void touch(int particle, std::size_t begin, std::size_t end, std::size_t& past);
+  void configure(Touched& p);
+  void rebuild_filter();
+  Status first_status(const Touched& p) const;
+  bool release(Touched& p, const PerContact& lambda, double noise);
+  bool capture(Touched& p, const Eigen::Vector3d& x1);
+  void remember_friction(Touched& p, const Past& was) const;
+  bool rub(Touched& p, const Eigen::Vector3d& v);
+  double friction_bound(const Touched& p, const PerContact& lambda) const;
+
+  const SplitOde& ode_;
+  std::vector<Eigen::Matrix3d> allowed_;  ///< for each particle, if there are pins
+  double t0_ = 0, h_ = 0;
+  const State* y0_ = nullptr;
+  std::vector<Contact> contacts_;
+  std::vector<char> active_;  ///< for each contact
+  std::vector<Touched> touched_;
+  std::vector<Past> past_;
+  Filter pinned_, filter_;
+  std::int64_t &constrained_particles_, &changes_;
+};
+
+}  // namespace drape::solver
