@@ -16,6 +16,15 @@ std::span<const Study> studies() {
       {"modes", "amplification of linear modes by the running code: stability limits, artificial inertia and damping", nullptr,
        modes},
       {"references", "CVODE, ARKODE and IDA on the hung sheets: how far they agree, and at what cost", nullptr, references},
+      {"table-3.1", "the work of BDF(2) on the tablecloth against stiffness and damping, with the thesis' counts", nullptr,
+       table_3_1},
+      {"table-3.2", "all methods on the tablecloth: work and time, with the thesis' figures", nullptr, table_3_2},
+      {"figure-3.2", "a sheet in the wind: what implicit Euler smooths away, against BDF(2), wave by wave", nullptr,
+       figure_3_2},
+      {"figure-3.3", "how far semi-implicit methods lag behind BDF(2), with their artificial inertia and damping", nullptr,
+       figure_3_3},
+      {"figure-4.3", "CG iterations and contacts over time of a sheet that swings against a box; what contact costs", nullptr,
+       figure_4_3},
   };
   return table;
 }

@@ -38,5 +38,10 @@ std::vector<TableJob> convergence(bool quick);
 std::vector<TableJob> orders(bool quick);
 std::vector<TableJob> modes(bool quick);
 std::vector<TableJob> references(bool quick);
+std::vector<TableJob> table_3_1(bool quick);
+std::vector<TableJob> table_3_2(bool quick);
+std::vector<TableJob> figure_3_2(bool quick);
+std::vector<TableJob> figure_3_3(bool quick);
+std::vector<TableJob> figure_4_3(bool quick);
 
 }  // namespace drape::bench

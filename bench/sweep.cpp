@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <system_error>
 
+#include "bench/contact_record.hpp"
 #include "bench/errors.hpp"
 #include "bench/progress.hpp"
 #include "bench/timing.hpp"
@@ -36,11 +37,18 @@ Yardstick find_reference(const model::Scene& scene, References& references) {
   return yardstick;
 }
 
+void compare(results::RunRecord& run, const reference::Reference& reference, const model::Scene& scene,
+             const model::Cloth& cloth) {
+  run.error = distance(run, reference, scene, cloth);
+  const reference::Trajectory& truth = reference.trajectory;
+  if (run.contact) run.contact->reference_area = contact_area(scene, cloth, truth.times.back(), truth.states.back().x);
+}
+
 void measure_error(const Cell& cell, results::RunRecord& run, const Yardstick& yardstick) {
   if (!yardstick.reference)
     run.message += (run.message.empty() ? "" : "; ") + yardstick.remark;
   else if (run.outcome == to_string(solver::Outcome::success))
-    run.error = distance(run, *yardstick.reference, cell.scene, yardstick.cloth);
+    compare(run, *yardstick.reference, cell.scene, yardstick.cloth);
 }
 
 }  // namespace

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <random>
 
 #include "reference/families.hpp"
+#include "reference/stepped.hpp"
 
 namespace drape::reference {
 namespace {
@@ -16,6 +18,7 @@ using solver::State;
 
 constexpr double looser = 100;         ///< times the tolerance
 constexpr double perturbation = 1e-7;  ///< of the size of the scene
+constexpr double contact_step = 5e-4;  ///< [s]
 
 std::vector<double> distances(const Trajectory& a, const Trajectory& b) {
   std::vector<double> result;
@@ -44,6 +47,31 @@ State moved(const State& y, const State& direction, double distance) {
   return {y.x + scale * direction.x, y.v + scale * direction.v};
 }
 
+/// Solves from a start, as well as it can or loosely.
+using Solve = std::function<Trajectory(const State& start, bool loose)>;
+
+/// All of a reference but its names: `a` computes it, `b` is the witness.
+Reference compare(const SplitOde& ode, const State& y0, double duration, double size, const Solve& a, const Solve& b) {
+  Reference result;
+  result.trajectory = a(y0, false);
+  const Trajectory witness = b(y0, false);
+  result.error = distances(result.trajectory, witness);
+  const auto effect_a = distances(result.trajectory, a(y0, true)), effect_b = distances(witness, b(y0, true));
+  std::ranges::transform(effect_a, effect_b, std::back_inserter(result.tolerance_effect),
+                         [](double p, double q) { return std::max(p, q); });
+
+  const double distance = perturbation * size;
+  State direction = noise(ode, duration);
+  result.growth.assign(result.error.size(), 0);
+  for (int round = 0; round < 2; ++round) {
+    result.perturbed = a(moved(y0, direction, distance), false);
+    const std::vector<double> grown = distances(result.perturbed, result.trajectory);
+    for (std::size_t k = 0; k < grown.size(); ++k) result.growth[k] = std::max(result.growth[k], grown[k] / distance);
+    direction = difference(result.perturbed.states.back(), result.trajectory.states.back());
+  }
+  return result;
+}
+
 }  // namespace
 
 double rms_distance(const solver::Vectors& a, const solver::Vectors& b) {
@@ -53,29 +81,33 @@ double rms_distance(const solver::Vectors& a, const solver::Vectors& b) {
 Reference reference(const SplitOde& ode, const State& y0, double t0, std::span<const double> times,
                     const SolveOptions& options) {
   const Family &family_a = family("cvode-bdf"), &family_b = family("arkode-esdirk");
-  SolveOptions loose = options;
-  loose.rtol *= looser;
-  Reference result;
+  const auto solve_with = [&](const Family& by) -> Solve {
+    return [&](const State& start, bool loose) {
+      SolveOptions changed = options;
+      if (loose) changed.rtol *= looser;
+      return by.solve(ode, start, t0, times, changed);
+    };
+  };
+  Reference result = compare(ode, y0, times.back() - t0, options.size, solve_with(family_a), solve_with(family_b));
   result.name = family_a.name;
   result.witness = family_b.name;
   result.tolerance = options.rtol;
-  result.trajectory = family_a.solve(ode, y0, t0, times, options);
-  const Trajectory b = family_b.solve(ode, y0, t0, times, options);
-  const Trajectory loose_a = family_a.solve(ode, y0, t0, times, loose), loose_b = family_b.solve(ode, y0, t0, times, loose);
-  result.error = distances(result.trajectory, b);
-  const auto effect_a = distances(result.trajectory, loose_a), effect_b = distances(b, loose_b);
-  std::ranges::transform(effect_a, effect_b, std::back_inserter(result.tolerance_effect),
-                         [](double p, double q) { return std::max(p, q); });
+  return result;
+}
 
-  const double distance = perturbation * options.size;
-  State direction = noise(ode, times.back() - t0);
-  result.growth.assign(times.size(), 0);
-  for (int round = 0; round < 2; ++round) {
-    result.perturbed = family_a.solve(ode, moved(y0, direction, distance), t0, times, options);
-    const std::vector<double> grown = distances(result.perturbed, result.trajectory);
-    for (std::size_t k = 0; k < times.size(); ++k) result.growth[k] = std::max(result.growth[k], grown[k] / distance);
-    direction = difference(result.perturbed.states.back(), result.trajectory.states.back());
-  }
+Reference contact_reference(const SplitOde& ode, const State& y0, double t0, std::span<const double> times,
+                            const SolveOptions& options) {
+  check(times, t0, options);
+  const auto solve_with = [&](const char* method) -> Solve {
+    return [&, method](const State& start, bool loose) {
+      return stepped(ode, solver::method(method), start, t0, times, loose ? 2 * contact_step : contact_step);
+    };
+  };
+  Reference result = compare(ode, y0, times.back() - t0, options.size, solve_with("verlet"), solve_with("midpoint"));
+  result.name = "verlet";
+  result.witness = "midpoint";
+  result.tolerance = contact_step;
+  for (std::size_t k = 0; k < times.size(); ++k) result.error[k] = std::max(result.error[k], result.tolerance_effect[k]);
   return result;
 }
 

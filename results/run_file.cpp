@@ -103,9 +103,10 @@ void write_run(const Handle& runs, const std::string& name, const RunRecord& run
   const Handle work = hdf5::create_group(group, "work", "how often each kind of work was done");
   for (const WorkCount& w : run.work) hdf5::write_numbers(work, w.name, &w.count, {}, "1", w.description);
   write_fields(hdf5::create_group(group, "final_state", "where the run ended"), state_fields, run.final_state);
-  if (!run.error) return;
-  write_fields(hdf5::create_group(group, "error", "distance of the final positions from a reference"), error_fields,
-               *run.error);
+  if (run.error)
+    write_fields(hdf5::create_group(group, "error", "distance of the final positions from a reference"), error_fields,
+                 *run.error);
+  if (run.contact) write_fields(hdf5::create_group(group, "contact", "what obstacles did"), contact_fields, *run.contact);
 }
 
 RunRecord read_run(const Handle& group) {
@@ -119,6 +120,7 @@ RunRecord read_run(const Handle& group) {
     run.work.push_back({name, description, hdf5::read_number<std::int64_t>(work, name)});
   run.final_state = read_fields<solver::State>(hdf5::open_group(group, "final_state"), state_fields);
   if (hdf5::has(group, "error")) run.error = read_fields<ErrorRecord>(hdf5::open_group(group, "error"), error_fields);
+  if (hdf5::has(group, "contact")) run.contact = read_fields<ContactRecord>(hdf5::open_group(group, "contact"), contact_fields);
   return run;
 }
 

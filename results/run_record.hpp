@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -32,6 +33,15 @@ struct StepRecord {
   int cg_iterations = 0;
   double kinetic_energy = 0;    ///< [J]
   double potential_energy = 0;  ///< [J]
+  int contacts = 0;             ///< particles constrained by obstacles
+};
+
+/// What obstacles did to a run.
+struct ContactRecord {
+  double clearance = 0;    ///< least distance of a particle from an obstacle at the end of any step [m], negative inside
+  double energy_rise = 0;  ///< largest rise of the total energy above what it was before, over the run's energies
+  double area = 0;         ///< in contact at the end, over the sheet's
+  double reference_area = std::numeric_limits<double>::quiet_NaN();  ///< of the reference, NaN if there is none
 };
 
 /// Distance of the final state from a reference. Lengths are divided by the scene's size, energies by the largest sum of
@@ -52,7 +62,13 @@ struct ErrorRecord {
 
 /// Beyond this growth of a perturbation the final positions say little about a method: compare energies and statistics.
 inline constexpr double comparable_growth = 100;
-inline bool comparable(const ErrorRecord& error) { return error.growth <= comparable_growth; }
+
+/// So do they beyond this uncertainty of the reference, as where contacts decide which way a sheet folds.
+inline constexpr double comparable_error = 1e-2;
+
+inline bool comparable(const ErrorRecord& error) {
+  return error.growth <= comparable_growth && error.reference_error <= comparable_error;
+}
 
 /// An error below so many times its reference's own is no number to rely on.
 inline constexpr double resolution = 10;
@@ -82,6 +98,7 @@ struct RunRecord {
   std::vector<WorkCount> work;
   solver::State final_state;
   std::optional<ErrorRecord> error;
+  std::optional<ContactRecord> contact;  ///< if the scene has obstacles
 };
 
 /// The count of a kind of work, 0 if the run knows no such kind.

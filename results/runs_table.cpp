@@ -36,13 +36,18 @@ Cell of_error(const RunRecord& run, Value ErrorRecord::*member) {
   return run.error ? Cell((*run.error).*member) : Cell();
 }
 
+Cell of_contact(const RunRecord& run, double ContactRecord::*member) {
+  return run.contact ? Cell((*run.contact).*member) : Cell();
+}
+
 using Run = const RunRecord&;
 
 /// Why there is no error, and no digits of an error that the reference is too uncertain to resolve.
 std::string shown_error(Run run) {
   if (run.outcome != to_string(solver::Outcome::success)) return fmt::format("{} at {:.4g} s", run.outcome, run.last_good_time);
   if (!run.error) return {};
-  if (!comparable(*run.error)) return fmt::format("growth {:.1g}", run.error->growth);
+  if (run.error->growth > comparable_growth) return fmt::format("growth {:.1g}", run.error->growth);
+  if (!comparable(*run.error)) return fmt::format("± {:.1g}", run.error->reference_error);
   if (!resolved(*run.error)) return fmt::format("< {:.1g}", resolution * run.error->reference_error);
   return fmt::format("{:.4g}", run.error->rms);
 }
@@ -51,6 +56,13 @@ std::string shown_error(Run run) {
 std::string shown_statistic(Run run, double ErrorRecord::*value, double ErrorRecord::*spread) {
   if (!run.error || comparable(*run.error)) return {};
   return fmt::format("{:.2g} ± {:.1g}", (*run.error).*value, (*run.error).*spread);
+}
+
+/// The area in contact, and that of the reference.
+std::string shown_area(Run run) {
+  if (!run.contact) return {};
+  if (std::isnan(run.contact->reference_area)) return fmt::format("{:.3g}", run.contact->area);
+  return fmt::format("{:.3g} ({:.3g})", run.contact->area, run.contact->reference_area);
 }
 
 constexpr RunColumn columns[] = {
@@ -74,6 +86,9 @@ constexpr RunColumn columns[] = {
      [](Run run) { return shown_statistic(run, &ErrorRecord::energy, &ErrorRecord::energy_spread); }},
     {"centre_error", "centre error", "1", [](Run run) { return of_error(run, &ErrorRecord::centre); },
      [](Run run) { return shown_statistic(run, &ErrorRecord::centre, &ErrorRecord::centre_spread); }},
+    {"clearance", "clearance", "m", [](Run run) { return of_contact(run, &ContactRecord::clearance); }},
+    {"energy_rise", "energy rise", "1", [](Run run) { return of_contact(run, &ContactRecord::energy_rise); }},
+    {"contact_area", "contact area", "1", [](Run run) { return of_contact(run, &ContactRecord::area); }, shown_area},
     {"numerical_stiffness", "ν_h", "1", [](Run run) -> Cell { return run.numerical_stiffness; }},
     {"stiffness_to_damping", "h k/d", "1", [](Run run) -> Cell { return run.stiffness_to_damping; }},
     {"last_good_time", "", "s", [](Run run) -> Cell { return run.last_good_time; }},

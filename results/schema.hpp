@@ -7,7 +7,7 @@
 namespace drape::results {
 
 /// The layout of a run in the file: this one list serves writing and reading. results/README.md shows it for people.
-inline constexpr int schema_version = 2;
+inline constexpr int schema_version = 3;
 
 /// A member of a record under its name in the file. Text has no unit; numbers have one, "1" if they have no dimension.
 template <class Record, class Value>
@@ -45,6 +45,16 @@ inline constexpr std::tuple step_fields{
     Field{"cg_iterations", &StepRecord::cg_iterations, "1", "iterations of the conjugate gradient method"},
     Field{"kinetic_energy", &StepRecord::kinetic_energy, "J", "kinetic energy at the end of the step"},
     Field{"potential_energy", &StepRecord::potential_energy, "J", "potential energy at the end of the step"},
+    Field{"contacts", &StepRecord::contacts, "1", "particles constrained by obstacles"},
+};
+
+inline constexpr std::tuple contact_fields{
+    Field{"clearance", &ContactRecord::clearance, "m",
+          "least distance of a particle from an obstacle at the end of any step, negative inside"},
+    Field{"energy_rise", &ContactRecord::energy_rise, "1",
+          "largest rise of the total energy above what it was before, over the largest energy of the run"},
+    Field{"area", &ContactRecord::area, "1", "area in contact at the end, over that of the sheet"},
+    Field{"reference_area", &ContactRecord::reference_area, "1", "the same of the reference; NaN if there is none"},
 };
 
 inline constexpr std::tuple state_fields{

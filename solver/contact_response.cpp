@@ -31,7 +31,7 @@ void ContactResponse::begin(double t0, double h, const State& y0) {
   past_.clear();
   for (const Touched& p : touched_)
     for (std::size_t k = p.begin; k < p.end; ++k)
-      if (active_[k]) past_.push_back({p.particle, contacts_[k].obstacle, p.status, p.holding, p.bound});
+      if (active_[k]) past_.push_back({p.particle, contacts_[k].obstacle, p.status, p.force, p.bound});
   touched_.clear();
   contacts_.clear();
   ode_.contacts(t0, h, y0, contacts_);
@@ -77,12 +77,18 @@ void ContactResponse::touch(int particle, std::size_t begin, std::size_t end, st
 /// Friction by what the step before found out.
 void ContactResponse::remember_friction(Touched& p, const Past& was) const {
   p.rubs = true;
-  if (p.status == Status::sticks) return;
-  const Eigen::Matrix3d tangent = p.tangent();
-  const Eigen::Vector3d sliding = tangent * (y0_->v.row(p.particle).transpose() - p.obstacle);
-  Eigen::Vector3d direction = -sliding;
-  if (sliding.isZero(0)) direction = tangent * was.holding;
-  if (!direction.isZero(0)) p.friction = was.bound * direction.normalized();
+  if (p.status == Status::slides) p.friction = coulomb(p, y0_->v.row(p.particle), was.force, was.bound);
+}
+
+/// Friction on a sliding particle during a step h, against the motion that it would have without; less than the bound where
+/// that would turn it round.
+Eigen::Vector3d ContactResponse::coulomb(const Touched& p, const Eigen::Vector3d& v, const Eigen::Vector3d& force,
+                                         double bound) const {
+  const double m = ode_.mass[p.particle];
+  const Eigen::Vector3d momentum = p.tangent() * (m * (v - p.obstacle) + h_ * force);
+  const double size = momentum.norm();
+  if (size <= h_ * bound) return -momentum / h_;
+  return -bound / size * momentum;
 }
 
 /// Everything that follows from which contacts are active and whether the particle sticks.
@@ -237,6 +243,17 @@ void ContactResponse::add_friction(double gamma, Vectors& r) const {
   for (const Touched& p : touched_) r.row(p.particle) += gamma * p.friction;
 }
 
+/// Lets some directions of a particle come to y1 by a uniform acceleration a, where that changed its velocity less than what
+/// really happened: stiff neighbours may pull much harder for a moment.
+void ContactResponse::rewrite_history(const Eigen::Matrix3d& directions, const Eigen::Vector3d& a, int particle,
+                                      const State& y1, State& y0) const {
+  const Eigen::Vector3d x1 = y1.x.row(particle), v1 = y1.v.row(particle), x0 = y0.x.row(particle), v0 = y0.v.row(particle);
+  const double most = (v1 - v0).norm(), size = h_ * a.norm();
+  const Eigen::Vector3d change = size > most ? Eigen::Vector3d(most / size * h_ * a) : Eigen::Vector3d(h_ * a);
+  y0.x.row(particle) += directions * (x1 - h_ * (v1 - change / 2) - x0);
+  y0.v.row(particle) += directions * (v1 - change - v0);
+}
+
 Impact ContactResponse::finish(State& y1, State& y0) {
   Impact impact;
   for (Touched& p : touched_) {
@@ -254,10 +271,10 @@ Impact ContactResponse::finish(State& y1, State& y0) {
     }
     if (p.status == Status::sticks && p.holding.norm() > p.bound) p.status = Status::slides;  // in the next step
     if (!p.fresh) continue;
+    Eigen::Vector3d f = p.free * p.force;
+    if (p.status == Status::slides) f += coulomb(p, y1.v.row(p.particle), p.force, p.bound);
     const Eigen::Matrix3d jumped = impulsive ? p.allowed : constrained;  // friction has an impulse too
-    const Eigen::Vector3d x0 = y0.x.row(p.particle), x1 = y1.x.row(p.particle), w1 = y1.v.row(p.particle);
-    y0.x.row(p.particle) += jumped * (x1 - h_ * w1 - x0);
-    y0.v.row(p.particle) += jumped * (w1 - v0);
+    rewrite_history(jumped, f / ode_.mass[p.particle], p.particle, y1, y0);
     impact.happened = true;
     impact.energy += 0.5 * ode_.mass[p.particle] * stopped.squaredNorm();
   }

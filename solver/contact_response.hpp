@@ -50,7 +50,7 @@ class ContactResponse {
   void add_friction(double gamma, Vectors& r) const;
 
   /// After the step: the constrained directions of y1 move with the obstacle, and where they are new, y0 becomes what
-  /// uniform motion would have come from.
+  /// uniformly accelerated motion would have come from.
   Impact finish(State& y1, State& y0);
 
   int constrained() const;          ///< particles that were in the last step
@@ -92,7 +92,7 @@ class ContactResponse {
   struct Past {
     int particle, obstacle;
     Status status;
-    Eigen::Vector3d holding;
+    Eigen::Vector3d force;
     double bound;
   };
 
@@ -104,6 +104,9 @@ class ContactResponse {
   bool capture(Touched& p, const Eigen::Vector3d& x1);
   void remember_friction(Touched& p, const Past& was) const;
   bool rub(Touched& p, const Eigen::Vector3d& v);
+  void rewrite_history(const Eigen::Matrix3d& directions, const Eigen::Vector3d& a, int particle, const State& y1,
+                       State& y0) const;
+  Eigen::Vector3d coulomb(const Touched& p, const Eigen::Vector3d& v, const Eigen::Vector3d& force, double bound) const;
   double friction_bound(const Touched& p, const PerContact& lambda) const;
 
   const SplitOde& ode_;

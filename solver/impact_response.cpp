@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "solver/filter.hpp"
 
@@ -81,7 +80,7 @@ void ImpactResponse::stop(double tau, bool begins, Vectors& v, Vectors& a) {
   }
 }
 
-/// Coulomb's law for one contact: a particle that its friction can stop in half a sub-step sticks.
+/// Coulomb's law for one contact: a particle sticks if friction can keep it from sliding for half a sub-step.
 ImpactResponse::Friction ImpactResponse::friction(const Side& side, double tau, const Eigen::Vector3d& v,
                                                   const Eigen::Vector3d& a) {
   const auto tangential = [&](const Eigen::Vector3d& u) -> Eigen::Vector3d {
@@ -90,9 +89,10 @@ ImpactResponse::Friction ImpactResponse::friction(const Side& side, double tau, 
   };
   const double drag = side.contact.friction * side.impact, hold = side.contact.friction * side.load;
   const Eigen::Vector3d sliding = tangential(v - side.contact.velocity), pull = tangential(a);
-  const double speed = sliding.norm();
-  if (speed > drag + hold * tau / 2) return {-drag / speed * sliding, -hold / speed * sliding};
-  return {-sliding, -std::min(1.0, hold / std::max(pull.norm(), std::numeric_limits<double>::min())) * pull};
+  const Eigen::Vector3d without = sliding + tau / 2 * pull;
+  const double speed = without.norm();
+  if (speed > drag + hold * tau / 2) return {-drag / speed * without, -hold / speed * without};
+  return {-sliding, -pull};
 }
 
 int ImpactResponse::constrained() const {

@@ -100,7 +100,8 @@ void Integrator::finish_contacts() {
   const double kinetic = method_.two_step ? kinetic_energy(step_.ode, step_.now.y.v) : 0;
   const Impact impact = contacts_->finish(step_.next.y, step_.now.y);
   if (impact.happened) step_.now.has_f = false;
-  if (impact.energy > hard_impact * kinetic) h_before_ = 0;
+  step_.after_impact = impact.energy > hard_impact * kinetic;
+  if (step_.after_impact) h_before_ = 0;
 }
 
 ContactReport Integrator::contacts() const {

@@ -83,10 +83,9 @@ TEST_P(Contact, SlidesDownAnInclineByCoulombsLaw) {
     const Eigen::RowVector3d down(-std::cos(a), 0, -std::sin(a));
     const Moment& last = moments.back();
     for (int i = 0; i < 4; ++i) {
-      EXPECT_NEAR(last.y.v.row(i).dot(down), acceleration * last.t, friction > 0 ? 0.51 * acceleration * h : 1e-11)
-          << friction << ": friction costs a method its history where it begins";
+      EXPECT_NEAR(last.y.v.row(i).dot(down), acceleration * last.t, 1e-11) << friction;
       EXPECT_NEAR((last.y.x.row(i) - moments.front().y.x.row(i)).dot(down), acceleration * last.t * last.t / 2,
-                  acceleration * last.t * h + 1e-11)
+                  acceleration * last.t * h / 2 + 1e-11)
           << friction << ": Euler's error";
     }
     EXPECT_NEAR(clearance(trial, moments), 0.01, 1e-12);
@@ -166,14 +165,17 @@ TEST_P(Contact, HoldsAParticleBetweenTwoAndThreePlanes) {
   for (const int walls : {2, 3})
     for (const double friction : {0.0, 0.1}) {
       const Trial trial = particles(planes(walls, friction));
-      const auto moments = run(trial, method, 0.01);
+      const double h = 0.01, of_a_fall = trial.cloth.ode.mass.sum() * g * h * g * h / 2;  // energy, in one step
+      const auto moments = run(trial, method, h);
       EXPECT_GE(clearance(trial, moments), 0.01 - 1e-9) << walls;
-      EXPECT_LE(energy_rise(moments), 1e-12) << walls;
-      if (walls < 3) {  // the bottom of the groove, at equal distance from both walls
-        EXPECT_LE(moments.back().y.x.col(0).cwiseAbs().maxCoeff(), 1e-9) << friction;
-        EXPECT_NEAR(moments.back().y.x(0, 2), -0.3 + 0.01 / std::cos(40 * M_PI / 180), 1e-9) << friction;
+      EXPECT_LE(energy_rise(moments), 0.1 * of_a_fall) << walls;
+      const double way = method == "verlet" ? g * h * h : 1e-9, speed = method == "verlet" ? g * h : 1e-9;
+      const Moment& last = moments.back();  // without a matrix walls take turns, step by step
+      if (walls < 3) {                      // the bottom of the groove, at equal distance from both walls
+        EXPECT_LE(last.y.x.col(0).cwiseAbs().maxCoeff(), way) << friction;
+        EXPECT_NEAR(last.y.x(0, 2), -0.3 + 0.01 / std::cos(40 * M_PI / 180), way) << friction;
       }
-      EXPECT_LE(moments.back().y.v.norm(), 1e-9) << walls;
+      EXPECT_LE(last.y.v.norm(), speed) << walls;
     }
 }
 

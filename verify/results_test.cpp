@@ -62,6 +62,7 @@ RunRecord full_record() {
   run.final_state.v = solver::Vectors::Constant(2, 3, -0.0);
   run.final_state.v(1, 2) = nan;
   run.error = ErrorRecord{1e-5, 2e-5, "cvode-bdf + arkode-esdirk", 1e-11, 3e-10, 7, 1e-3, 1e-4, 1e-6, 1e-7};
+  run.contact = results::ContactRecord{4e-3, 1e-9, 0.25, nan};
   return run;
 }
 
@@ -79,15 +80,19 @@ std::string as_text(const solver::Vectors& values) {
 /// equal and -0.0 differs from 0.0.
 std::string as_text(const RunRecord& run) {
   const auto& [scene, scene_toml, overrides, plan, method, stage, linear, step, until, parameters, stiffness, to_damping,
-               outcome, message, last_good_time, steps, times_ms, work, state, error] = run;
+               outcome, message, last_good_time, steps, times_ms, work, state, error, contact] = run;
   std::string text = fmt::format("{}\n", fmt::join({scene, scene_toml, overrides, plan, method, stage, linear}, "\n"));
   text += fmt::format("{} {} {} {} {}\n{}\n{}\n", step, until, stiffness, to_damping, last_good_time, outcome, message);
   for (const auto& [name, value, unit, description] : parameters)
     text += fmt::format("{} {} {} {}\n", name, value, unit, description);
-  for (const auto& [t, h, updates, cg, kinetic, potential] : steps)
-    text += fmt::format("{} {} {} {} {} {}\n", t, h, updates, cg, kinetic, potential);
+  for (const auto& [t, h, updates, cg, kinetic, potential, contacts] : steps)
+    text += fmt::format("{} {} {} {} {} {} {}\n", t, h, updates, cg, kinetic, potential, contacts);
   for (const auto& [name, description, count] : work) text += fmt::format("{} {} {}\n", name, description, count);
   text += fmt::format("{}\n{}\n{}\n", times_ms, as_text(state.x), as_text(state.v));
+  if (contact) {
+    const auto& [clearance, rise, area, reference_area] = *contact;
+    text += fmt::format("{} {} {} {}\n", clearance, rise, area, reference_area);
+  }
   if (!error) return text;
   const auto& [rms, maximum, reference, tolerance, reference_error, growth, energy, energy_spread, centre, centre_spread] =
       *error;
@@ -380,8 +385,8 @@ TEST(ReadRuns, RefusesForeignHdf5AndOtherVersions) {
   };
   const hdf5::Handle file = hdf5::create_in_memory("image");
   EXPECT_THAT(publish_image(folder / "foreign.h5", file), HasSubstr("foreign.h5: schema_version: can't locate attribute"));
-  hdf5::write_integer(file, "schema_version", 3);
-  EXPECT_THAT(publish_image(folder / "newer.h5", file), HasSubstr("schema_version is 3, this program reads 2"));
+  hdf5::write_integer(file, "schema_version", 4);
+  EXPECT_THAT(publish_image(folder / "newer.h5", file), HasSubstr("schema_version is 4, this program reads 3"));
 }
 
 }  // namespace

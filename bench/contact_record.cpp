@@ -1,0 +1,39 @@
+#include "bench/contact_record.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace drape::bench {
+
+ContactWatch::ContactWatch(const model::Scene& scene, const model::Cloth& cloth) : scene_(scene), cloth_(cloth) {
+  record_.clearance = std::numeric_limits<double>::infinity();
+}
+
+void ContactWatch::see(double t, const solver::State& y, double kinetic, double potential) {
+  if (!cloth_.contacts) return;
+  const double energy = kinetic + potential;
+  if (!begun_) {
+    start_ = potential;
+    least_ = energy;
+    begun_ = true;
+  }
+  scale_ = std::max(scale_, kinetic + std::abs(potential - start_));
+  rise_ = std::max(rise_, energy - least_);
+  least_ = std::min(least_, energy);
+  record_.clearance = std::min(record_.clearance, cloth_.contacts->distances(t, y.x).minCoeff());
+  record_.area = contact_area(scene_, cloth_, t, y.x);
+  record_.energy_rise = scale_ > 0 ? rise_ / scale_ : 0;
+}
+
+std::optional<results::ContactRecord> ContactWatch::result() const {
+  if (!cloth_.contacts) return {};
+  return record_;
+}
+
+double contact_area(const model::Scene& scene, const model::Cloth& cloth, double t, const solver::Vectors& x) {
+  const Eigen::VectorXd areas = scene.sheet.grid.cell_areas();
+  const Eigen::VectorXd distances = cloth.contacts->distances(t, x);
+  return (distances.array() <= 1.05 * scene.contact.distance).select(areas, 0).sum() / areas.sum();
+}
+
+}  // namespace drape::bench

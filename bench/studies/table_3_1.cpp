@@ -1,0 +1,82 @@
+#include <fmt/format.h>
+
+#include <array>
+#include <limits>
+
+#include "bench/draping.hpp"
+#include "bench/studies.hpp"
+#include "model/scene_file.hpp"
+
+namespace drape::bench {
+namespace {
+
+constexpr double step = 0.01;  // s
+
+/// Two values of the stiffness and two of the damping: what grows with k and falls with d is seen in these four.
+struct Block {
+  std::string name;
+  std::array<double, 2> k, d;  ///< ascending [N/m], [N s/m]
+  std::array<std::array<std::optional<Printed>, 2>, 2> thesis;
+};
+
+std::vector<Block> blocks() {
+  return {{"thesis", {1e3, 1e5}, {160, 1600}, {{{Printed{377, 566}, Printed{52, 52}}, {Printed{803, 1160}, Printed{198, 538}}}}},
+          {"drapes", {1e3, 1e5}, {0.5, 5}, {}}};
+}
+
+Draping run(double k, double d, bool quick) {
+  std::vector<model::Override> overrides{{"material.tension", fmt::format("{}", k)},
+                                         {"material.damping", fmt::format("{}", d)}};
+  if (quick) overrides.insert(overrides.end(), {{"grid.n", "8"}, {"end.time", "0.1"}});
+  return drape_once({model::load_scene("tablecloth", overrides), "", &solver::method("bdf2"), step, {}});
+}
+
+/// What a run cost; a run that stalls costs more than any other.
+double cost(const Draping& draping, const char* work) {
+  if (draping.run.outcome != to_string(solver::Outcome::success)) return std::numeric_limits<double>::infinity();
+  return static_cast<double>(work_count(draping.run, work));
+}
+
+using Runs = std::array<std::array<Draping, 2>, 2>;  ///< by k, then by d
+
+/// The thesis: "increasing Young's modulus leads to a larger number of iterations … a larger damping coefficient smoothes the
+/// trajectories and fewer iterations are necessary".
+std::string verdict(const Runs& runs) {
+  bool grows = true, falls = true;
+  for (const char* work : {"updates", "cg_iterations"})
+    for (const int i : {0, 1}) {
+      grows = grows && cost(runs[1][i], work) > cost(runs[0][i], work);
+      falls = falls && cost(runs[i][1], work) < cost(runs[i][0], work);
+    }
+  return fmt::format("{} with k, {} with d", grows ? "grows" : "does NOT always grow", falls ? "falls" : "does NOT always fall");
+}
+
+results::Table compute(bool quick, Progress& progress) {
+  results::TableBuilder table("table-3.1", "Table 3.1: the work of BDF(2) on the tablecloth against stiffness k and damping d");
+  for (const Block& block : blocks()) {
+    Runs runs;
+    for (const int i : {0, 1})
+      for (const int j : {0, 1}) {
+        progress.show(fmt::format("tablecloth, k = {}, d = {}", block.k[i], block.d[j]));
+        runs[i][j] = run(block.k[i], block.d[j], quick);
+        table.row();
+        table.text("rows", "rows", "the thesis' parameters, or such that the cloth drapes within the time", block.name);
+        table.number("tension", "k", "N/m", "tension modulus", block.k[i]);
+        table.number("damping", "d", "N s/m", "linear damping", block.d[j]);
+        table.number("stiffness_to_damping", "h k/d", "1", "what the fixed-point loop's contraction depends on",
+                     step * block.k[i] / block.d[j]);
+        add_draping(table, runs[i][j], {}, block.thesis[i][j]);
+        progress.advance();
+      }
+    table.text("verdict", "work", "of the four runs: whether updates and CG iterations do as the thesis says", verdict(runs));
+  }
+  return table.finish();
+}
+
+}  // namespace
+
+std::vector<TableJob> table_3_1(bool quick) {
+  return {{static_cast<int>(4 * blocks().size()), [quick](Progress& progress) { return compute(quick, progress); }}};
+}
+
+}  // namespace drape::bench

@@ -1,0 +1,86 @@
+#include <fmt/format.h>
+
+#include <map>
+
+#include "bench/draping.hpp"
+#include "bench/studies.hpp"
+#include "bench/timing.hpp"
+#include "model/scene_file.hpp"
+
+namespace drape::bench {
+namespace {
+
+/// What the thesis printed of a method.
+struct Measured {
+  Printed work;
+  double seconds;  ///< on a Pentium III/660 MHz
+};
+
+const std::map<std::string_view, Measured> thesis{{"imex-euler", {{100, 745}, 1.69}},
+                                                  {"implicit-euler", {{206, 1038}, 3.06}},
+                                                  {"sbdf2", {{100, 304}, 1.57}},
+                                                  {"bdf2", {{122, 857}, 2.57}},
+                                                  {"midpoint", {{494, 813}, 4.39}}};
+
+/// All methods with the same cloth and the same tolerances.
+struct Block {
+  std::string name;
+  bool of_thesis;  ///< k and d as printed
+  double loop_tolerance = solver::Options().loop_tolerance;
+  double cg_tolerance = solver::Options().cg_tolerance;
+};
+
+/// SBDF(2)'s 3 iterations a step in the thesis are those of a tolerance of about 1e-2.
+std::vector<Block> blocks() {
+  return {{"thesis' d", true}, {"thesis' d, loose", true, 1e-1, 1e-2}, {"drapes", false}, {"drapes, loose", false, 1e-1, 1e-2}};
+}
+
+Group cells(const Block& block, bool quick) {
+  std::vector<model::Override> overrides;
+  if (block.of_thesis) overrides = {{"material.tension", "1e4"}, {"material.damping", "50"}};
+  if (quick) overrides.insert(overrides.end(), {{"grid.n", "8"}, {"end.time", "0.1"}});
+  const model::Scene scene = model::load_scene("tablecloth", overrides);
+  Group group;
+  for (const solver::Method& method : solver::methods()) {
+    Cell cell{scene, "", &method, 0.01, {}};
+    cell.options.loop_tolerance = block.loop_tolerance;
+    cell.options.cg_tolerance = block.cg_tolerance;
+    group.push_back(cell);
+  }
+  return group;
+}
+
+void add_row(results::TableBuilder& table, const Block& block, const Cell& cell, double solver_ms) {
+  table.row();
+  table.text("cloth", "cloth", "k and d as in the thesis, or those of the scene", block.name);
+  table.number("damping", "d", "N s/m", "linear damping", cell.scene.sheet.material.damping.weft);
+  table.number("loop_tolerance", "loop tol.", "1", "of the fixed-point loop, over |b|", cell.options.loop_tolerance);
+  table.number("cg_tolerance", "CG tol.", "1", "of a linear solve, over |b|; in the loop at most half of its",
+               cell.options.cg_tolerance);
+  table.text("method", "method", "time integrator", std::string(cell.method->name));
+  const auto printed = thesis.find(cell.method->name);
+  const bool known = block.of_thesis && printed != thesis.end();
+  add_draping(table, drape_once(cell), solver_ms, known ? std::optional(printed->second.work) : std::nullopt);
+  if (known)
+    table.number("thesis_seconds", "thesis: solver", "s", "printed in the thesis: Pentium III, 660 MHz", printed->second.seconds);
+}
+
+results::Table compute(bool quick, Progress& progress) {
+  results::TableBuilder table("table-3.2", "Table 3.2: the methods on the tablecloth; the thesis' figures are from a Pentium III");
+  for (const Block& block : blocks()) {
+    progress.show("tablecloth, " + block.name);
+    const Group group = cells(block, quick);
+    const auto times = time_group(group, quick ? 1 : 3, [&] { progress.advance(); });
+    for (std::size_t k = 0; k < group.size(); ++k) add_row(table, block, group[k], median(times[k]));
+  }
+  return table.finish();
+}
+
+}  // namespace
+
+std::vector<TableJob> table_3_2(bool quick) {
+  const auto parts = static_cast<int>(blocks().size() * solver::methods().size()) * (quick ? 1 : 3);
+  return {{parts, [quick](Progress& progress) { return compute(quick, progress); }}};
+}
+
+}  // namespace drape::bench
