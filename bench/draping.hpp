@@ -1,27 +1,23 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
-#include "bench/cell.hpp"
+#include "model/scene.hpp"
+#include "results/run_record.hpp"
 #include "results/table_builder.hpp"
 
 namespace drape::bench {
 
-/// A run of a sheet that falls on an obstacle, with what the thesis' tables look at.
-struct Draping {
-  results::RunRecord run;
-  double drop = 0;      ///< by which the four corners have sunk, their mean [m]
-  int constrained = 0;  ///< particles that touched something in the last step
-};
-Draping drape_once(const Cell& cell);
-
-/// What the thesis printed of a run, on another machine, with scales of k and d that it leaves open.
+/// What the thesis printed of a run: of another machine, and of a cloth whose scale of d it leaves open.
 struct Printed {
   std::int64_t updates, cg_iterations;
+  std::optional<double> seconds;
 };
 
-/// The columns of such a run in the current row. `solver_ms`: what it took, if that was measured.
-void add_draping(results::TableBuilder& table, const Draping& draping, std::optional<double> solver_ms,
+/// The columns of a run of a falling sheet in the current row: work, how far the corners sink, contacts, and the thesis'
+/// figures.
+void add_draping(results::TableBuilder& table, const model::Scene& scene, const results::RunRecord& run,
                  const std::optional<Printed>& thesis);
 
 /// The median of at least one number.

@@ -129,7 +129,7 @@ TEST(Compile, DescribesThePlanInOneLine) {
   scene.pins = {{.where = "corners", .particles = {}, .directions = {true, false, true}}};
   EXPECT_EQ(to_string(compile(scene).plan),
             "20 particles, 8 of 60 degrees of freedom pinned; forces: tension, damping, printed-shear, contraction, plate, "
-            "gravity; normals: yes; entries of K: 82, of D: 82");
+            "gravity; normals: yes; obstacles: 0; entries of K: 82, of D: 82");
   EXPECT_THAT(to_string(compile(Scene{}).plan), testing::HasSubstr("forces: none; normals: no"));
 }
 

@@ -8,10 +8,10 @@
 namespace drape::verify::contact_scenes {
 namespace {
 
+Trial compiled(const model::Scene& scene) { return {scene, model::compile(scene)}; }
+
 Trial trial(const std::string& toml, std::span<const model::Override> changes) {
-  Trial made{model::parse_scene(toml, "test", changes), {}};
-  made.cloth = model::compile(made.scene);
-  return made;
+  return compiled(model::parse_scene(toml, "test", changes));
 }
 
 }  // namespace
@@ -33,6 +33,10 @@ Trial sheet(const std::string& more, std::span<const model::Override> changes) {
       "forces = { gravity = [0, 0, -9.81] }\n" +
           more,
       changes);
+}
+
+Trial builtin(const std::string& name, std::span<const model::Override> changes) {
+  return compiled(model::load_scene(name, changes));
 }
 
 std::vector<Moment> run(const Trial& trial, const std::string& method, double h, const solver::Options& options) {

@@ -26,6 +26,9 @@ Trial particles(const std::string& more, std::span<const model::Override> change
 /// A horizontal sheet of 0.3 m with 7 × 7 particles at height 0; `more`: TOML.
 Trial sheet(const std::string& more, std::span<const model::Override> changes = {});
 
+/// A scene by name.
+Trial builtin(const std::string& name, std::span<const model::Override> changes = {});
+
 /// A step as it was seen.
 struct Moment {
   double t;

@@ -45,6 +45,20 @@ TEST_P(Contact, DropsComeToRestAtTheBorderWithoutBouncing) {
   EXPECT_LE(energy_rise(moments), 1e-15);
 }
 
+TEST_P(Contact, LeavesTheCollisionAreaGradually) {
+  for (const double omega : {0.5, 0.25}) {
+    const Trial trial = particles(fmt::format(
+        "contact = {{ distance = 0.01, relaxation = {} }}\nobstacles = [{{ shape = 'plane', position = [0, 0, -0.002] }}]\n"
+        "end.time = 0.05\n",
+        omega));
+    const auto moments = run(trial, method, 0.01);
+    for (std::size_t k = 1; k < moments.size(); ++k) {
+      const double depth = 0.008 - moments[k].y.x(0, 2), before = 0.008 - moments[k - 1].y.x(0, 2);
+      EXPECT_NEAR(depth, (1 - omega) * before, 1e-12) << omega << ", step " << k;
+    }
+  }
+}
+
 TEST_P(Contact, AreNotTunnelledByLongSteps) {
   const Trial trial = particles("obstacles = [{ shape = 'box', size = [1, 1, 0.001], position = [0, 0, -0.5] }]\nend.time = 2");
   const auto moments = run(trial, method, 0.25);

@@ -45,6 +45,7 @@ const std::vector<Confined> confined_libraries = {
       "sunnonlinsol/"},
      "reference/"},
     {{"cholmod", "suitesparse/cholmod", "Eigen/CholmodSupport"}, "solver/"},
+    {{"assimp/", "unsupported/Eigen/BVH"}, "model/mesh_shape.cpp"},
 };
 
 /// The text without its comments; "//" in a string is none.

@@ -167,7 +167,7 @@ TriangleMesh spiky_mesh(double radius) {
   mesh.triangles = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
   mesh = quartered(quartered(mesh));
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
-    mesh.vertices[v] = (mesh.vertices[v].normalized() * (v % 2 == 0 ? 1 : radius)).cast<float>().cast<double>();
+    mesh.vertices[v] = (mesh.vertices[v].normalized() * (v % 2 == 0 ? 1 : radius) * 1024).array().round() / 1024;
   return mesh;
 }
 

@@ -64,20 +64,20 @@ const std::vector<RunRecord> runs{good_run(), failed_run()};
 TEST(Csv, HasTheColumnsThatScriptsRelyOn) {
   EXPECT_EQ(to_csv(to_table({})),
             "scene,method,step,outcome,message,steps,updates,cg_iterations,wall_ms_min,wall_ms_median,wall_ms_max,error_rms,"
-            "reference,reference_error,error_max,growth,energy_error,centre_error,numerical_stiffness,stiffness_to_damping,"
-            "last_good_time,set\n");
+            "reference,reference_error,error_max,growth,energy_error,centre_error,clearance,energy_rise,contact_area,"
+            "numerical_stiffness,stiffness_to_damping,last_good_time,set\n");
 }
 
 TEST(Csv, GivesTotalsQuantilesAndAllDigits) {
   EXPECT_THAT(
       to_csv(to_table(std::vector{good_run()})),
-      HasSubstr("\nflag,bdf2/cholesky,0.01,success,,2,3,42,1,2.5,4,1.23456789e-05,cvode-bdf,3e-10,2.5e-05,0.5,0.001,2e-06,"
+      HasSubstr("\nflag,bdf2/cholesky,0.01,success,,2,3,42,1,2.5,4,1.23456789e-05,cvode-bdf,3e-10,2.5e-05,0.5,0.001,2e-06,,,,"
                 "0.3333333333333333,inf,0.02,\n"));
 }
 
 TEST(Csv, QuotesTextAndLeavesCellsWithoutValueEmpty) {
   EXPECT_THAT(to_csv(to_table(std::vector{failed_run()})),
-              HasSubstr("\nFähnchen,bdf2/cholesky,0.01,not converged,\"said \"\"no\"\", twice\nand again\",2,3,42,,,,,,,,,,,"
+              HasSubstr("\nFähnchen,bdf2/cholesky,0.01,not converged,\"said \"\"no\"\", twice\nand again\",2,3,42,,,,,,,,,,,,,,"
                         "0.3333333333333333,inf,0.02,material.damping=0.5\n"));
 }
 
@@ -162,7 +162,7 @@ TEST(Table, HasTheUnitsOfItsColumns) {
   std::string units;
   for (const Column& column : table.columns)
     if (!column.unit.empty() && column.unit != "1") units += column.name + " [" + column.unit + "] ";
-  EXPECT_EQ(units, "step [s] wall_ms_min [ms] wall_ms_median [ms] wall_ms_max [ms] last_good_time [s] ");
+  EXPECT_EQ(units, "step [s] wall_ms_min [ms] wall_ms_median [ms] wall_ms_max [ms] clearance [m] last_good_time [s] ");
 }
 
 TEST(Table, FailedRunShowsHowAndWhenInPlaceOfItsError) {

@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <memory>
 #include <numbers>
 
 #include "bench/studies.hpp"
@@ -11,67 +13,175 @@
 namespace drape::bench {
 namespace {
 
-/// Energy [J] of the bending along u, wave by wave: the sine transform of the second differences of every line, so that the
-/// parts add up to ½ B ∫ |s_uu|² as the plate has it. Wave m has m half-waves between the side edges.
-Eigen::VectorXd bending_energy(const model::Sheet& sheet, const solver::Vectors& x) {
-  const model::Grid& grid = sheet.grid;
-  const int waves = grid.nu - 2;
-  const double l = grid.spacing_u();
-  Eigen::MatrixXd sine(waves, waves);  // orthogonal
-  for (int m = 0; m < waves; ++m)
-    for (int a = 0; a < waves; ++a)
-      sine(m, a) = std::sqrt(2.0 / (waves + 1)) * std::sin(std::numbers::pi * (m + 1) * (a + 1) / (waves + 1));
-  Eigen::VectorXd energy = Eigen::VectorXd::Zero(waves);
-  for (int b = 0; b < grid.nv; ++b) {
-    const auto line = x.middleRows(grid.index(0, b), grid.nu);
-    const Eigen::MatrixXd curvature =
-        (line.topRows(waves) - 2 * line.middleRows(1, waves) + line.bottomRows(waves)) / (l * l);
-    energy += 0.5 * sheet.material.bend.weft * grid.cell_area(1, b) * (sine * curvature).rowwise().squaredNorm();
-  }
-  return energy;
-}
+constexpr double step = 0.01;  ///< [s]
+constexpr double last = 1;     ///< part of the run that is looked at [s]
+constexpr double smoothed = 0.95;
 
-/// What is to be seen of a sheet in the wind in the last part of a run, means over time.
-struct Flutter {
-  std::string name;
-  results::RunRecord run;
-  std::vector<double> swing;  ///< mean of the free edge's distances from its plane at the start, at every step [m]
-  double wrinkles = 0;        ///< root mean square distance of the free edge from this mean [m]
-  Eigen::VectorXd energy;     ///< wave by wave [J]
+/// Waves between the side edges: the cosines, orthogonal in the dual cells along a line, and the sines of its inner particles.
+/// Row m - 1 has m half-waves, 1 ≤ m ≤ n - 2.
+class Waves {
+ public:
+  explicit Waves(const model::Scene& scene) : sheet_(scene.sheet), cosine_(count(), count() + 2), sine_(count(), count()) {
+    const double n = count() + 1, norm = std::sqrt(2 / n);
+    for (int m = 1; m <= count(); ++m)
+      for (int a = 0; a < count() + 2; ++a) {
+        const double phase = std::numbers::pi * m * a / n;
+        cosine_(m - 1, a) = norm * model::Grid::dual_width(a, count() + 2) * std::cos(phase);
+        if (a > 0 && a <= count()) sine_(m - 1, a - 1) = norm * std::sin(phase);
+      }
+  }
+
+  int count() const { return sheet_.grid.nu - 2; }
+
+  /// ½ B ∫ |s_uu|² of every wave [J]: they add up to the plate's energy of bending along u.
+  Eigen::VectorXd bending(const solver::Vectors& x) const {
+    const double l = sheet_.grid.spacing_u();
+    return sum(
+        0.5 * sheet_.material.bend.weft / (l * l * l * l),
+        [&](const auto& line) -> Eigen::MatrixXd {
+          return sine_ * (line.topRows(count()) - 2 * line.middleRows(1, count()) + line.bottomRows(count()));
+        },
+        x);
+  }
+
+  /// ½ ρ ∫ |v|² of every wave [J]: with that of the mean along u they add up to the kinetic energy.
+  Eigen::VectorXd kinetic(const solver::Vectors& v) const {
+    return sum(
+        0.5 * sheet_.material.density, [&](const auto& line) -> Eigen::MatrixXd { return cosine_ * line; }, v);
+  }
+
+ private:
+  /// Over all lines.
+  template <class Transform>
+  Eigen::VectorXd sum(double factor, const Transform& transform, const solver::Vectors& field) const {
+    const model::Grid& grid = sheet_.grid;
+    Eigen::VectorXd energy = Eigen::VectorXd::Zero(count());
+    for (int b = 0; b < grid.nv; ++b)
+      energy += factor * grid.cell_area(1, b) * transform(field.middleRows(grid.index(0, b), grid.nu)).rowwise().squaredNorm();
+    return energy;
+  }
+
+  const model::Sheet& sheet_;
+  Eigen::MatrixXd cosine_, sine_;
 };
 
-Flutter flutter(const model::Scene& scene, const char* method, double step, double last) {
-  const model::Grid& grid = scene.sheet.grid;
-  Flutter seen{fmt::format("{}, {} s", method, step), {}, {}, 0, Eigen::VectorXd::Zero(grid.nu - 2)};
-  seen.run = record({scene, "", &solver::method(method), step, {}}, [&](const solver::StepReport& s) {
+/// What is to be seen of a sheet in the wind in the last part of a run. Energies are means over time.
+struct Flutter {
+  results::RunRecord run;
+  std::vector<double> swing;         ///< mean of the free edge's distance from the plane of the start, step by step [m]
+  double wrinkles = 0;               ///< root mean square distance of the free edge from this mean [m]
+  Eigen::VectorXd bending, kinetic;  ///< wave by wave [J]
+
+  double peak_to_peak() const {
+    const auto [low, high] = std::ranges::minmax(swing);
+    return high - low;
+  }
+  double rms() const {
+    const Eigen::Map<const Eigen::ArrayXd> s(swing.data(), static_cast<Eigen::Index>(swing.size()));
+    return std::sqrt((s - s.mean()).square().mean());
+  }
+};
+
+Flutter flutter(const model::Scene& scene, const char* method) {
+  solver::Options options;
+  options.max_updates = 20'000;  // with little damping the loop is slow
+  const Waves waves(scene);
+  Flutter seen;
+  seen.bending = seen.kinetic = Eigen::VectorXd::Zero(waves.count());
+  seen.run = record({scene, "", &solver::method(method), step, options}, [&](const solver::StepReport& s) {
     if (s.t <= scene.end - last) return;
-    const Eigen::ArrayXd edge = s.y.x.col(1).head(grid.nu);  // the lower one
+    const Eigen::ArrayXd edge = s.y.x.col(1).head(scene.sheet.grid.nu);  // the lower one; the start is in the plane y = 0
     seen.swing.push_back(edge.mean());
     seen.wrinkles += (edge - edge.mean()).square().mean();
-    seen.energy += bending_energy(scene.sheet, s.y.x);
+    seen.bending += waves.bending(s.y.x);
+    seen.kinetic += waves.kinetic(s.y.v);
   });
   const auto steps = static_cast<double>(seen.swing.size());
   seen.wrinkles = std::sqrt(seen.wrinkles / steps);
-  seen.energy /= steps;
+  seen.bending /= steps;
+  seen.kinetic /= steps;
   return seen;
 }
 
-results::Table compute(bool, Progress& progress) {
-  results::TableBuilder table("figure-3.2", "");
-  const auto scene = model::load_scene("wind");
-  std::vector<Flutter> all;
-  for (auto [m, h] : {std::pair{"implicit-euler", 0.01}, {"bdf2", 0.01}, {"bdf2", 0.005},{"midpoint", 0.01}, {"bdf2", 0.0025}, {"bdf2", 0.00125}, {"bdf2", 0.01/16}, {"midpoint", 0.00125}}) {
-    all.push_back(flutter(scene, m, h, 1));
-    table.row();
-    const auto& f = all.back();
-    table.text("n", "n", "", f.name);
-    table.text("o", "o", "", f.run.outcome);
-    const auto [lo, hi] = std::ranges::minmax(f.swing);
-    table.number("pp", "pp", "m", "", hi - lo);
-    table.number("wr", "wrinkles", "m", "", f.wrinkles);
-    table.number("E", "E", "J", "", f.energy.sum());
-    for (int m2 = 0; m2 < f.energy.size(); ++m2) table.number(fmt::format("e{}", m2).c_str(), fmt::format("e{}", m2+1).c_str(), "1", "", f.energy[m2]*1e6);
+/// The cloth's own damping hides Euler's, which on transverse waves is hσ/2: some 0.01 N s/m with the sheet's weight for σ.
+constexpr const char* dampings[] = {"0.2", "0.02", "0.002"};
+
+/// Euler, BDF(2), and the truth for the same particles: sub-steps of some 10⁻⁴ s.
+constexpr const char* methods[] = {"implicit-euler", "bdf2", "verlet"};
+using Flutters = std::array<Flutter, 3>;
+
+Flutters compare(const char* damping, bool quick, Progress& progress) {
+  std::vector<model::Override> overrides{{"material.damping", damping}};
+  if (quick) overrides.insert(overrides.end(), {{"grid.n", "8"}, {"end.time", "1.5"}});
+  const model::Scene scene = model::load_scene("wind", overrides);
+  Flutters all;
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    progress.show(fmt::format("{}, d = {}, {}", scene.name, damping, methods[k]));
+    all[k] = flutter(scene, methods[k]);
     progress.advance();
+  }
+  return all;
+}
+
+using Runs = std::vector<Flutters>;  ///< one for each damping
+
+void add_damping(results::TableBuilder& table, std::size_t k) {
+  table.row();
+  table.number("damping", "d", "N s/m", "linear damping; 0.2 is the scene's", std::stod(dampings[k]));
+}
+
+results::Table swings(const Runs& runs) {
+  results::TableBuilder table("figure-3.2", fmt::format("Figure 3.2: the sheet in the wind, h = {} s, the last second", step));
+  for (std::size_t k = 0; k < runs.size(); ++k)
+    for (const Flutter& seen : runs[k]) {
+      add_damping(table, k);
+      table.text("method", "method", "time integrator", seen.run.method);
+      table.number("peak_to_peak", "swing", "m", "of the free edge's mean, from peak to peak", seen.peak_to_peak());
+      table.number("rms", "rms", "m", "of the same", seen.rms());
+      table.number("wrinkles", "wrinkles", "m", "root mean square distance of the free edge from its mean", seen.wrinkles);
+      table.number("bending", "bending", "J", "energy of the bending along u, mean over time", seen.bending.sum());
+      table.number("kinetic", "kinetic", "J", "energy of all waves along u, mean over time", seen.kinetic.sum());
+      table.text("outcome", "outcome", "how the run ended", seen.run.outcome);
+      if (&seen == &runs[k].front())
+        table.text("verdict", "verdict", "whether Euler swings less than the truth",
+                   seen.peak_to_peak() < runs[k][2].peak_to_peak() ? "swings less" : "does NOT swing less");
+    }
+  return table.finish();
+}
+
+/// Energies of some waves and what became of them. Names of the columns begin with `name`.
+std::string add_energies(results::TableBuilder& table, const std::string& name, const std::array<double, 3>& energy) {
+  const char* titles[] = {"Euler", "BDF(2)", "truth"};
+  for (std::size_t k = 0; k < energy.size(); ++k)
+    table.number(fmt::format("{}_{}", name, methods[k]).c_str(), fmt::format("{}: {}", name, titles[k]).c_str(), "J",
+                 "energy of these waves, mean over the last second", energy[k]);
+  const double euler = energy[0] / energy[2], bdf2 = energy[1] / energy[2];
+  table.number((name + "_ratio").c_str(), "Euler/truth", "1", "ratio of these energies", euler);
+  table.number((name + "_bdf2_ratio").c_str(), "BDF(2)/truth", "1", "ratio of these energies", bdf2);
+  if (std::abs(std::log(bdf2)) > std::abs(std::log(euler))) return "BDF(2) is NOT nearer";
+  return euler < smoothed ? "smoothed by Euler" : "not smoothed";
+}
+
+/// Single waves, then thirds of them: of single ones a second is too short to say much where the motion is chaotic.
+results::Table spectrum(const Runs& runs) {
+  results::TableBuilder table("figure-3.2-waves", "Figure 3.2: energy of the waves along u, with m half-waves");
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    const Flutters& all = runs[k];
+    const Eigen::Index count = all[0].bending.size(), third = count / 3;
+    const auto add = [&](Eigen::Index first, Eigen::Index n) {
+      const auto of = [&](Eigen::VectorXd Flutter::*energy) {
+        return std::array{(all[0].*energy).segment(first, n).sum(), (all[1].*energy).segment(first, n).sum(),
+                          (all[2].*energy).segment(first, n).sum()};
+      };
+      add_damping(table, k);
+      table.text("waves", "m", "half-waves between the side edges",
+                 n == 1 ? std::to_string(first + 1) : fmt::format("{}–{}", first + 1, first + n));
+      add_energies(table, "bending", of(&Flutter::bending));
+      const std::string verdict = add_energies(table, "kinetic", of(&Flutter::kinetic));
+      if (n > 1) table.text("verdict", "motion", "what Euler does to the kinetic energy", verdict);
+    };
+    for (Eigen::Index m = 0; m < count; ++m) add(m, 1);
+    for (Eigen::Index m = 0; m + third <= count; m += third) add(m, third);
   }
   return table.finish();
 }
@@ -79,7 +189,13 @@ results::Table compute(bool, Progress& progress) {
 }  // namespace
 
 std::vector<TableJob> figure_3_2(bool quick) {
-  return {{8, [quick](Progress& progress) { return compute(quick, progress); }}};
+  const auto runs = std::make_shared<Runs>();  // of the first table, for the second
+  return {{static_cast<int>(std::size(dampings) * std::size(methods)),
+           [=](Progress& progress) {
+             for (const char* damping : dampings) runs->push_back(compare(damping, quick, progress));
+             return swings(*runs);
+           }},
+          {0, [=](Progress&) { return spectrum(*runs); }}};
 }
 
 }  // namespace drape::bench
