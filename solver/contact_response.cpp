@@ -125,12 +125,24 @@ void ContactResponse::configure(Touched& p) {
   p.obstacle = p.inverse.transpose() * recede + p.tangent() * mean;
   if (p.status == Status::free) p.status = first_status(p);
   if (p.status == Status::sticks) {
-    p.velocity += p.tangent() * p.obstacle;
+    p.velocity += p.tangent() * (p.obstacle + time_to_impact(p) / h_ * (v0 - p.obstacle));
     p.free.setZero();
   } else {
     p.free = p.tangent();
     if (p.free.trace() < 0.5) p.free.setZero();  // but for round-off
   }
+}
+
+/// How long a particle goes its way freely before it touches something [s], at most h.
+double ContactResponse::time_to_impact(const Touched& p) const {
+  const Eigen::Vector3d v = y0_->v.row(p.particle);
+  double time = h_;
+  for (std::size_t k = p.begin; k < p.end; ++k) {
+    if (!active_[k]) continue;
+    const double approach = (contacts_[k].velocity - v).dot(contacts_[k].normal);
+    time = approach > 0 ? std::min(time, std::max(0.0, contacts_[k].gap) / approach) : 0;
+  }
+  return time;
 }
 
 /// A particle sticks at once if the friction of its impact alone would stop it.

@@ -100,6 +100,7 @@ class ContactResponse {
   void configure(Touched& p);
   void rebuild_filter();
   Status first_status(const Touched& p) const;
+  double time_to_impact(const Touched& p) const;
   bool release(Touched& p, const PerContact& lambda, double noise);
   bool capture(Touched& p, const Eigen::Vector3d& x1);
   void remember_friction(Touched& p, const Past& was) const;

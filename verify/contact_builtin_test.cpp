@@ -32,8 +32,7 @@ std::string word(std::string name) {
   return name;
 }
 
-/// Its whole length for methods that are quick; those that iterate on a force that changes with every update run into rest
-/// on what they met first.
+/// A method that iterates takes long: it runs through the first impacts only.
 Trial trial_of(const std::string& name, const std::string& method) {
   if (method != "bdf2") return builtin(name);
   const std::vector<model::Override> shorter{{"end.time", fmt::format("{}", 0.25 * model::load_scene(name).end)}};
@@ -55,9 +54,8 @@ TEST_P(BuiltinContact, StaysOutsideLosesEnergyAndComesToRest) {
   EXPECT_GE(clearance(trial, moments), trial.scene.contact.distance - 1e-9);
   EXPECT_LE(energy_rise(moments), 1e-4 * (most.energy - least.energy)) << "of the energy that was lost";
   EXPECT_GT(moments.back().contacts.constrained, 0);
-  if (method == "bdf2") return;  // still moves
   const auto fastest = std::ranges::max(moments, {}, [&](const Moment& moment) { return kinetic(trial, moment); });
-  EXPECT_LE(kinetic(trial, moments.back()), 0.1 * kinetic(trial, fastest));
+  EXPECT_LE(kinetic(trial, moments.back()), (method == "bdf2" ? 0.2 : 0.02) * kinetic(trial, fastest));
 }
 
 class BuiltinWithoutObstacles : public testing::TestWithParam<std::string> {};

@@ -203,6 +203,18 @@ TEST_P(Contact, LetsWhatFallsOnEdgesAndCornersOfABoxSlideOff) {
   EXPECT_LE(energy_rise(moments), 1e-12);
 }
 
+TEST_P(Contact, OfStiffSpringsWithABallGainsNoEnergy) {
+  // Particles that stick at once go their way until they touch: held where they were, they would strain the springs.
+  const std::vector<model::Override> small{{"grid.size", "0.0421"}};
+  const Trial trial = particles(
+      "material = { tension = 1e4, damping = 0.5 }\nend.time = 0.06\n"
+      "obstacles = [{ shape = 'sphere', radius = 0.2, position = [0.02105, 0.02105, -0.21], friction = 0.3 }]\n",
+      small);
+  const auto moments = run(trial, method, 0.01);
+  EXPECT_EQ(moments.back().contacts.constrained, 4);
+  EXPECT_LE(energy_rise(moments), 1e-12);
+}
+
 TEST_P(Contact, LeavesPinnedCoordinatesAlone) {
   const Trial trial =
       particles(floor_below +

@@ -25,10 +25,13 @@ using results::TableBuilder;
 using results::verdict;
 using testing::AllOf;
 using testing::Contains;
+using testing::DoubleNear;
 using testing::Each;
 using testing::ElementsAre;
+using testing::Field;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::IsNan;
 using testing::Not;
 using testing::SizeIs;
 
@@ -174,6 +177,23 @@ std::vector<std::string> verdicts(const Table& table) {
   return found;
 }
 
+/// The numbers of a column in the rows whose column `key` is this text; NaN where there is none.
+std::vector<double> numbers(const Table& table, const std::string& column, const std::string& key, const std::string& text) {
+  const auto cells = [&](const std::string& name) -> const std::vector<Cell>& {
+    return std::ranges::find(table.columns, name, &Column::name)->cells;
+  };
+  std::vector<double> found;
+  for (std::size_t row = 0; row < cells(key).size(); ++row) {
+    if (cells(key)[row] != Cell(text)) continue;
+    const Cell& cell = cells(column)[row];
+    if (const auto* count = std::get_if<std::int64_t>(&cell))
+      found.push_back(static_cast<double>(*count));
+    else
+      found.push_back(std::holds_alternative<double>(cell) ? std::get<double>(cell) : std::nan(""));
+  }
+  return found;
+}
+
 class ProgramStudies : public testing::Test {
  protected:
   const BenchIntegrators program;
@@ -213,6 +233,50 @@ TEST_F(ProgramStudies, ReferencesAgree) {
   const auto all = tables("references");
   ASSERT_THAT(all, SizeIs(1));
   EXPECT_THAT(verdicts(all[0]), AllOf(SizeIs(12), Each("agrees")));
+}
+
+TEST_F(ProgramStudies, WorkGrowsWithStiffnessAndFallsWithDampingAsInTheThesis) {
+  const auto all = tables("table-3.1");
+  ASSERT_THAT(all, SizeIs(1));
+  EXPECT_THAT(verdicts(all[0]), ElementsAre("grows with k, falls with d", "grows with k, falls with d"));
+  EXPECT_THAT(numbers(all[0], "thesis_cg_iterations", "rows", "thesis"), ElementsAre(566, 52, 1160, 538));
+}
+
+TEST_F(ProgramStudies, MethodsDrapeTheTableclothButForArtificialDamping) {
+  const auto all = tables("table-3.2");
+  ASSERT_THAT(all, SizeIs(1));
+  const Table& table = all[0];
+  EXPECT_THAT(numbers(table, "sunk", "outcome", "success"), SizeIs(table.columns[0].cells.size())) << "all succeed";
+  EXPECT_THAT(numbers(table, "thesis_updates", "method", "bdf2"), ElementsAre(122, 122, IsNan(), IsNan()));
+  const double truth = numbers(table, "sunk", "method", "verlet").at(1);
+  for (const char* method : {"implicit-euler", "bdf2", "midpoint"})
+    EXPECT_NEAR(numbers(table, "sunk", "method", method).at(2), truth, 0.05 * truth) << method;
+  EXPECT_LT(numbers(table, "sunk", "method", "imex-euler").at(2), 0.2 * truth);
+}
+
+TEST_F(ProgramStudies, EulerSmoothsTheSheetInTheWindAndBdf2Less) {
+  const auto all = tables("figure-3.2");
+  ASSERT_THAT(all, SizeIs(2));
+  EXPECT_THAT(verdicts(all[0]), AllOf(SizeIs(3), Each("swings less")));
+  EXPECT_THAT(verdicts(all[1]), AllOf(SizeIs(9), Each("smoothed by Euler")));
+  EXPECT_THAT(numbers(all[1], "bending_ratio_bdf2", "waves", "1"), Contains(DoubleNear(1, 1e-2))) << "where damping is strong";
+}
+
+TEST_F(ProgramStudies, SemiImplicitMethodsLagAsPredicted) {
+  const auto all = tables("figure-3.3");
+  ASSERT_THAT(all, SizeIs(1));
+  EXPECT_THAT(verdicts(all[0]), AllOf(SizeIs(4), Each("as predicted")));
+}
+
+TEST_F(ProgramStudies, RestingOnTheBoxIsNoHarderThanSwinging) {
+  const auto all = tables("figure-4.3");  // in the order of their names
+  ASSERT_THAT(all, SizeIs(3));
+  const auto bars = numbers(all[1], "value", "method", "bdf2");
+  ASSERT_THAT(bars, SizeIs(3));
+  EXPECT_LE(bars[0], 1.5);
+  EXPECT_THAT(all[2].columns, Contains(Field(&Column::name, "bdf2_contacts")));
+  EXPECT_THAT(all[2].columns, Each(Field(&Column::title, IsEmpty()))) << "every step is for the file";
+  EXPECT_EQ(all[2].columns[0].cells.size() / 5, all[0].columns[0].cells.size());
 }
 
 }  // namespace

@@ -75,6 +75,9 @@ void add_bar(results::TableBuilder& table, const RunRecord& run, const char* wha
   table.text("ratio", "ratio", "of what", what);
   table.number("value", "value", "1", "measured", value);
   table.number("bar", "bar", "1", "what it may be at most", bar);
+  const double liveliest = std::ranges::max(run.steps, {}, &StepRecord::kinetic_energy).kinetic_energy;
+  table.number("motion", "motion", "1", "kinetic energy at the end over the largest one: whether it rests",
+               run.steps.back().kinetic_energy / liveliest);
   const bool touched = before_contact(run).size() < run.steps.size();
   std::string verdict = value <= bar ? "below" : "NOT below";
   if (!touched) verdict = "no contact";
