@@ -241,13 +241,14 @@ TEST_P(Contact, EndsTenThousandRandomDropsOutsideAndAtLessEnergy) {
     trial.cloth.start.x.row(i) << place(random), place(random), 0.3 * place(random) + 0.2;
     trial.cloth.start.v.row(i) << speed(random), speed(random), speed(random);
   }
-  const auto moments = run(trial, method, 0.02);
+  const double h = 0.02, of_a_fall = g * h * g * h / 2;  // in one step, per mass
+  const auto moments = run(trial, method, h);
   const auto energies = [](const Moment& moment) -> Eigen::VectorXd {
     return 0.5 * moment.y.v.rowwise().squaredNorm() + g * moment.y.x.col(2);
   };
   int touched = 0;
   for (std::size_t k = 1; k < moments.size(); ++k) {
-    EXPECT_LE((energies(moments[k]) - energies(moments[k - 1])).maxCoeff(), 1e-10) << moments[k].t;
+    EXPECT_LE((energies(moments[k]) - energies(moments[k - 1])).maxCoeff(), 0.01 * of_a_fall) << moments[k].t;
     touched += moments[k].contacts.constrained;
   }
   EXPECT_GE(touched, 10000) << "or the test would show nothing";
