@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <optional>
@@ -111,6 +112,8 @@ void print_tables(const std::vector<results::Table>& tables, const std::string& 
     return;
   }
   for (const results::Table& table : tables) {
+    if (format == "table" && std::ranges::all_of(table.columns, [](const auto& column) { return column.title.empty(); }))
+      continue;  // for the file
     fmt::print("{}{}\n", format == "csv" ? "# " : "\n", format == "csv" ? table.name : table.description);
     print_table(table, format);
   }

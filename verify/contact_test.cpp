@@ -151,6 +151,50 @@ TEST_P(Contact, EndsWhenTheLiftedPlateStops) {
   }
 }
 
+/// Wind in any direction without regard to the surface, growing from 0 as sin ωt: load in N/m², of which the particles weigh
+/// ρ g = 9.81.
+std::vector<model::Override> wind(const std::string& load) {
+  return {{"forces.wind", load},
+          {"forces.wind_constant", "0"},
+          {"forces.wind_frequency", "2"},
+          {"forces.drag", "1"},
+          {"forces.lift", "1"}};
+}
+
+TEST_P(Contact, EndsWhenAForceLifts) {
+  const Trial trial =
+      particles("contact.distance = 0.01\nobstacles = [{ shape = 'plane', position = [0, 0, -0.01] }]\nend.time = 0.5\n",
+                wind("[0, 0, 19.62]"));
+  const double h = 0.01, lifts = std::asin(0.5) / 2;  // 2 ρ g sin 2t = ρ g
+  for (const Moment& moment : run(trial, method, h)) {
+    if (moment.t == 0 || std::abs(moment.t - lifts) < h) continue;
+    EXPECT_EQ(moment.contacts.constrained, moment.t < lifts ? 4 : 0) << moment.t;
+    if (moment.t < lifts) {
+      EXPECT_LE(moment.y.x.col(2).cwiseAbs().maxCoeff(), 1e-12);
+    }
+    if (moment.t > lifts + 2 * h) {
+      EXPECT_GT(moment.y.v(0, 2), 0);
+    }
+  }
+}
+
+TEST_P(Contact, StopsSlidingAndSticksAsTheForceTells) {
+  const Trial trial = particles(
+      "contact.distance = 0.01\nobstacles = [{ shape = 'plane', position = [0, 0, -0.01], friction = 0.3 }]\nend.time = 0.5\n",
+      wind("[5.886, 0, 0]"));
+  const double h = 0.01, slides = std::asin(0.5) / 2;  // 2 η ρ g sin 2t = η ρ g
+  const auto velocity = [&](double t) { return 5.886 * (std::cos(2 * slides) - std::cos(2 * t)) / 2 - 0.3 * g * (t - slides); };
+  const auto moments = run(trial, method, h);
+  for (const Moment& moment : moments) {
+    if (moment.t < slides - h) {
+      EXPECT_LE(moment.y.v.norm(), 1e-12) << moment.t;
+    }
+  }
+  const Moment& last = moments.back();
+  EXPECT_NEAR(last.y.v(0, 0), velocity(last.t), 3 * h) << "a step later, a force of up to 2.9 N/kg lags";
+  EXPECT_GT(velocity(last.t), 0.2);
+}
+
 TEST_P(Contact, GivesAsMuchMomentumAsItTakes) {
   // A plate that rises with 2 m/s meets particles at rest, without weight.
   const Trial trial = particles(

@@ -13,7 +13,7 @@
 namespace drape::bench {
 namespace {
 
-constexpr double step = 0.01;        ///< [s]
+constexpr double h = 0.01;           ///< [s]
 constexpr std::size_t window = 5;    ///< steps of which people see the mean
 constexpr std::size_t at_rest = 20;  ///< the last steps
 constexpr double most_iterations = 1.5, most_time = 1.3;
@@ -24,7 +24,7 @@ model::Scene swing(bool quick) {
   return model::load_scene("box_swing", overrides);
 }
 
-Cell cell(const model::Scene& scene, std::string_view method) { return {scene, "", &solver::method(method), step, {}}; }
+Cell cell(const model::Scene& scene, std::string_view method) { return {scene, "", &solver::method(method), h, {}}; }
 
 using results::RunRecord;
 using results::StepRecord;
@@ -32,13 +32,13 @@ using Steps = std::span<const StepRecord>;
 
 /// The steps before the first contact.
 Steps before_contact(const RunRecord& run) {
-  return {run.steps.begin(), std::ranges::find_if(run.steps, [](const StepRecord& step) { return step.contacts > 0; })};
+  return {run.steps.begin(), std::ranges::find_if(run.steps, [](const StepRecord& s) { return s.contacts > 0; })};
 }
 
 /// NaN if there are none.
 double mean(Steps steps, int StepRecord::*value) {
   double sum = 0;
-  for (const StepRecord& step : steps) sum += step.*value;
+  for (const StepRecord& s : steps) sum += s.*value;
   return sum / static_cast<double>(steps.size());
 }
 
@@ -56,7 +56,7 @@ results::Table over_time(const char* name, const char* title, const std::vector<
   results::TableBuilder table(name, title);
   for (std::size_t first = 0; first + length <= steps; first += length) {
     table.row();
-    table.number("t", seen ? "until" : "", "s", "end of the last of these steps", step * static_cast<double>(first + length));
+    table.number("t", seen ? "until" : "", "s", "end of the last of these steps", h * static_cast<double>(first + length));
     for (const RunRecord& run : runs) {
       if (first + length > run.steps.size()) continue;
       for (const auto& [curve, description, value] : curves)
@@ -75,9 +75,9 @@ void add_bar(results::TableBuilder& table, const RunRecord& run, const char* wha
   table.text("ratio", "ratio", "of what", what);
   table.number("value", "value", "1", "measured", value);
   table.number("bar", "bar", "1", "what it may be at most", bar);
-  const double liveliest = std::ranges::max(run.steps, {}, &StepRecord::kinetic_energy).kinetic_energy;
-  table.number("motion", "motion", "1", "kinetic energy at the end over the largest one: whether it rests",
-               run.steps.back().kinetic_energy / liveliest);
+  if (!run.steps.empty())
+    table.number("motion", "motion", "1", "kinetic energy at the end over the largest one: whether it rests",
+                 run.steps.back().kinetic_energy / std::ranges::max(run.steps, {}, &StepRecord::kinetic_energy).kinetic_energy);
   const bool touched = before_contact(run).size() < run.steps.size();
   std::string verdict = value <= bar ? "below" : "NOT below";
   if (!touched) verdict = "no contact";

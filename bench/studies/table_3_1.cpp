@@ -10,7 +10,7 @@
 namespace drape::bench {
 namespace {
 
-constexpr double step = 0.01;  // s
+constexpr double step = 0.01;  ///< [s]
 
 /// Two values of the stiffness and two of the damping: what grows with k and falls with d is seen in these four.
 struct Block {

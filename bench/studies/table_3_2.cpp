@@ -26,7 +26,7 @@ struct Block {
   bool loose() const { return cg_tolerance > solver::Options().cg_tolerance; }
 };
 
-/// SBDF(2)'s 3 iterations a step in the thesis are those of a tolerance of about 1e-2.
+/// Loose: so that BDF(2) takes 120 updates, near the thesis' 122. Its 857 CG iterations, against 230, tell of tighter solves.
 std::vector<Block> blocks() {
   return {{"thesis' d", true}, {"thesis' d, loose", true, 1e-1, 1e-2}, {"drapes", false}, {"drapes, loose", false, 1e-1, 1e-2}};
 }
