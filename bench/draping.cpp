@@ -2,8 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
+#include "results/runs_table.hpp"
 #include "solver/outcome.hpp"
 
 namespace drape::bench {
@@ -27,7 +26,8 @@ void add_draping(results::TableBuilder& table, const model::Scene& scene, const 
               work_count(run, "updates"));
   table.count("cg_iterations", "CG", "iterations of conjugate gradients", work_count(run, "cg_iterations"));
   if (!run.times_ms.empty())
-    table.number("solver_ms", "solver", "ms", "wall time of the solver, median of interleaved runs", median(run.times_ms));
+    table.number("solver_ms", "solver", "ms", "wall time of the solver, median of interleaved runs",
+                 results::quantile(run.times_ms, 0.5));
   table.number("sunk", "corners sink", "m", "mean of the four corners from start to end", sunk_corners(scene, run));
   table.count("contacts", "in contact", "particles that touched something in the last step",
               run.steps.empty() ? 0 : run.steps.back().contacts);
@@ -39,13 +39,6 @@ void add_draping(results::TableBuilder& table, const model::Scene& scene, const 
   table.count("thesis_cg_iterations", "thesis: CG", "printed in the thesis", thesis->cg_iterations);
   if (thesis->seconds)
     table.number("thesis_seconds", "thesis: solver", "s", "printed in the thesis: Pentium III, 660 MHz", *thesis->seconds);
-}
-
-double median(std::vector<double> numbers) {
-  const auto middle = numbers.begin() + static_cast<std::ptrdiff_t>(numbers.size() / 2);
-  std::ranges::nth_element(numbers, middle);
-  if (numbers.size() % 2 == 1) return *middle;
-  return (*middle + *std::max_element(numbers.begin(), middle)) / 2;
 }
 
 }  // namespace drape::bench

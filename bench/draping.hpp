@@ -1,7 +1,6 @@
 #pragma once
 
 #include <optional>
-#include <vector>
 
 #include "model/scene.hpp"
 #include "results/run_record.hpp"
@@ -19,8 +18,5 @@ struct Printed {
 /// figures.
 void add_draping(results::TableBuilder& table, const model::Scene& scene, const results::RunRecord& run,
                  const std::optional<Printed>& thesis);
-
-/// The median of at least one number.
-double median(std::vector<double> numbers);
 
 }  // namespace drape::bench

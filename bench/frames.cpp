@@ -33,7 +33,7 @@ std::string run_name(const Cell& cell) {
 
 void write(const fs::path& file, double t, const Polygons& polygons) {
   std::ofstream out(file);
-  fmt::print(out, "# t = {} s\n", t);
+  fmt::print(out, "# t = {:g} s\n", t);
   write_obj(out, polygons);
   out.close();
   if (!out) throw results::FileError(fmt::format("{}: cannot be written; choose another --frames", file.string()));

@@ -20,15 +20,9 @@ struct RunColumn {
   std::string (*shown)(const RunRecord&) = nullptr;  ///< if people see something else
 };
 
-/// The time below which a share of the repetitions is: 0 minimum, 0.5 median, 1 maximum; interpolated between two times.
-Cell quantile(const RunRecord& run, double share) {
-  if (run.times_ms.empty()) return {};
-  std::vector<double> sorted = run.times_ms;
-  std::ranges::sort(sorted);
-  const double position = share * static_cast<double>(sorted.size() - 1);
-  const auto below = static_cast<std::size_t>(position);
-  const auto above = std::min(below + 1, sorted.size() - 1);
-  return std::lerp(sorted[below], sorted[above], position - static_cast<double>(below));
+/// Of the times of the repetitions.
+Cell time_quantile(const RunRecord& run, double share) {
+  return run.times_ms.empty() ? Cell() : Cell(quantile(run.times_ms, share));
 }
 
 template <class Value>
@@ -74,9 +68,9 @@ constexpr RunColumn columns[] = {
     {"steps", "steps", "1", [](Run run) -> Cell { return std::ssize(run.steps); }},
     {"updates", "updates", "1", [](Run run) -> Cell { return work_count(run, "updates"); }},
     {"cg_iterations", "CG", "1", [](Run run) -> Cell { return work_count(run, "cg_iterations"); }},
-    {"wall_ms_min", "wall min", "ms", [](Run run) { return quantile(run, 0); }},
-    {"wall_ms_median", "median", "ms", [](Run run) { return quantile(run, 0.5); }},
-    {"wall_ms_max", "max", "ms", [](Run run) { return quantile(run, 1); }},
+    {"wall_ms_min", "wall min", "ms", [](Run run) { return time_quantile(run, 0); }},
+    {"wall_ms_median", "median", "ms", [](Run run) { return time_quantile(run, 0.5); }},
+    {"wall_ms_max", "max", "ms", [](Run run) { return time_quantile(run, 1); }},
     {"error_rms", "rms error", "1", [](Run run) { return of_error(run, &ErrorRecord::rms); }, shown_error},
     {"reference", "", "", [](Run run) { return of_error(run, &ErrorRecord::reference); }},
     {"reference_error", "reference error", "1", [](Run run) { return of_error(run, &ErrorRecord::reference_error); }},
@@ -96,6 +90,14 @@ constexpr RunColumn columns[] = {
 };
 
 }  // namespace
+
+double quantile(std::vector<double> numbers, double share) {
+  std::ranges::sort(numbers);
+  const double position = share * static_cast<double>(numbers.size() - 1);
+  const auto below = static_cast<std::size_t>(position);
+  const auto above = std::min(below + 1, numbers.size() - 1);
+  return std::lerp(numbers[below], numbers[above], position - static_cast<double>(below));
+}
 
 Table to_table(std::span<const RunRecord> runs) {
   Table table{"runs", "one row for each run", {}};

@@ -24,13 +24,13 @@ ContactResponse::ContactResponse(const SplitOde& ode)
           ode.work->counter("constrained_particles", "particles constrained by contacts, summed over steps")),
       changes_(ode.work->counter("contact_changes", "contacts caught, released, or changed between sticking and sliding")) {}
 
-void ContactResponse::begin(double t0, double h, const State& y0) {
+void ContactResponse::begin(double t0, double h, const State& y0, bool again) {
   t0_ = t0;
   h_ = h;
   y0_ = &y0;
-  past_.clear();
+  if (!again) past_.clear();
   for (const Touched& p : touched_)
-    for (std::size_t k = p.begin; k < p.end; ++k)
+    for (std::size_t k = p.begin; k < p.end && !again; ++k)
       if (active_[k]) past_.push_back({p.particle, contacts_[k].obstacle, p.status, p.force, p.bound});
   touched_.clear();
   contacts_.clear();
@@ -266,8 +266,17 @@ void ContactResponse::rewrite_history(const Eigen::Matrix3d& directions, const E
   y0.v.row(particle) += directions * (v1 - change - v0);
 }
 
-Impact ContactResponse::finish(State& y1, State& y0) {
-  Impact impact;
+double ContactResponse::stopped_energy() const {
+  double energy = 0;
+  for (const Touched& p : touched_)
+    if (p.fresh)
+      energy +=
+          0.5 * ode_.mass[p.particle] * (p.constrained() * (p.obstacle - y0_->v.row(p.particle).transpose())).squaredNorm();
+  return energy;
+}
+
+bool ContactResponse::finish(State& y1, State& y0) {
+  bool changed = false;
   for (Touched& p : touched_) {
     if (p.status == Status::free) continue;
     ++constrained_particles_;
@@ -287,10 +296,9 @@ Impact ContactResponse::finish(State& y1, State& y0) {
     if (p.status == Status::slides) f += coulomb(p, y1.v.row(p.particle), p.force, p.bound);
     const Eigen::Matrix3d jumped = impulsive ? p.allowed : constrained;  // friction has an impulse too
     rewrite_history(jumped, f / ode_.mass[p.particle], p.particle, y1, y0);
-    impact.happened = true;
-    impact.energy += 0.5 * ode_.mass[p.particle] * stopped.squaredNorm();
+    changed = true;
   }
-  return impact;
+  return changed;
 }
 
 int ContactResponse::constrained() const {

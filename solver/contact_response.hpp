@@ -7,12 +7,6 @@
 
 namespace drape::solver {
 
-/// What new constraints did to the state at the begin of the step.
-struct Impact {
-  bool happened = false;  ///< it was changed
-  double energy = 0;      ///< kinetic energy of the motion that was stopped [J]
-};
-
 /// Contacts within one step of an implicit method, answered by constraints: inelastic, with Coulomb friction
 /// [Etzmuß 2002, 4.4].
 ///
@@ -30,7 +24,8 @@ class ContactResponse {
   explicit ContactResponse(const SplitOde& ode);
 
   /// Finds what may be touched in the step from t0 to t0 + h. Starts with those constraints of the step before that may hold.
-  void begin(double t0, double h, const State& y0);
+  /// `again`: the same step once more.
+  void begin(double t0, double h, const State& y0, bool again = false);
 
   /// Whether nothing can be touched in this step.
   bool empty() const { return touched_.empty(); }
@@ -50,8 +45,11 @@ class ContactResponse {
   void add_friction(double gamma, Vectors& r) const;
 
   /// After the step: the constrained directions of y1 move with the obstacle, and where they are new, y0 becomes what
-  /// uniformly accelerated motion would have come from.
-  Impact finish(State& y1, State& y0);
+  /// uniformly accelerated motion would have come from; true if that happened.
+  bool finish(State& y1, State& y0);
+
+  /// Kinetic energy of the motion that new constraints stop in the step [J].
+  double stopped_energy() const;
 
   int constrained() const;          ///< particles that were in the last step
   Eigen::Vector3d impulse() const;  ///< that the obstacles gave to the particles in the last step [N s]

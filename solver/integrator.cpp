@@ -73,6 +73,8 @@ StageResult Integrator::step(double h) {
   step_.result = {};
   begin_contacts(h);
   method_.step(step_);
+  const bool hard = hit_hard();
+  if (hard) step_without_history();
   StageResult& result = step_.result;
   if (result.outcome == Outcome::success && !finite(step_.next.y)) result.outcome = Outcome::not_finite;
   if (result.outcome != Outcome::success) {
@@ -80,7 +82,8 @@ StageResult Integrator::step(double h) {
     return result;
   }
   ++steps_;
-  h_before_ = h;
+  h_before_ = hard ? 0 : h;
+  step_.after_impact = hard;
   finish_contacts();
   if (method_.two_step) std::swap(step_.before, step_.now);
   std::swap(step_.now, step_.next);
@@ -93,15 +96,22 @@ void Integrator::begin_contacts(double h) {
   if (impacts_) impacts_->begin(step_.t, h, step_.now.y);
 }
 
-/// Velocities jump at contacts: where they were changed in the history, forces must be found anew, and after a hard impact,
-/// which makes the neighbours' velocities jump too, a method begins without history.
+/// Whether the step met an obstacle so hard that the neighbours' velocities jump too: there a history leads astray.
+bool Integrator::hit_hard() const {
+  return contacts_ && method_.two_step && step_.result.outcome == Outcome::success &&
+         contacts_->stopped_energy() > hard_impact * kinetic_energy(step_.ode, step_.now.y.v);
+}
+
+void Integrator::step_without_history() {
+  step_.w = 0;
+  step_.after_impact = true;
+  contacts_->begin(step_.t, step_.h, step_.now.y, true);
+  method_.step(step_);
+}
+
+/// Where velocities were changed in the history, forces must be found anew.
 void Integrator::finish_contacts() {
-  if (!contacts_) return;
-  const double kinetic = method_.two_step ? kinetic_energy(step_.ode, step_.now.y.v) : 0;
-  const Impact impact = contacts_->finish(step_.next.y, step_.now.y);
-  if (impact.happened) step_.now.has_f = false;
-  step_.after_impact = impact.energy > hard_impact * kinetic;
-  if (step_.after_impact) h_before_ = 0;
+  if (contacts_ && contacts_->finish(step_.next.y, step_.now.y)) step_.now.has_f = false;
 }
 
 ContactReport Integrator::contacts() const {

@@ -34,6 +34,8 @@ class Integrator {
 
  private:
   void begin_contacts(double h);
+  bool hit_hard() const;
+  void step_without_history();
   void finish_contacts();
   void advance_time(double h);
 

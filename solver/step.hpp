@@ -21,7 +21,7 @@ struct Step {
   double t = 0;
   double h = 0;
   double w = 0;               ///< h over the step before, 0 if there is none
-  bool after_impact = false;  ///< there is none because a hard impact ended it: velocities may jump from particle to particle
+  bool after_impact = false;  ///< there is none because of a hard impact: velocities may jump from particle to particle
   Point before;               ///< at t − h/w
   Point now;                  ///< at t
   Point next;                 ///< at t + h: the result

@@ -9,6 +9,7 @@
 #include "bench/studies.hpp"
 #include "bench/timing.hpp"
 #include "model/scene_file.hpp"
+#include "results/runs_table.hpp"
 
 namespace drape::bench {
 namespace {
@@ -96,7 +97,7 @@ results::Table bars(bool quick, Progress& progress) {
     const Group group{cell(scene, method.name), cell(without_box, method.name)};
     const RunRecord with = record(group[0]), without = record(group[1]);
     const auto times = time_group(group, quick ? 1 : 5, [] {});
-    const double time = median(times[0]) / median(times[1]);
+    const double time = results::quantile(times[0], 0.5) / results::quantile(times[1], 0.5);
     const Steps all = with.steps, rest = all.last(std::min(all.size(), at_rest));
     add_bar(table, with, "CG iterations a step, at rest over before the first contact",
             iterations(rest) / iterations(before_contact(with)), most_iterations);
