@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "model/newton_matrix.hpp"
 #include "model/normals.hpp"
 #include "model/reaction.hpp"
 
@@ -22,16 +23,18 @@ class Forces {
   void force(double t, const Vectors& x, const Vectors& v, Vectors& f, bool whole);
   double energy(const Vectors& x) const;
   void jacobian(double t, const Vectors& x, const Vectors& v, SparseMatrix& df_dx, SparseMatrix& df_dv);
+  void newton_matrix(double t, const Vectors& x, const Vectors& v, double gamma, NewtonMatrix& matrix, SparseMatrix& J);
   SparseMatrix scalar_matrix(std::function<void(std::vector<Eigen::Triplet<double>>&)> Term::*part) const;
 
  private:
   Configuration configuration(double t, const Vectors& x, const Vectors& v);
+  void visit(const Configuration& c, const JacobianEntries& entries) const;
 
   std::vector<CountedTerm> terms_;
   Vectors constant_, normals_;
   Normals vertex_normals_;
   bool needs_normals_ = false;
-  std::int64_t &forces_, &explicit_forces_, &jacobians_, &normal_evaluations_;
+  std::int64_t &forces_, &explicit_forces_, &jacobians_, &newton_matrices_, &normal_evaluations_;
 };
 
 Forces::Forces(const Sheet& sheet, solver::Work& work, Plan& plan)
@@ -40,6 +43,7 @@ Forces::Forces(const Sheet& sheet, solver::Work& work, Plan& plan)
       forces_(work.counter("forces", "evaluations of the whole force")),
       explicit_forces_(work.counter("explicit_forces", "evaluations of the explicit part of the force")),
       jacobians_(work.counter("jacobians", "evaluations of the exact Jacobian")),
+      newton_matrices_(work.counter("newton_matrices", "assemblies of the Newton matrix from the exact Jacobian")),
       normal_evaluations_(work.counter("normals", "evaluations of all vertex normals")) {
   for (const TermKind& kind : term_kinds()) {
     const std::string name(kind.name);
@@ -87,14 +91,29 @@ double Forces::energy(const Vectors& x) const {
 
 void Forces::jacobian(double t, const Vectors& x, const Vectors& v, SparseMatrix& df_dx, SparseMatrix& df_dv) {
   ++jacobians_;
-  const Configuration c = configuration(t, x, v);
-  JacobianEntries entries;
-  for (const auto& [term, evaluations] : terms_)
-    if (term.jacobian) term.jacobian(c, entries);
-  for (const auto& [matrix, triplets] : {std::pair{&df_dx, &entries.dx}, {&df_dv, &entries.dv}}) {
+  std::vector<Eigen::Triplet<double>> dx, dv;
+  const auto adder = [](std::vector<Eigen::Triplet<double>>& triplets) -> JacobianEntries::Add {
+    return [&triplets](int i, int j, const Eigen::Matrix3d& block) {
+      for (int a = 0; a < 3; ++a)
+        for (int b = 0; b < 3; ++b) triplets.emplace_back(3 * i + a, 3 * j + b, block(a, b));
+    };
+  };
+  visit(configuration(t, x, v), {Curvature::exact, adder(dx), adder(dv)});
+  for (const auto& [matrix, triplets] : {std::pair{&df_dx, &dx}, {&df_dv, &dv}}) {
     matrix->resize(x.size(), x.size());
     matrix->setFromTriplets(triplets->begin(), triplets->end());
   }
+}
+
+void Forces::visit(const Configuration& c, const JacobianEntries& entries) const {
+  for (const auto& [term, evaluations] : terms_)
+    if (term.jacobian) term.jacobian(c, entries);
+}
+
+void Forces::newton_matrix(double t, const Vectors& x, const Vectors& v, double gamma, NewtonMatrix& matrix, SparseMatrix& J) {
+  ++newton_matrices_;
+  const Configuration c = configuration(t, x, v);
+  matrix.assemble([&](const JacobianEntries& entries) { visit(c, entries); }, gamma, J);
 }
 
 SparseMatrix Forces::scalar_matrix(std::function<void(std::vector<Eigen::Triplet<double>>&)> Term::*part) const {
@@ -157,6 +176,11 @@ Cloth compile(const Scene& scene) {
   ode.potential_energy = [forces](double, const Vectors& x) { return forces->energy(x); };
   ode.jacobian = [forces](double t, const Vectors& x, const Vectors& v, SparseMatrix& df_dx, SparseMatrix& df_dv) {
     forces->jacobian(t, x, v, df_dx, df_dv);
+  };
+  ode.newton_matrix = [forces, lean = NewtonMatrix(Curvature::lean, ode.mass, ode.pins),
+                       convex = NewtonMatrix(Curvature::convex, ode.mass, ode.pins)](
+                          double t, const Vectors& x, const Vectors& v, double gamma, bool is_lean, SparseMatrix& J) mutable {
+    forces->newton_matrix(t, x, v, gamma, is_lean ? lean : convex, J);
   };
   if (!scene.obstacles.empty()) {
     cloth.contacts = std::make_shared<Contacts>(scene, *ode.work);

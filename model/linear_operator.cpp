@@ -1,5 +1,7 @@
 #include "model/linear_operator.hpp"
 
+#include <tuple>
+
 #include "model/normals.hpp"
 #include "solver/kernels.hpp"
 
@@ -32,6 +34,20 @@ void for_each(const SparseMatrix& B, const Add& add) {
     for (SparseMatrix::InnerIterator b(B, i); b; ++b) add(i, static_cast<int>(b.col()), b.value());
 }
 
+/// B if it is symmetric; else the springs in it: membranes are not symmetric on borders.
+SparseMatrix symmetric_part(const SparseMatrix& B) {
+  if (B.isApprox(SparseMatrix(B.transpose()))) return B;
+  std::vector<Eigen::Triplet<double>> springs;
+  for_each(B, [&](int i, int j, double b) {
+    if (i == j || b < 0) return;
+    for (const auto& [row, column, sign] : {std::tuple{i, j, 1}, {j, i, 1}, {i, i, -1}, {j, j, -1}})
+      springs.emplace_back(row, column, 0.5 * sign * b);
+  });
+  SparseMatrix part(B.rows(), B.cols());
+  part.setFromTriplets(springs.begin(), springs.end());
+  return part;
+}
+
 }  // namespace
 
 void add_quadratic(std::vector<Eigen::Triplet<double>>& entries, Stencil stencil, double weight) {
@@ -49,7 +65,8 @@ Term unprojected(LinearOperators operators) {
     solver::multiply(evaluate->operators.elastic, x, evaluate->q);
     return -0.5 * x.cwiseProduct(evaluate->q).sum();
   };
-  term.jacobian = [evaluate](const Configuration&, JacobianEntries& entries) {
+  term.jacobian = [evaluate](const Configuration&, const JacobianEntries& entries) {
+    if (entries.curvature == Curvature::lean) return;
     const Eigen::Matrix3d I = Eigen::Matrix3d::Identity();
     for_each(evaluate->operators.elastic, [&](int i, int j, double b) { entries.add_dx(i, j, b * I); });
     for_each(evaluate->operators.viscous, [&](int i, int j, double b) { entries.add_dv(i, j, b * I); });
@@ -66,7 +83,15 @@ Term projected(const Grid& grid, LinearOperators operators) {
     for (Eigen::Index i = 0; i < q.rows(); ++i) f.row(i) += c.normals.row(i).dot(q.row(i)) * c.normals.row(i);
   };
   term.explicit_force = term.force;
-  term.jacobian = [evaluate, normals = Normals(grid)](const Configuration& c, JacobianEntries& entries) {
+  const LinearOperators convex{symmetric_part(evaluate->operators.elastic), symmetric_part(evaluate->operators.viscous)};
+  term.jacobian = [evaluate, convex, normals = Normals(grid)](const Configuration& c, const JacobianEntries& entries) {
+    if (!entries.exact()) {
+      if (entries.curvature == Curvature::lean) return;
+      const auto NN = [&](int i, int j) -> Eigen::Matrix3d { return c.normals.row(i).transpose() * c.normals.row(j); };
+      for_each(convex.elastic, [&](int i, int j, double b) { entries.add_dx(i, j, b * NN(i, j)); });
+      for_each(convex.viscous, [&](int i, int j, double b) { entries.add_dv(i, j, b * NN(i, j)); });
+      return;
+    }
     const auto NN = [&](int i) -> Eigen::Matrix3d { return c.normals.row(i).transpose() * c.normals.row(i); };
     for_each(evaluate->operators.elastic, [&](int i, int j, double b) { entries.add_dx(i, j, b * NN(i)); });
     for_each(evaluate->operators.viscous, [&](int i, int j, double b) { entries.add_dv(i, j, b * NN(i)); });

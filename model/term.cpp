@@ -20,9 +20,4 @@ std::span<const TermKind> term_kinds() {
   return table;
 }
 
-void JacobianEntries::add(std::vector<Eigen::Triplet<double>>& entries, int i, int j, const Eigen::Matrix3d& block) {
-  for (int a = 0; a < 3; ++a)
-    for (int b = 0; b < 3; ++b) entries.emplace_back(3 * i + a, 3 * j + b, block(a, b));
-}
-
 }  // namespace drape::model

@@ -22,15 +22,21 @@ struct Configuration {
   const Vectors& normals;
 };
 
-/// Collects 3 × 3 blocks of ∂f/∂x and ∂f/∂v: row particle i, column particle j.
+/// Which derivatives a term hands out.
+enum class Curvature {
+  exact,  ///< all of them
+  convex,  ///< only a symmetric negative semidefinite part of every element, so that M − γ² ∂f/∂x − γ ∂f/∂v can be factored
+  lean,  ///< of that nothing that couples more than the ends of an edge
+};
+
+/// Takes 3 × 3 blocks of ∂f/∂x and ∂f/∂v: row particle i, column particle j. A term adds its blocks in an order that depends
+/// on nothing but the grid and the kind of curvature.
 struct JacobianEntries {
-  std::vector<Eigen::Triplet<double>> dx, dv;
+  using Add = std::function<void(int i, int j, const Eigen::Matrix3d& block)>;
+  Curvature curvature;
+  Add add_dx, add_dv;
 
-  void add_dx(int i, int j, const Eigen::Matrix3d& block) { add(dx, i, j, block); }
-  void add_dv(int i, int j, const Eigen::Matrix3d& block) { add(dv, i, j, block); }
-
- private:
-  static void add(std::vector<Eigen::Triplet<double>>& entries, int i, int j, const Eigen::Matrix3d& block);
+  bool exact() const { return curvature == Curvature::exact; }
 };
 
 /// Wind from one direction, steady or oscillating [Etzmuß 2002, (2.35)–(2.36)]: (a + sin ωt) w, of which a surface takes the
@@ -58,12 +64,12 @@ struct Sheet {
 /// One force of a compiled sheet. All functions add to their result; forces are in newtons.
 struct Term {
   std::function<void(const Configuration&, Vectors& f)> force;
-  std::function<void(const Configuration&, Vectors& f)> explicit_force;   ///< without K x + D v; absent: nothing is left
-  std::function<double(const Vectors& x)> energy;                         ///< [J]; absent if there is none
-  std::function<void(const Configuration&, JacobianEntries&)> jacobian;   ///< exact; absent: zero
-  std::function<void(std::vector<Eigen::Triplet<double>>& K)> stiffness;  ///< its part of K; absent: none
-  std::function<void(std::vector<Eigen::Triplet<double>>& D)> damping;    ///< its part of D; absent: none
-  Vectors constant;                                                       ///< a force that never changes; empty: none
+  std::function<void(const Configuration&, Vectors& f)> explicit_force;        ///< without K x + D v; absent: nothing is left
+  std::function<double(const Vectors& x)> energy;                              ///< [J]; absent if there is none
+  std::function<void(const Configuration&, const JacobianEntries&)> jacobian;  ///< exact; absent: zero
+  std::function<void(std::vector<Eigen::Triplet<double>>& K)> stiffness;       ///< its part of K; absent: none
+  std::function<void(std::vector<Eigen::Triplet<double>>& D)> damping;         ///< its part of D; absent: none
+  Vectors constant;                                                            ///< a force that never changes; empty: none
   bool needs_normals = false;
 };
 

@@ -27,6 +27,12 @@ double controlled(const StepControl& control, double h, int updates) {
   return h;
 }
 
+/// How many states the history keeps: what the method needs, and one more than its order for guesses and estimates of errors.
+int history_points(const Method& method, const Options& options) {
+  const bool estimates = (method.implicit() && options.stage->accelerated) || options.error_control.enabled();
+  return estimates ? method.order + 1 : method.past_states;
+}
+
 std::string describe(Outcome outcome, const StageResult& result, double t, double h) {
   return "step from t = " + std::to_string(t) + " s with h = " + std::to_string(h) + " s: " + std::string(to_string(outcome)) +
          " after " + std::to_string(result.updates) + " updates and " + std::to_string(result.cg_iterations) + " CG iterations";
@@ -44,6 +50,10 @@ Integrator::Integrator(const SplitOde& ode, const Method& method, const Options&
             .before = {},
             .now = {},
             .next = {},
+            .history = History(history_points(method, options)),
+            .error = {},
+            .split_error = {},
+            .rates = {},
             .ax = Vectors::Zero(ode.particles(), 3),
             .av = Vectors::Zero(ode.particles(), 3),
             .f_hat = Vectors::Zero(ode.particles(), 3),
@@ -62,6 +72,7 @@ Integrator::Integrator(const SplitOde& ode, const Method& method, const Options&
   prescribe(ode.pins, y0.v);
   const Vectors force = method.keeps_force ? Vectors::Zero(ode.particles(), 3) : Vectors();
   step_.now = step_.next = {y0, force, false};
+  step_.history.push(t0, y0);
   if (method.two_step) step_.before = step_.next;
   ode.work->counter("history_states", "states before the current one that the method keeps") = method.two_step ? 1 : 0;
 }
@@ -71,12 +82,15 @@ StageResult Integrator::step(double h) {
   step_.w = method_.two_step && h_before_ > 0 ? h / h_before_ : 0;
   step_.next.has_f = false;
   step_.result = {};
+  step_.embedded = false;
+  step_.split_gamma = 0;
   begin_contacts(h);
   method_.step(step_);
   const bool hard = hit_hard();
   if (hard) step_without_history();
   StageResult& result = step_.result;
   if (result.outcome == Outcome::success && !finite(step_.next.y)) result.outcome = Outcome::not_finite;
+  if (result.outcome == Outcome::success && !hard && (error_ = estimate_error(h)) > 1) result.outcome = Outcome::inaccurate;
   if (result.outcome != Outcome::success) {
     ++rejected_;
     return result;
@@ -85,6 +99,7 @@ StageResult Integrator::step(double h) {
   h_before_ = hard ? 0 : h;
   step_.after_impact = hard;
   finish_contacts();
+  remember(h, hard);
   if (method_.two_step) std::swap(step_.before, step_.now);
   std::swap(step_.now, step_.next);
   advance_time(h);
@@ -114,6 +129,50 @@ void Integrator::finish_contacts() {
   if (contacts_ && contacts_->finish(step_.next.y, step_.now.y)) step_.now.has_f = false;
 }
 
+/// By the method that is embedded, or from what the extrapolation of the past misses (Milne's device). While the past is short
+/// the miss itself, which is of a lower order, stands for the error.
+double Integrator::estimate_error(double h) {
+  const ErrorControl& control = options_.error_control;
+  const History& history = step_.history;
+  if (!control.enabled()) return 0;
+  State& error = step_.error;
+  if (!step_.embedded) {
+    if (history.size() < 2) return 0;
+    const double t1 = step_.t + h;
+    history.extrapolate(t1, step_.av, &step_.ax);
+    const double over_miss = step_.error_over_miss(t1);
+    const double part = history.full() ? over_miss / (1 + over_miss) : 1;
+    error.x = part * (step_.next.y.x - step_.ax);
+    error.v = part * (step_.next.y.v - step_.av);
+    if (step_.split_gamma > 0) {
+      error.x += step_.split_gamma * step_.split_error;
+      error.v += step_.split_error;
+    }
+  }
+  const double x = error.x.norm() / control.length, v = error.v.norm() * control.duration / control.length;
+  return std::hypot(x, v) / (control.tolerance * std::sqrt(2 * 3 * step_.ode.particles()));
+}
+
+double Integrator::first_step() const {
+  const ErrorControl& control = options_.error_control;
+  const SplitOde& ode = step_.ode;
+  Vectors a(ode.particles(), 3);
+  ode.force(step_.t, state().x, state().v, a);
+  filter(ode.pins, a);
+  const double rms = (ode.mass.cwiseInverse().asDiagonal() * a).norm() / std::sqrt(ode.particles());
+  const double time = rms > 0 ? std::sqrt(control.length / rms) : control.duration;
+  return 0.1 * std::pow(control.tolerance, 1.0 / (method_.order + 1)) * std::min(time, control.duration);
+}
+
+/// Where the extrapolation is worse than no change at all, the motion is not smooth: history begins anew.
+void Integrator::remember(double h, bool hard) {
+  History& history = step_.history;
+  const Vectors& v1 = step_.next.y.v;
+  if (history.size() > 1 && !hard) history.extrapolate(step_.t + h, step_.av);
+  history.push(step_.t + h, step_.next.y);
+  if (hard || (history.size() > 2 && (v1 - step_.av).squaredNorm() > (v1 - step_.now.y.v).squaredNorm())) history.restart();
+}
+
 ContactReport Integrator::contacts() const {
   if (contacts_) return {contacts_->constrained(), contacts_->impulse()};
   if (impacts_) return {impacts_->constrained(), impacts_->impulse()};
@@ -128,28 +187,82 @@ void Integrator::advance_time(double h) {
   step_.t = t;
 }
 
+namespace {
+
+/// The size of the steps of a run: constant, controlled by the number of updates, or by the error; cut where a step fails.
+class StepSizes {
+ public:
+  StepSizes(const Integrator& integrator, double h)
+      : control_(integrator.options().control),
+        error_(integrator.options().error_control),
+        first_(h),
+        h_(h),
+        order_(integrator.method().order) {
+    may_cut_ = control_.enabled() || error_.enabled() || integrator.options().stage->accelerated;
+    if (error_.enabled()) h_ = std::min(h, integrator.first_step());
+  }
+
+  double next(double left) const { return left < h_ * (1 - same_step) ? left : h_; }
+
+  void accepted(double size, int updates, double error) {
+    if (error_.enabled()) {
+      const double factor = pi_factor(error);
+      before_ = std::max(error, 1e-3);
+      if (factor < 1 || factor > worthwhile) h_ = std::min(first_, factor * size);
+    } else if (control_.enabled()) {
+      h_ = controlled(control_, h_, updates);
+    } else {
+      h_ = std::min(first_, 2 * size);
+    }
+  }
+
+  /// Cuts the step; false if it is too small already.
+  bool rejected(double size, Outcome outcome, double error) {
+    if (!may_cut_ || size <= smallest_step * first_) return false;
+    if (outcome == Outcome::inaccurate)
+      h_ = size * std::clamp(safety * std::pow(error, -1.0 / (order_ + 1)), 0.2, 0.9);
+    else
+      h_ = size / (control_.enabled() ? control_.factor : 2);
+    return true;
+  }
+
+ private:
+  static constexpr double safety = 0.9;
+  static constexpr double worthwhile = 1.2;  ///< a smaller growth is not worth a new matrix
+
+  /// Proportional to the error and to how it changed   [Gustafsson 1991].
+  double pi_factor(double error) const {
+    const double q = order_ + 1, now = std::max(error, 1e-3);
+    return std::clamp(safety * std::pow(now, -0.7 / q) * std::pow(before_ / now, 0.4 / q), 0.3, 2.0);
+  }
+
+  const StepControl& control_;
+  const ErrorControl& error_;
+  double first_, h_, before_ = 1;
+  int order_;
+  bool may_cut_ = false;
+};
+
+}  // namespace
+
 RunResult integrate(Integrator& integrator, double t_end, double h, const Observer& observer) {
   if (!(h > 0) || !std::isfinite(h)) throw std::invalid_argument("the step must be a positive number of seconds");
-  const StepControl& control = integrator.options().control;
-  const double h_first = h;
+  StepSizes sizes(integrator, h);
   RunResult run;
   run.last_good_time = integrator.time();
   for (double left = t_end - integrator.time(); left > same_step * h; left = t_end - integrator.time()) {
-    const double size = left < h * (1 - same_step) ? left : h;
+    const double size = sizes.next(left);
     const StageResult result = integrator.step(size);
     if (result.outcome == Outcome::success) {
       ++run.steps;
       run.last_good_time = integrator.time();
       if (observer)
         observer({integrator.time(), size, result.updates, result.cg_iterations, integrator.state(), integrator.contacts()});
-      if (control.enabled()) h = controlled(control, h, result.updates);
+      sizes.accepted(size, result.updates, integrator.error());
       continue;
     }
     ++run.rejected_steps;
-    if (control.enabled() && size > smallest_step * h_first) {
-      h = size / control.factor;
-      continue;
-    }
+    if (sizes.rejected(size, result.outcome, integrator.error())) continue;
     run.outcome = result.outcome;
     run.message = describe(result.outcome, result, integrator.time(), size);
     return run;

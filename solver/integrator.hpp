@@ -22,8 +22,17 @@ class Integrator {
   Integrator(const Integrator&) = delete;
   Integrator& operator=(const Integrator&) = delete;
 
-  /// One step of size h > 0; two-step methods take the size of the step before into account.
+  /// One step of size h > 0; methods with history take the steps before into account. `inaccurate` if the options limit the
+  /// error and its estimate is too large.
   StageResult step(double h);
+
+  /// Estimated error of the last step, accepted or not, over its tolerance; 0 if that is not limited or not known yet.
+  double error() const { return error_; }
+
+  /// A careful first step for error control [s].
+  double first_step() const;
+
+  const Method& method() const { return method_; }
 
   double time() const { return step_.t; }
   const State& state() const { return step_.now.y; }
@@ -37,6 +46,8 @@ class Integrator {
   bool hit_hard() const;
   void step_without_history();
   void finish_contacts();
+  double estimate_error(double h);
+  void remember(double h, bool hard);
   void advance_time(double h);
 
   const Options options_;
@@ -46,6 +57,7 @@ class Integrator {
   std::optional<StageSolver> stage_;
   Step step_;
   double h_before_ = 0;
+  double error_ = 0;
   double lost_time_ = 0;  ///< what rounding has added to the time [s]
   std::int64_t &steps_, &rejected_;
 };

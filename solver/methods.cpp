@@ -13,6 +13,12 @@ std::span<const Method> methods() {
       {"midpoint", "implicit midpoint rule (3.26)", 2, false, false, "fixed-point", midpoint},
       {"imex-midpoint", "IMEX midpoint rule, ARS(1,2,2) (3.4.1)", 2, false, true, "linear", imex_midpoint},
       {"verlet", "velocity Verlet, explicit, sub-stepped inside its stability limit", 2, false, true, "none", verlet},
+      {"tr-bdf2", "TR-BDF2, one step of two stages, L-stable", 2, false, true, "fixed-point", tr_bdf2},
+      {"esdirk3", "ESDIRK3(2)4L[2]SA, L-stable", 3, false, true, "fixed-point", esdirk3},
+      {"esdirk4", "ESDIRK4(3)6L[2]SA, L-stable", 4, false, true, "fixed-point", esdirk4},
+      {"bdf3", "BDF(3), stable for angles up to 86 degrees", 3, false, true, "fixed-point", bdf3, 3},
+      {"bdf4", "BDF(4), up to 73 degrees", 4, false, true, "fixed-point", bdf4, 4},
+      {"bdf5", "BDF(5), up to 51 degrees", 5, false, true, "fixed-point", bdf5, 5},
   };
   return table;
 }

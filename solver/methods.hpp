@@ -17,6 +17,7 @@ struct Method {
   bool keeps_force;               ///< needs a force or acceleration with every state
   std::string_view stage_solver;  ///< "linear" (one system a step), "fixed-point", or "none" for explicit methods
   void (*step)(Step&);
+  int past_states = 0;  ///< that it finds in the history, the start of the step among them
 
   bool implicit() const { return stage_solver != "none"; }
 };
@@ -34,6 +35,12 @@ void bdf2(Step& s);
 void midpoint(Step& s);
 void imex_midpoint(Step& s);
 void verlet(Step& s);
+void tr_bdf2(Step& s);
+void esdirk3(Step& s);
+void esdirk4(Step& s);
+void bdf3(Step& s);
+void bdf4(Step& s);
+void bdf5(Step& s);
 
 /// Coefficients of BDF(2) and SBDF(2) for steps that change by the factor w  [Etzmuß 2002, after (3.28)].
 struct Bdf2Coefficients {
@@ -42,5 +49,8 @@ struct Bdf2Coefficients {
 constexpr Bdf2Coefficients bdf2_coefficients(double w) {
   return {(1 + w) * (1 + w) / (1 + 2 * w), w * w / (1 + 2 * w), (1 + w) / (1 + 2 * w)};
 }
+
+/// c in the error c h³ d³y/dt³ of a step of BDF(2).
+constexpr double bdf2_error(double w) { return (1 + w) * (1 + w) / (6 * w * (1 + 2 * w)); }
 
 }  // namespace drape::solver

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string_view>
 
 #include "solver/preconditioner.hpp"
@@ -16,6 +17,30 @@ struct StepControl {
   bool enabled() const { return max_updates > 0; }
 };
 
+/// Steps whose estimated local error stays below a tolerance: in the root mean square of positions relative to `length` and
+/// velocities relative to length/duration, as the references have it.
+struct ErrorControl {
+  double tolerance = 0;  ///< 0: constant steps
+  double length = 1;     ///< size of the scene [m]
+  double duration = 1;   ///< of the run [s]
+
+  bool enabled() const { return tolerance > 0; }
+};
+
+/// How the nonlinear stages of a method are solved.
+struct StageKind {
+  std::string_view name;
+  std::string_view description;
+  enum class Matrix { constant, newton, lean_newton, chosen } matrix;
+  bool accelerated;  ///< by Anderson's method, until an estimate of the error itself is small; else until the residual is
+};
+
+/// All ways to solve a stage; the first is the thesis' loop.
+std::span<const StageKind> stage_kinds();
+
+/// The one with this name. Throws std::invalid_argument, naming all that there are.
+const StageKind& stage_kind(std::string_view name);
+
 /// Choices of whoever runs a method. Tolerances are relative to |b|, the right-hand side of the step's linear system.
 struct Options {
   double loop_tolerance = 1e-5;  ///< of the fixed-point loop: |b(x, v) − A v| ≤ η |b|
@@ -24,6 +49,9 @@ struct Options {
   int max_cg_iterations = 5000;  ///< iterations a linear solve before it counts as not converged
   double verlet_fraction = 0.9;  ///< sub-step of `verlet` as a fraction of its stability limit
   StepControl control;
+  ErrorControl error_control;
+  double stage_accuracy = 0.02;  ///< error left in an accelerated stage over the error of the time step
+  const StageKind* stage = &stage_kinds().front();
   const LinearSolver* linear_solver = &linear_solvers().front();
 };
 

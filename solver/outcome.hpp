@@ -10,6 +10,7 @@ enum class Outcome {
   not_converged,  ///< an iteration reached its limit before its tolerance
   breakdown,      ///< a matrix that must be positive definite is not
   not_finite,     ///< a NaN or an infinity appeared
+  inaccurate,     ///< the estimated error is above its tolerance
 };
 
 /// The outcome as it is written in tables and files, for example "not converged".
@@ -19,6 +20,7 @@ constexpr std::string_view to_string(Outcome outcome) {
     case Outcome::not_converged: return "not converged";
     case Outcome::breakdown: return "breakdown";
     case Outcome::not_finite: return "not finite";
+    case Outcome::inaccurate: return "inaccurate";
   }
   return "unknown";
 }

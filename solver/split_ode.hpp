@@ -40,6 +40,11 @@ struct SplitOde {
   /// ∂f/∂x and ∂f/∂v of the whole force, 3N × 3N; coordinate c of particle i has the index 3i + c.
   std::function<void(double t, const Vectors& x, const Vectors& v, SparseMatrix& df_dx, SparseMatrix& df_dv)> jacobian;
 
+  /// Sets the upper triangle of J ≈ M − γ² ∂f/∂x − γ ∂f/∂v, 3N × 3N, for a Newton method: positive definite, because negative
+  /// curvature of single elements is left out; pinned coordinates have only their mass. `lean`: nor what couples more than the
+  /// ends of an edge, which makes it several times cheaper. J: empty, or what a call with the same `lean` left.
+  std::function<void(double t, const Vectors& x, const Vectors& v, double gamma, bool lean, SparseMatrix& J)> newton_matrix;
+
   /// Finds what particles may touch in a step from t to t + h, ordered by particle; absent: there are no obstacles.
   std::function<void(double t, double h, const State& y, std::vector<Contact>& found)> contacts;
 

@@ -12,6 +12,7 @@ struct Stage {
   double t;      ///< [s], where f is evaluated
   const Vectors& ax;
   const Vectors& av;
+  double accuracy = 1e-3;  ///< part of the distance between guess and solution that may be left as an error
 };
 
 }  // namespace drape::solver

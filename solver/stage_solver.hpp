@@ -1,24 +1,14 @@
 #pragma once
 
-#include <algorithm>
+#include <optional>
 
-#include "solver/conjugate_gradients.hpp"
-#include "solver/contact_response.hpp"
-#include "solver/options.hpp"
-#include "solver/stage.hpp"
+#include "solver/accelerated_loop.hpp"
+#include "solver/stage_system.hpp"
 
 namespace drape::solver {
 
-struct StageResult {
-  Outcome outcome = Outcome::success;
-  int updates = 0;  ///< linear systems solved
-  int cg_iterations = 0;
-};
-
-/// Solves stages with the constant matrix A = M − γ² K − γ D, rebuilt only when γ changes.
-///
-/// Particles that are pinned in all three directions have no entries in A but their diagonal. All calls take the state
-/// with a first guess of v; its prescribed velocities are set here. No call but the constructor allocates.
+/// Solves stages in the way the options say. All calls take the state with a first guess of v; its prescribed velocities are
+/// set here.
 class StageSolver {
  public:
   /// `contacts`: the response to contacts, null if there are no obstacles.
@@ -28,35 +18,20 @@ class StageSolver {
   /// whenever contacts change.
   StageResult solve_linear(const Stage& stage, const Vectors& f_explicit, State& y);
 
-  /// The whole stage by the fixed-point loop: a simplified Newton method with A for the Jacobian
-  /// [Etzmuß 2002, (3.33)–(3.36), Alg. 6]. The guess counts as a solution only if its own residual passes the test of CG.
+  /// The whole stage, either accelerated or by the fixed-point loop: a simplified Newton method with A for the Jacobian
+  /// [Etzmuß 2002, (3.33)–(3.36), Alg. 6]. There the guess counts as a solution only if its own residual passes the test of CG.
   StageResult solve(const Stage& stage, State& y);
 
- private:
-  /// What |residual| is compared with: |b|, and the round-off below which no residual falls.
-  struct Scale {
-    double b, round_off;
-    double target(double tolerance) const { return std::max(tolerance * b, round_off); }
-  };
+  /// What a change `r` of γ f would have changed in v at the last linear stage; its linear system counts.
+  const Vectors& respond(const Vectors& r, StageResult& result);
 
-  Outcome prepare(double gamma);
+ private:
   StageResult solve(const Stage& stage, const Vectors* f_explicit, State& y);
-  bool touches() const { return contacts_ != nullptr && !contacts_->empty(); }
-  const Filter& filtered() const { return touches() ? contacts_->filter() : pinned_; }
-  void evaluate(const Stage& stage, const Vectors* f_explicit, State& y);
-  void filter_residual(double gamma);
-  Scale scale(const Vectors& residual, const State& y, double gamma);
 
   const SplitOde& ode_;
   const Options options_;
-  ContactResponse* const contacts_;
-  const Filter pinned_;  ///< partially pinned particles
-  ConjugateGradients cg_;
-  SparseMatrix A_;
-  Eigen::ArrayXd mass_, stiffness_, damping_;  // each aligned with the entries of A
-  Eigen::ArrayXd momentum_, spring_;           // mass and diagonal of K, each thrice a particle, as coordinates lie in memory
-  double gamma_ = 0;
-  Vectors r_, d_, q_;
+  StageSystem system_;
+  std::optional<AcceleratedLoop> accelerated_;
   LinearWork work_;
 };
 

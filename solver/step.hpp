@@ -1,5 +1,10 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "solver/history.hpp"
 #include "solver/impact_response.hpp"
 #include "solver/stage_solver.hpp"
 
@@ -26,6 +31,14 @@ struct Step {
   Point now;                  ///< at t
   Point next;                 ///< at t + h: the result
 
+  History history;            ///< states up to t, for first guesses and estimates of errors
+  double error_constant = 0;  ///< c of the last stage
+  State error;                ///< of the step, if the method is embedded in another
+  bool embedded = false;      ///< whether it is
+  Vectors split_error;        ///< in v, of IMEX methods with error control
+  double split_gamma = 0;     ///< makes it one in x [s]
+  std::vector<State> rates;   ///< dy/dt of stages, for Runge-Kutta methods
+
   Vectors ax, av, f_hat;  ///< scratch, N × 3
 
   ImpactResponse* impacts = nullptr;  ///< for explicit methods; null if there are no obstacles
@@ -44,6 +57,33 @@ struct Step {
     point.has_f = true;
     return point.f;
   }
+
+  /// Solves a nonlinear stage. The error in v of the step is c h^(p+1) times a derivative, p being the order.
+  bool solve(Stage given, double c) {
+    State& y = next.y;
+    y.v = now.y.v;  // predictor (3.25), (3.32)
+    error_constant = c;
+    if (options.stage->accelerated) {
+      if (history.size() > 1) history.extrapolate(given.t, y.v);
+      given.accuracy = options.stage_accuracy * std::min(1.0, error_over_miss(given.t));
+      if (!history.full()) given.accuracy *= 1e-2;  // the miss is of a lower order than the error
+    }
+    return accept(stage->solve(given, y));
+  }
+
+  /// Solves the linear stage of an IMEX method, which ends the step. With error control, what f̂ missed of f_expl at the end is
+  /// a part of the error: where hk/d is large it is all of it.
+  void solve_split(const Stage& given, const Vectors& f_explicit, double c) {
+    next.y.v = now.y.v;  // predictor (3.25), (3.32)
+    error_constant = c;
+    if (!accept(stage->solve_linear(given, f_explicit, next.y)) || !options.error_control.enabled()) return;
+    av = given.gamma * (explicit_force(next, given.t) - f_explicit);
+    split_error = stage->respond(av, result);
+    split_gamma = given.gamma;
+  }
+
+  /// The error of the step over what the extrapolation of the history to time t misses.
+  double error_over_miss(double time) const { return error_constant * std::pow(h, history.size()) / history.remainder(time); }
 
   /// Adds the work of a stage; true if it succeeded.
   bool accept(const StageResult& stage_result) {

@@ -47,7 +47,8 @@ std::optional<Term> make_air(const Sheet& sheet) {
     }
   };
   term.explicit_force = term.force;
-  term.jacobian = [=, normals = Normals(sheet.grid)](const Configuration& c, JacobianEntries& entries) {
+  term.jacobian = [=, normals = Normals(sheet.grid)](const Configuration& c, const JacobianEntries& entries) {
+    if (!entries.exact()) return;  // not symmetric
     for (int i = 0; i < weight.size(); ++i) {
       const Wake wake(c, i);
       entries.add_dv(i, i, weight[i] * wake.by_v());

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <memory>
 
@@ -48,13 +49,13 @@ void add_forces(const Moduli& moduli, const std::array<Strained, 2>& pair, const
 }
 
 void add_jacobians(const Moduli& moduli, const std::array<Strained, 2>& pair, const std::array<Strained, 2>& other,
-                   JacobianEntries& entries) {
-  const auto dx = [&](int i, int j, const Eigen::Matrix3d& block) { entries.add_dx(i, j, block); };
-  const auto dv = [&](int i, int j, const Eigen::Matrix3d& block) { entries.add_dv(i, j, block); };
-  const double stress = moduli.stress(other);
+                   const JacobianEntries& entries) {
+  const auto &dx = entries.add_dx, &dv = entries.add_dv;
+  const double stress = entries.exact() ? moduli.stress(other) : std::max(moduli.stress(other), 0.0);
   for (const Strained& p : pair) {
     const Eigen::Matrix3d turn = (Eigen::Matrix3d::Identity() - p.n * p.n.transpose()) / p.r;
     add_edge_pair(dx, p.ends, p.ends, stress / p.length * turn);
+    if (!entries.exact()) continue;  // the coupling is indefinite
     for (const Strained& s : other) {
       const Eigen::Vector3d strain_by_s = s.n / s.length;
       const Eigen::Vector3d rate_by_s = (s.q - s.q.dot(s.n) * s.n) / (s.r * s.length);
@@ -94,7 +95,7 @@ std::optional<Term> make_contraction(const Sheet& sheet) {
                 (strain(cell.left(), lv) + strain(cell.right(), lv));
     return energy;
   };
-  term.jacobian = [=](const Configuration& c, JacobianEntries& entries) {
+  term.jacobian = [=](const Configuration& c, const JacobianEntries& entries) {
     for (const Cell& cell : *all) {
       const Pairs pairs(c, cell, lu, lv);
       add_jacobians(moduli, pairs.u, pairs.v, entries);

@@ -23,11 +23,10 @@ std::optional<Term> make_linear_damping(const Sheet& sheet) {
         for (int a = 0; a < 3; ++a) g[3 * e + a] = weight * line.widths[e] * (vj[3 * e + a] - vi[3 * e + a]);
     });
   };
-  term.jacobian = [=](const Configuration&, JacobianEntries& entries) {
+  term.jacobian = [=](const Configuration&, const JacobianEntries& entries) {
     for (const Edge& edge : *all) {
       const EdgeEnds ends{edge.i, edge.j};
-      add_edge_pair([&](int i, int j, const Eigen::Matrix3d& b) { entries.add_dv(i, j, b); }, ends, ends,
-                    along(d, edge) * edge.width / edge.length * Eigen::Matrix3d::Identity());
+      add_edge_pair(entries.add_dv, ends, ends, along(d, edge) * edge.width / edge.length * Eigen::Matrix3d::Identity());
     }
   };
   term.damping = [=](std::vector<Eigen::Triplet<double>>& D) {

@@ -54,9 +54,9 @@ void add_force(const Printed& p, const Configuration& c, Vectors& f) {
   }
 }
 
-void add_jacobian(const Printed& p, const Configuration& c, JacobianEntries& entries) {
-  const auto dx = [&](int i, int j, const Eigen::Matrix3d& block) { entries.add_dx(i, j, block); };
-  const auto dv = [&](int i, int j, const Eigen::Matrix3d& block) { entries.add_dv(i, j, block); };
+void add_jacobian(const Printed& p, const Configuration& c, const JacobianEntries& entries) {
+  if (!entries.exact()) return;  // nothing of it is symmetric
+  const auto &dx = entries.add_dx, &dv = entries.add_dv;
   for (const Star& star : p.stars) {
     const Eigen::Vector3d U = difference(c.x, star.u), V = difference(c.x, star.v);
     const Eigen::Vector3d dU = difference(c.v, star.u), dV = difference(c.v, star.v);
@@ -97,7 +97,7 @@ std::optional<Term> make_printed_shear(const Sheet& sheet) {
   Term term;
   term.force = [shared](const Configuration& c, Vectors& f) { add_force(*shared, c, f); };
   term.explicit_force = term.force;
-  term.jacobian = [shared](const Configuration& c, JacobianEntries& entries) { add_jacobian(*shared, c, entries); };
+  term.jacobian = [shared](const Configuration& c, const JacobianEntries& entries) { add_jacobian(*shared, c, entries); };
   return term;
 }
 

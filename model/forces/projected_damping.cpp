@@ -31,7 +31,7 @@ std::optional<Term> make_projected_damping(const Sheet& sheet) {
     });
   };
   term.explicit_force = term.force;
-  term.jacobian = [=](const Configuration& c, JacobianEntries& entries) {
+  term.jacobian = [=](const Configuration& c, const JacobianEntries& entries) {
     for (const Edge& edge : *all) {
       const Eigen::Vector3d p = c.x.row(edge.j) - c.x.row(edge.i);
       const Eigen::Vector3d q = c.v.row(edge.j) - c.v.row(edge.i);
@@ -41,9 +41,9 @@ std::optional<Term> make_projected_damping(const Sheet& sheet) {
       const Eigen::Matrix3d P = Eigen::Matrix3d::Identity() - nn;
       const double weight = along(d, edge) * edge.width / edge.length;
       const EdgeEnds ends{edge.i, edge.j};
-      add_edge_pair([&](int i, int j, const Eigen::Matrix3d& b) { entries.add_dv(i, j, b); }, ends, ends, weight * nn);
-      add_edge_pair([&](int i, int j, const Eigen::Matrix3d& b) { entries.add_dx(i, j, b); }, ends, ends,
-                    weight / r * (n * (P * q).transpose() + q.dot(n) * P));
+      add_edge_pair(entries.add_dv, ends, ends, weight * nn);
+      if (!entries.exact()) continue;  // the rest is not symmetric
+      add_edge_pair(entries.add_dx, ends, ends, weight / r * (n * (P * q).transpose() + q.dot(n) * P));
     }
   };
   return term;

@@ -66,14 +66,15 @@ void shear_line(const ShearLine& line, const double* x, const double* v, double*
 }
 
 /// Derivatives of the pulls g_p = s q, g_q = s p with s = κ <p, q> + κ_d (<ṗ, q> + <p, q̇>).
-void quadrant_jacobian(const Configuration& c, EdgeEnds P, EdgeEnds Q, double kappa, double kappa_d, JacobianEntries& entries) {
+void quadrant_jacobian(const Configuration& c, EdgeEnds P, EdgeEnds Q, double kappa, double kappa_d,
+                       const JacobianEntries& entries) {
   const Eigen::Vector3d p = difference(c.x, P), q = difference(c.x, Q);
   const Eigen::Vector3d dp = difference(c.v, P), dq = difference(c.v, Q);
   const double s = kappa * p.dot(q) + kappa_d * (dp.dot(q) + p.dot(dq));
-  const Eigen::Vector3d ds_dp = kappa * q + kappa_d * dq, ds_dq = kappa * p + kappa_d * dp;
-  const Eigen::Matrix3d sI = s * Eigen::Matrix3d::Identity();
-  const auto dx = [&](int i, int j, const Eigen::Matrix3d& block) { entries.add_dx(i, j, block); };
-  const auto dv = [&](int i, int j, const Eigen::Matrix3d& block) { entries.add_dv(i, j, block); };
+  const double turned = entries.exact() ? 1 : 0;  // what is left out otherwise is indefinite or not symmetric
+  const Eigen::Vector3d ds_dp = kappa * q + turned * kappa_d * dq, ds_dq = kappa * p + turned * kappa_d * dp;
+  const Eigen::Matrix3d sI = turned * s * Eigen::Matrix3d::Identity();
+  const auto &dx = entries.add_dx, &dv = entries.add_dv;
   add_edge_pair(dx, P, P, q * ds_dp.transpose());
   add_edge_pair(dx, P, Q, sI + q * ds_dq.transpose());
   add_edge_pair(dx, Q, P, sI + p * ds_dp.transpose());
@@ -123,7 +124,8 @@ std::optional<Term> make_shear(const Sheet& sheet) {
       }
     return energy;
   };
-  term.jacobian = [=](const Configuration& c, JacobianEntries& entries) {
+  term.jacobian = [=](const Configuration& c, const JacobianEntries& entries) {
+    if (entries.curvature == Curvature::lean) return;
     for (const Cell& cell : *all)
       for (const auto& [p, q] : quadrants(cell)) quadrant_jacobian(c, p, q, line.kappa, line.kappa_d, entries);
   };

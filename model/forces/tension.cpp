@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -51,15 +52,18 @@ std::optional<Term> make_tension(const Sheet& sheet) {
     }
     return energy;
   };
-  term.jacobian = [=](const Configuration& c, JacobianEntries& entries) {
+  term.jacobian = [=](const Configuration& c, const JacobianEntries& entries) {
     for (const Edge& edge : *all) {
       const Eigen::Vector3d d = c.x.row(edge.j) - c.x.row(edge.i);
       const double r = d.norm();
       const Eigen::Vector3d n = d / r;
+      const Eigen::Matrix3d nn = n * n.transpose();
+      const double turn = 1 / edge.length - 1 / r;  // negative where the edge is compressed
       const Eigen::Matrix3d block =
-          along(k, edge) * edge.width * ((1 / edge.length - 1 / r) * Eigen::Matrix3d::Identity() + n * n.transpose() / r);
+          along(k, edge) * edge.width *
+          (nn / edge.length + (entries.exact() ? turn : std::max(turn, 0.0)) * (Eigen::Matrix3d::Identity() - nn));
       const EdgeEnds ends{edge.i, edge.j};
-      add_edge_pair([&](int i, int j, const Eigen::Matrix3d& b) { entries.add_dx(i, j, b); }, ends, ends, block);
+      add_edge_pair(entries.add_dx, ends, ends, block);
     }
   };
   term.stiffness = [=](std::vector<Eigen::Triplet<double>>& K) {

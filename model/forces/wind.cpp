@@ -24,7 +24,8 @@ std::optional<Term> make_wind(const Sheet& sheet) {
   };
   term.explicit_force = term.force;
   if (!term.needs_normals) return term;
-  term.jacobian = [=, normals = Normals(sheet.grid)](const Configuration& c, JacobianEntries& entries) {
+  term.jacobian = [=, normals = Normals(sheet.grid)](const Configuration& c, const JacobianEntries& entries) {
+    if (!entries.exact()) return;  // not symmetric
     const Eigen::Vector3d w = wind(c.t);
     for (int i = 0; i < along_normal.size(); ++i) {
       const Eigen::Matrix3d by_N = along_normal[i] * projection_by_normal(w, c.normals.row(i));

@@ -8,8 +8,7 @@ void bdf2(Step& s) {
   const auto [c1, c2, c3] = bdf2_coefficients(s.w);
   s.ax = c1 * s.y0().x - c2 * s.ym1().x;
   s.av = c1 * s.y0().v - c2 * s.ym1().v;
-  s.y1().v = s.y0().v;  // predictor (3.32)
-  s.accept(s.stage->solve({c3 * s.h, s.t + s.h, s.ax, s.av}, s.y1()));
+  s.solve({c3 * s.h, s.t + s.h, s.ax, s.av}, bdf2_error(s.w));
 }
 
 }  // namespace drape::solver

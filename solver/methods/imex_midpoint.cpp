@@ -10,6 +10,7 @@ void imex_midpoint(Step& s) {
   const Vectors& f0 = s.explicit_force(s.now, s.t);
   State& ym = s.y1();
   ym.v = y0.v;
+  s.error_constant = 1.0 / 12;
   if (!s.accept(s.stage->solve_linear({s.h / 2, s.t + s.h / 2, y0.x, y0.v}, f0, ym))) return;
   s.ode.explicit_force(s.t + s.h / 2, ym.x, ym.v, s.f_hat);
   s.f_hat -= f0;

@@ -7,8 +7,7 @@ namespace drape::solver {
 void midpoint(Step& s) {
   const State& y0 = s.y0();
   State& ym = s.y1();
-  ym.v = y0.v;
-  if (!s.accept(s.stage->solve({s.h / 2, s.t + s.h / 2, y0.x, y0.v}, ym))) return;
+  if (!s.solve({s.h / 2, s.t + s.h / 2, y0.x, y0.v}, 1.0 / 12)) return;
   s.y1().x = 2 * ym.x - y0.x;
   s.y1().v = 2 * ym.v - y0.v;
 }

@@ -11,8 +11,7 @@ void sbdf2(Step& s) {
   s.ax = c1 * s.y0().x - c2 * s.ym1().x;
   s.av = c1 * s.y0().v - c2 * s.ym1().v;
   s.f_hat = (1 + s.w) * s.explicit_force(s.now, s.t) - s.w * s.explicit_force(s.before, s.t - s.h / s.w);
-  s.y1().v = s.y0().v;  // predictor (3.32)
-  s.accept(s.stage->solve_linear({c3 * s.h, s.t + s.h, s.ax, s.av}, s.f_hat, s.y1()));
+  s.solve_split({c3 * s.h, s.t + s.h, s.ax, s.av}, s.f_hat, bdf2_error(s.w));
 }
 
 }  // namespace drape::solver

@@ -57,6 +57,7 @@ void verlet(Step& s) {
     if (contacts) s.impacts->stop(tau, false, y.v, a);
   }
   s.next.has_f = !contacts;  // what obstacles bear was taken from it
+  s.error_constant = 1.0 / (6 * substeps * substeps);
   s.substeps += static_cast<std::int64_t>(substeps);
 }
 

@@ -1,0 +1,219 @@
+#include "solver/accelerated_loop.hpp"
+
+#include <cmath>
+
+namespace drape::solver {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+constexpr double forcing = 0.02;          ///< tolerance of an iterative solve over |r|
+constexpr double growth = 4;              ///< an update that makes |d| grow more leads away: Anderson's method is not monotone
+constexpr double smallest_part = 1e-3;    ///< of an update; below it there is no way on
+constexpr double slow_rate = 0.3;         ///< a Newton factor that converges slower is renewed,
+constexpr int patience = 6;               ///< or after so many updates,
+constexpr int most_patience = 12;         ///< even if it was made for this stage,
+constexpr double different_gamma = 0.25;  ///< or for a γ so far away
+constexpr int most_constant_updates = 150;  ///< what a stage costs with Newton's matrix where it is hard
+constexpr double similar_gamma = 0.1;       ///< the constant matrix serves for a γ as near as this
+constexpr int update_cost = 4;              ///< of an update with a Newton factor, in updates with the constant matrix
+constexpr int renewal_cost = 40;            ///< of making the factor
+constexpr int longest_stay = 64;            ///< stages after which `auto` tries the constant matrix again
+constexpr double cheap = 50;                ///< cost of a stage for which the constant matrix need not be tried
+constexpr double mean_weight = 0.2;         ///< of the second estimate of the error
+
+}  // namespace
+
+AcceleratedLoop::AcceleratedLoop(const SplitOde& ode, const Options& options, StageSystem& system)
+    : ode_(ode),
+      options_(options),
+      system_(system),
+      anderson_(ode.particles()),
+      newton_(ode, false),
+      lean_newton_(ode, true),
+      work_(*ode.work),
+      renewals_(ode.work->counter("newton_factorizations", "factorizations of a Newton matrix")),
+      escalations_(ode.work->counter("escalations", "stages that auto gave to Newton's matrix")) {
+  for (Vectors* field : {&guess_, &best_v_, &best_d_}) field->setZero(ode.particles(), 3);
+}
+
+StageResult AcceleratedLoop::ended(Outcome outcome) {
+  result_.outcome = outcome;
+  return result_;
+}
+
+/// Which factor a stage begins with. While contacts act, constraints are filtered out of the constant matrix only.
+NewtonFactor* AcceleratedLoop::preferred() {
+  if (system_.touches()) return nullptr;
+  switch (options_.stage->matrix) {
+    case Matrix::newton: return &newton_;
+    case Matrix::lean_newton: return &lean_newton_;
+    case Matrix::chosen: return newton_stages_ > 0 ? &lean_newton_ : nullptr;
+    case Matrix::constant: break;
+  }
+  return nullptr;
+}
+
+void AcceleratedLoop::begin(const Stage& stage, const State& y) {
+  stage_ = &stage;
+  result_ = {};
+  guess_ = y.v;
+  best_ = infinity;
+  part_ = 1;
+  rate_ = 0;
+  since_renewal_ = renewals_here_ = 0;
+  factor_ = nullptr;
+  made_here_ = true;  // A is what it is
+  anderson_.restart();
+}
+
+/// Makes the factor at y; false, with the outcome, if that is impossible.
+bool AcceleratedLoop::use_newton(NewtonFactor* factor, State& y) {
+  factor_ = factor;
+  best_ = infinity;
+  part_ = 1;
+  rate_ = 0;
+  since_renewal_ = 0;
+  made_here_ = true;
+  anderson_.restart();
+  y.x = stage_->ax + stage_->gamma * y.v;
+  ++renewals_;
+  ++renewals_here_;
+  result_.outcome = factor->renew(stage_->t, y, stage_->gamma);
+  return result_.outcome == Outcome::success;
+}
+
+/// d = P⁻¹ r; false if the solve fails.
+bool AcceleratedLoop::correct() {
+  const Vectors& r = system_.residual();
+  bound_ = (ode_.mass.cwiseInverse().asDiagonal() * r).norm();
+  size_ = infinity;
+  if (!std::isfinite(bound_)) return true;
+  if (factor_ != nullptr) {
+    factor_->solve(r, system_.correction());
+  } else {
+    const LinearResult solved = system_.correct(forcing * r.norm());
+    result_.cg_iterations += solved.iterations;
+    if (solved.outcome != Outcome::success) {
+      result_.outcome = solved.outcome;
+      return false;
+    }
+  }
+  size_ = system_.correction().norm();
+  return true;
+}
+
+/// Back to the best iterate; false if there is no way on from there.
+bool AcceleratedLoop::retreat(State& y) {
+  if (!std::isfinite(best_)) {
+    result_.outcome = Outcome::not_finite;
+    return false;
+  }
+  y.v = best_v_;
+  if (factor_ != nullptr && !made_here_) return use_newton(factor_, y);
+  anderson_.restart();
+  part_ /= 4;
+  rate_ = 0;
+  if (part_ < smallest_part) return escalate(y);
+  y.v += part_ * best_d_;
+  return true;
+}
+
+/// On with Newton's matrix where `auto` may; not converged otherwise.
+bool AcceleratedLoop::escalate(State& y) {
+  if (options_.stage->matrix != Matrix::chosen || factor_ != nullptr || system_.touches()) {
+    result_.outcome = Outcome::not_converged;
+    return false;
+  }
+  ++escalations_;
+  newton_stages_ = next_stay_;
+  mean_cost_ = most_constant_updates;
+  next_stay_ = std::min(2 * next_stay_, longest_stay);
+  y.v = best_v_;
+  return use_newton(&lean_newton_, y);
+}
+
+void AcceleratedLoop::advance(State& y) {
+  if (size_ <= best_) {
+    made_here_ = factor_ == nullptr || !std::isfinite(best_);
+    best_v_ = y.v;
+    best_d_ = system_.correction();
+  }
+  rate_ = std::isfinite(best_) ? size_ / best_ : 0;
+  best_ = std::min(best_, size_);
+  if (part_ < 1) {
+    y.v += part_ * system_.correction();
+    part_ = std::min(1.0, 2 * part_);
+  } else {
+    anderson_.advance(y.v, system_.correction());
+  }
+}
+
+bool AcceleratedLoop::close_enough(const State& y) const {
+  const double error = std::max(size_ / anderson_.weakest(), mean_weight * std::sqrt(bound_ * size_));
+  const double round_off = StageSystem::round_off(y.x.norm()) / stage_->gamma;
+  return part_ == 1 && error <= std::max(round_off, stage_->accuracy * (y.v - guess_).norm());
+}
+
+bool AcceleratedLoop::slow() const {
+  if (factor_ == nullptr) return false;
+  const bool old = !made_here_ && (since_renewal_ >= patience || (since_renewal_ > 2 && rate_ > slow_rate));
+  return old || since_renewal_ > most_patience;
+}
+
+/// `auto` stays with Newton's matrix for some stages, and longer where these were cheap.
+void AcceleratedLoop::plan_next() {
+  if (newton_stages_ == 0) return;
+  const int cost = update_cost * result_.updates + renewal_cost * renewals_here_;
+  mean_cost_ += 0.2 * (cost - mean_cost_);
+  if (--newton_stages_ == 0 && mean_cost_ < cheap && factor_ != nullptr) newton_stages_ = next_stay_;
+}
+
+StageResult AcceleratedLoop::solve(const Stage& stage, State& y) {
+  begin(stage, y);
+  const Outcome prepared = system_.prepare(stage.gamma, similar_gamma);
+  if (prepared != Outcome::success) return ended(prepared);
+  prescribe(ode_.pins, y.v);
+  if (NewtonFactor* const factor = preferred()) {
+    const bool usable = !factor->empty() && std::abs(factor->gamma() / stage.gamma - 1) <= different_gamma;
+    factor_ = factor;
+    made_here_ = false;
+    if (!usable && !use_newton(factor, y)) return result_;
+  }
+  const bool contacts = system_.touches();
+  double noise = 0;
+  for (bool close = false;;) {
+    system_.evaluate(stage, nullptr, y);
+    if (contacts && result_.updates > 0 && system_.adapt_contacts(stage, nullptr, y, noise, result_.updates >= 50)) {
+      close = false;
+      anderson_.restart();
+      best_ = infinity;
+    }
+    system_.filter_residual(stage.gamma);
+    if (contacts && result_.updates == 0) noise = system_.scale(y, stage.gamma).target(options_.loop_tolerance);
+    if (close) break;
+    if (result_.updates >= options_.max_updates) return ended(Outcome::not_converged);
+    if (!correct()) return result_;
+    ++result_.updates;
+    ++work_.updates;
+    ++since_renewal_;
+    if (!(size_ <= (part_ < 1 ? 1 : growth) * best_)) {
+      if (!retreat(y)) return result_;
+      continue;
+    }
+    advance(y);
+    close = close_enough(y);
+    if (close && !contacts) break;
+    if (close) continue;
+    if (factor_ == nullptr && result_.updates >= most_constant_updates && options_.stage->matrix == Matrix::chosen) {
+      if (!system_.touches() && !escalate(y)) return result_;
+    } else if (slow() && !use_newton(factor_, y)) {
+      return result_;
+    }
+  }
+  y.x = stage.ax + stage.gamma * y.v;
+  plan_next();
+  return ended(Outcome::success);
+}
+
+}  // namespace drape::solver

@@ -1,0 +1,67 @@
+#pragma once
+
+#include "solver/anderson.hpp"
+#include "solver/newton_factor.hpp"
+#include "solver/stage_system.hpp"
+
+namespace drape::solver {
+
+/// Solves stages by Anderson's method. What it accelerates is the iteration v ← v + P⁻¹ r(v), where P is the constant matrix A
+/// or the factor of a Newton matrix, which is kept until convergence slows. An update that leads away is taken back and tried
+/// with a smaller part, or with a new factor.
+///
+/// It ends when an estimate of the error of v is a small part of the error of the time step, which the distance between
+/// solution and first guess tells (Stage::accuracy). There are two estimates: |P⁻¹ r| over the weakest response seen to a
+/// change of v; and, since the error lies between |P⁻¹ r| and |M⁻¹ r|, their geometric mean. The first alone is too small where
+/// A is so much stiffer than the cloth that no response is seen.
+class AcceleratedLoop {
+ public:
+  AcceleratedLoop(const SplitOde& ode, const Options& options, StageSystem& system);
+
+  /// y: with the first guess of v.
+  StageResult solve(const Stage& stage, State& y);
+
+ private:
+  using Matrix = StageKind::Matrix;
+
+  void begin(const Stage& stage, const State& y);
+  bool use_newton(NewtonFactor* factor, State& y);
+  bool correct();
+  bool retreat(State& y);
+  bool escalate(State& y);
+  void advance(State& y);
+  bool close_enough(const State& y) const;
+  bool slow() const;
+  NewtonFactor* preferred();
+  void plan_next();
+  StageResult ended(Outcome outcome);
+
+  const SplitOde& ode_;
+  const Options& options_;
+  StageSystem& system_;
+  Anderson anderson_;
+  NewtonFactor newton_, lean_newton_;
+  Vectors guess_;
+  Vectors best_v_, best_d_;  ///< where |d| was smallest since the last renewal
+
+  // Of the stage that is being solved.
+  const Stage* stage_ = nullptr;
+  StageResult result_;
+  NewtonFactor* factor_ = nullptr;  ///< P; null for A
+  double size_ = 0;                 ///< |d|
+  double bound_ = 0;                ///< |M⁻¹ r|
+  double best_ = 0;                 ///< smallest |d|
+  double part_ = 1;                 ///< of an update that is made
+  double rate_ = 0;                 ///< by which |d| changed last
+  int since_renewal_ = 0, renewals_here_ = 0;
+  bool made_here_ = false;  ///< the factor was made at best_v_
+
+  // What `auto` remembers.
+  int newton_stages_ = 0;  ///< still to be solved with Newton's matrix
+  int next_stay_ = 4;
+  double mean_cost_ = 0;  ///< of a stage with Newton's matrix, in updates with A
+  LinearWork work_;
+  std::int64_t &renewals_, &escalations_;
+};
+
+}  // namespace drape::solver

@@ -1,0 +1,86 @@
+#include "solver/newton_factor.hpp"
+
+#include <cholmod.h>
+
+#include <new>
+
+namespace drape::solver {
+
+/// CHOLMOD's own choice between supernodal and simplicial: the blocks of a Newton matrix make supernodes pay early.
+class NewtonFactor::Factor {
+ public:
+  explicit Factor(const SparseMatrix& J) {
+    cholmod_start(&common_);
+    common_.final_ll = 1;  // so that a matrix that is not positive definite is noticed
+    common_.print = 0;     // outcomes are returned, not printed
+    cholmod_sparse view = lower(J);
+    factor_ = cholmod_analyze(&view, &common_);
+    right_ = cholmod_zeros(J.rows(), 1, CHOLMOD_REAL, &common_);
+    if (factor_ == nullptr || right_ == nullptr) throw std::bad_alloc();
+  }
+  ~Factor() {
+    cholmod_free_factor(&factor_, &common_);
+    for (cholmod_dense** dense : {&right_, &solution_, &work_y_, &work_e_}) cholmod_free_dense(dense, &common_);
+    cholmod_finish(&common_);
+  }
+  Factor(const Factor&) = delete;
+  Factor& operator=(const Factor&) = delete;
+
+  Outcome renew(const SparseMatrix& J) {
+    cholmod_sparse view = lower(J);
+    cholmod_factorize(&view, factor_, &common_);
+    return common_.status == CHOLMOD_OK ? Outcome::success : Outcome::breakdown;
+  }
+
+  void solve(const Vectors& r, Vectors& d) {
+    Eigen::Map<Vectors>(static_cast<double*>(right_->x), r.rows(), 3) = r;
+    cholmod_solve2(CHOLMOD_A, factor_, right_, nullptr, &solution_, nullptr, &work_y_, &work_e_, &common_);
+    d = Eigen::Map<const Vectors>(static_cast<const double*>(solution_->x), r.rows(), 3);
+  }
+
+  double solve_work() const { return 2 * common_.lnz; }
+  double renewal_work() const { return common_.fl; }
+
+ private:
+  /// Our rows are CHOLMOD's columns: the upper triangle of the one is the lower triangle of the other.
+  static cholmod_sparse lower(const SparseMatrix& J) {
+    cholmod_sparse view{};
+    view.nrow = view.ncol = static_cast<std::size_t>(J.rows());
+    view.nzmax = static_cast<std::size_t>(J.nonZeros());
+    view.p = const_cast<int*>(J.outerIndexPtr());
+    view.i = const_cast<int*>(J.innerIndexPtr());
+    view.x = const_cast<double*>(J.valuePtr());
+    view.stype = -1;
+    view.itype = CHOLMOD_INT;
+    view.xtype = CHOLMOD_REAL;
+    view.dtype = CHOLMOD_DOUBLE;
+    view.sorted = 1;
+    view.packed = 1;
+    return view;
+  }
+
+  cholmod_common common_{};
+  cholmod_factor* factor_ = nullptr;
+  cholmod_dense* right_ = nullptr;
+  cholmod_dense* solution_ = nullptr;
+  cholmod_dense* work_y_ = nullptr;
+  cholmod_dense* work_e_ = nullptr;
+};
+
+NewtonFactor::NewtonFactor(const SplitOde& ode, bool lean) : ode_(ode), lean_(lean) {}
+NewtonFactor::~NewtonFactor() = default;
+
+Outcome NewtonFactor::renew(double t, const State& y, double gamma) {
+  gamma_ = 0;
+  ode_.newton_matrix(t, y.x, y.v, gamma, lean_, J_);
+  if (!factor_) factor_ = std::make_unique<Factor>(J_);
+  const Outcome outcome = factor_->renew(J_);
+  if (outcome == Outcome::success) gamma_ = gamma;
+  return outcome;
+}
+
+void NewtonFactor::solve(const Vectors& r, Vectors& d) { factor_->solve(r, d); }
+double NewtonFactor::solve_work() const { return factor_ ? factor_->solve_work() : 0; }
+double NewtonFactor::renewal_work() const { return factor_ ? factor_->renewal_work() : 0; }
+
+}  // namespace drape::solver

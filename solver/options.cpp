@@ -1,0 +1,21 @@
+#include "solver/options.hpp"
+
+#include "solver/named.hpp"
+
+namespace drape::solver {
+
+std::span<const StageKind> stage_kinds() {
+  using Matrix = StageKind::Matrix;
+  static constexpr StageKind table[] = {
+      {"fixed-point", "the thesis' loop with the constant matrix (3.33)-(3.36), Alg. 6", Matrix::constant, false},
+      {"anderson", "the same iteration accelerated over the last eight updates", Matrix::constant, true},
+      {"newton", "with the exact Jacobian, renewed when convergence slows", Matrix::newton, true},
+      {"lean-newton", "with the Jacobian of tension and damping, without shear and bending", Matrix::lean_newton, true},
+      {"auto", "begins with anderson, goes on with newton where that is cheaper", Matrix::chosen, true},
+  };
+  return table;
+}
+
+const StageKind& stage_kind(std::string_view name) { return find_named(stage_kinds(), "stage solver", name); }
+
+}  // namespace drape::solver
