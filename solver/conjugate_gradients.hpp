@@ -27,9 +27,14 @@ class ConjugateGradients {
 
   /// Solves P A P d = r from d = 0 until |residual| ≤ target (Euclidean norm), where P is the filter and P r = r
   /// [Etzmuß 2002, Alg. 7]: d keeps to the free directions. r is overwritten with the residual.
+  ///
+  /// If the factor is exact and the filter empty, A must be the matrix that was factored last: one substitution, no iteration,
+  /// and a residual that is taken for 0.
   LinearResult solve(const SparseMatrix& A, const Filter& filter, Vectors& r, Vectors& d, double target);
 
  private:
+  LinearResult solve_directly(Vectors& r, Vectors& d);
+
   std::unique_ptr<Preconditioner> preconditioner_;
   int max_iterations_;
   Vectors z_, p_, q_;

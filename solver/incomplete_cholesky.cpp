@@ -3,22 +3,17 @@
 #include <numeric>
 #include <vector>
 
-#include "solver/kernels.hpp"
 #include "solver/preconditioner.hpp"
+#include "solver/triangle.hpp"
 
 namespace drape::solver {
 namespace {
 
-/// Rows of a triangular matrix with unit diagonal, stored in the order in which they are eliminated.
-///
-/// That order is by levels: a row comes after all it depends on, and rows of one level do not depend on each other, so
-/// that a processor need not wait for one row before it begins the next. The result is that of the natural order.
-struct Triangle {
-  std::vector<int> row;
-  std::vector<int> start;
-  std::vector<int> column;
+/// A triangle of the factor, ordered by levels: a row comes after all it depends on, and rows of one level do not depend on
+/// each other, so that a processor need not wait for one row before it begins the next. The result is that of the natural
+/// order.
+struct LeveledTriangle : Triangle {
   std::vector<int> source;  ///< index of the entry in the values of the factor
-  std::vector<double> value;
 
   void order(const std::vector<std::vector<std::pair<int, int>>>& rows, bool backward);
   void gather(const std::vector<double>& factor) {
@@ -26,7 +21,7 @@ struct Triangle {
   }
 };
 
-void Triangle::order(const std::vector<std::vector<std::pair<int, int>>>& rows, bool backward) {
+void LeveledTriangle::order(const std::vector<std::vector<std::pair<int, int>>>& rows, bool backward) {
   const int n = static_cast<int>(rows.size());
   std::vector<int> level(n, 0);
   for (int k = 0; k < n; ++k) {
@@ -56,9 +51,8 @@ class IncompleteCholesky : public Preconditioner {
   Outcome factor(const SparseMatrix& A) override;
   double apply(const Vectors& r, Vectors& z) override;
   std::int64_t bytes() const override {
-    const auto entries = static_cast<std::int64_t>(forward_.value.size() + backward_.value.size());
     const auto n = static_cast<std::int64_t>(diagonal_.size());
-    return entries * static_cast<std::int64_t>(sizeof(double) + sizeof(int)) + n * 8 + vector_bytes(n, 5);
+    return forward_.bytes() + backward_.bytes() + n * static_cast<std::int64_t>(2 * sizeof(double)) + vector_bytes(n, 5);
   }
 
  private:
@@ -68,8 +62,8 @@ class IncompleteCholesky : public Preconditioner {
   std::vector<double> lower_;        // L
   std::vector<double> diagonal_;     // D
   std::vector<double> inverse_;      // D⁻¹
-  Triangle forward_, backward_;
-  std::vector<Lanes> work_;  // four lanes a particle, so that what is stored is what is loaded
+  LeveledTriangle forward_, backward_;
+  std::vector<Lanes> work_;
 };
 
 void IncompleteCholesky::analyze(const SparseMatrix& A) {
@@ -130,36 +124,14 @@ Outcome IncompleteCholesky::factor(const SparseMatrix& A) {
   return Outcome::success;
 }
 
-/// Solves the triangle in its order: w_i = begin(i) − Σ_j T_ij w_j, and end(i, w_i) for each.
-template <class Begin, class End>
-void eliminate(const Triangle& T, std::vector<Lanes>& work, const Begin& begin, const End& end) {
-  const int n = static_cast<int>(T.row.size());
-  const int *const row = T.row.data(), *const start = T.start.data(), *const column = T.column.data();
-  const double* const value = T.value.data();
-  Lanes* const w = work.data();
-  for (int k = 0, e = 0; k < n; ++k) {
-    const int i = row[k];
-    Lanes s = begin(i);
-    for (const int last = start[k + 1]; e < last; ++e) s -= value[e] * w[column[e]];
-    w[i] = s;
-    end(i, s);
-  }
-}
-
 double IncompleteCholesky::apply(const Vectors& r, Vectors& z) {
-  const auto last = r.rows() - 1;
-  Lanes last_row = Lanes::Zero();  // four lanes of it would read past the end
-  last_row.head<3>() = r.row(last).transpose();
-  const auto residual = [&](Eigen::Index i) -> Lanes { return i < last ? Lanes(load(r.data() + 3 * i)) : last_row; };
-
-  eliminate(forward_, work_, residual, [](int, const Lanes&) {});
-  Lanes rz = Lanes::Zero();
+  const LaneRows residual(r);
+  Lanes rz = Lanes::Zero();  // <r, z> = <w, D⁻¹ w> half way
+  eliminate(
+      forward_, work_, [&](int i) { return residual[i]; }, [&](int i, const Lanes& w) { rz += inverse_[i] * w.square(); });
   eliminate(
       backward_, work_, [&](int i) -> Lanes { return work_[i] * inverse_[i]; },
-      [&](int i, const Lanes& s) {
-        store(z.data() + 3 * static_cast<Eigen::Index>(i), s);
-        rz += s * residual(i);
-      });
+      [&](int i, const Lanes& w) { store(z.data() + 3 * static_cast<Eigen::Index>(i), w); });
   return sum(rz);
 }
 

@@ -23,11 +23,14 @@ class Preconditioner {
   /// z ≈ A⁻¹ r; r, z: N × 3. Returns <r, z>.
   virtual double apply(const Vectors& r, Vectors& z) = 0;
 
+  /// Whether z = A⁻¹ r up to round-off.
+  virtual bool exact() const { return false; }
+
   /// Bytes that one application moves at least.
   virtual std::int64_t bytes() const = 0;
 };
 
-/// A linear solver of the constant matrix: conjugate gradients with one of these preconditioners.
+/// A linear solver of the constant matrix: conjugate gradients with one of these preconditioners; an exact one alone will do.
 struct LinearSolver {
   std::string_view name;
   std::string_view description;
