@@ -7,6 +7,8 @@ namespace drape::solver {
 std::span<const LinearSolver> linear_solvers() {
   static constexpr LinearSolver table[] = {
       {"ic0", "conjugate gradients with incomplete Cholesky IC(0), as in the thesis (3.4.2)", make_incomplete_cholesky},
+      {"mic0", "conjugate gradients with modified incomplete Cholesky, which keeps row sums",
+       make_modified_incomplete_cholesky},
       {"cholesky",
        "the complete Cholesky factor (CHOLMOD); in conjugate gradients where contacts or pins leave directions free",
        make_cholesky},

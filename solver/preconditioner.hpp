@@ -44,6 +44,7 @@ std::span<const LinearSolver> linear_solvers();
 const LinearSolver& linear_solver(std::string_view name);
 
 std::unique_ptr<Preconditioner> make_incomplete_cholesky();
+std::unique_ptr<Preconditioner> make_modified_incomplete_cholesky();
 std::unique_ptr<Preconditioner> make_cholesky();
 
 }  // namespace drape::solver

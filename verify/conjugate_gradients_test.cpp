@@ -95,6 +95,11 @@ TEST(CompleteCholesky, SeesNumbersThatAreNotFinite) {
 
 TEST(ConjugateGradients, NeedMoreWithAnIncompleteOne) { EXPECT_GE(iterations(solver::linear_solver("ic0"), sheet(20, 20)), 5); }
 
+TEST(ConjugateGradients, NeedFewerWithOneThatKeepsRowSums) {
+  const SparseMatrix fine = diagonal(Eigen::VectorXd::Ones(3600)) + 20 * sheet(60, 60);
+  EXPECT_LE(2 * iterations(solver::linear_solver("mic0"), fine), iterations(solver::linear_solver("ic0"), fine));
+}
+
 TEST(ConjugateGradients, RememberTheDirectionsBefore) {
   EXPECT_LE(iterations(solver::linear_solver("ic0"), sheet(20, 20)), 50) << "steepest descent needs 175";
 }
