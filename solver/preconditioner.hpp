@@ -46,5 +46,6 @@ const LinearSolver& linear_solver(std::string_view name);
 std::unique_ptr<Preconditioner> make_incomplete_cholesky();
 std::unique_ptr<Preconditioner> make_modified_incomplete_cholesky();
 std::unique_ptr<Preconditioner> make_cholesky();
+std::unique_ptr<Preconditioner> make_multigrid();
 
 }  // namespace drape::solver
