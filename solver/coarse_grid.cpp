@@ -18,8 +18,7 @@ class Galerkin {
         sum_(size_, 0.0),
         right_(size_, 0.0),
         up_(size_, 0.0) {
-    each_coarse(
-        [&](int i, int a, int b) { free_[i] = !A_.node((u_.halved ? 2 * a : a) + A_.nu * (v_.halved ? 2 * b : b)).alone(); });
+    each_coarse([&](int i, int a, int b) { free_[i] = !A_.node(u_.place(a) + A_.nu * v_.place(b)).alone(); });
     add_sums();
     add_couplings();
   }
@@ -71,14 +70,14 @@ void Galerkin::add_sums() {
 }
 
 void Galerkin::add_couplings() {
-  // Two springs in a row whose middle is interpolated: a quarter of each.
-  const double in_u = u_.halved ? 0.25 : 1, in_v = v_.halved ? 0.25 : 1;
+  const auto share = [](const Coarsening& c, int a) {  // two springs in a row whose middle is interpolated: a quarter of each
+    return c.kept(a) ? 1 : 0.25;
+  };
   each_fine([&](int i, int a, int b) {
     const FivePoint::Node& n = A_.node(i);
-    if (const int A = u_.parent(a); A < u_.coarse() - 1)
-      v_.parents(b, [&](int B, double w) { right_[A + u_.coarse() * B] += w * in_u * n.right; });
-    if (const int B = v_.parent(b); B < v_.coarse() - 1)
-      u_.parents(a, [&](int A, double w) { up_[A + u_.coarse() * B] += w * in_v * n.up; });
+    const int A = u_.parent(a), B = v_.parent(b);
+    v_.parents(b, [&](int to, double w) { right_[A + u_.coarse() * to] += w * share(u_, a) * n.right; });
+    u_.parents(a, [&](int to, double w) { up_[to + u_.coarse() * B] += w * share(v_, b) * n.up; });
   });
   each_coarse([&](int i, int a, int b) {
     if (a == u_.coarse() - 1 || !free_[i] || !free_[i + 1]) right_[i] = 0;

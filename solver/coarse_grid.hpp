@@ -1,22 +1,29 @@
 #pragma once
 
+#include <algorithm>
+
 #include "solver/five_point.hpp"
 
 namespace drape::solver {
 
-/// How one direction of a grid is coarsened: not at all, or to every other place.
+/// How one direction of a grid is coarsened: not at all, or to every other place and the last.
 struct Coarsening {
   int fine = 1;
   bool halved = false;
 
-  int coarse() const { return halved ? (fine + 1) / 2 : fine; }
+  int coarse() const { return halved ? fine / 2 + 1 : fine; }
 
-  /// The coarse place at or before a. Fields are interpolated linearly; a last place that has no coarse one behind it takes the
-  /// value of the one before.
-  int parent(int a) const { return halved ? a / 2 : a; }
+  /// The coarse place at or before a.
+  int parent(int a) const { return halved ? (a + (a == fine - 1)) / 2 : a; }
 
   /// Whether a lies halfway between parent(a) and the next.
-  bool between(int a) const { return halved && a % 2 == 1 && a + 1 < fine; }
+  bool between(int a) const { return halved && a % 2 == 1 && a < fine - 1; }
+
+  /// The place of a coarse place on the fine grid.
+  int place(int coarse) const { return halved ? std::min(2 * coarse, fine - 1) : coarse; }
+
+  /// Whether a and a + 1 are coarse places both.
+  bool kept(int a) const { return !halved || (a % 2 == 0 && a == fine - 2); }
 
   /// Calls f(place, weight) for the coarse places from which a is interpolated.
   template <class F>
