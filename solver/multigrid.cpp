@@ -15,18 +15,20 @@ struct Level {
   Vectors r, z;  ///< one row more than there are particles: four lanes of the last may be loaded
 };
 
-/// Calls f(coordinates of the coarse particle, weight) for those from which (a, b) is interpolated.
+/// Calls f(a, coarse, in_u, in_v) for the red nodes of line b (a + b even). `coarse`: index of the first coordinate of the
+/// coarse particle at or before (a, b); in_u, in_v (constants, so that the loop has no branches): whether the node lies halfway
+/// to the next one along u and along v.
 template <class F>
-void parents(Level& level, Vectors& field, int a, int b, const F& f) {
-  double* const first =
-      field.data() + 3 * (level.u.parent(a) + static_cast<Eigen::Index>(level.u.coarse()) * level.v.parent(b));
-  const Eigen::Index next = 3 * static_cast<Eigen::Index>(level.u.coarse());
-  const bool in_u = level.u.between(a), in_v = level.v.between(b);
-  const double weight = (in_u ? 0.5 : 1) * (in_v ? 0.5 : 1);
-  f(first, weight);
-  if (in_u) f(first + 3, weight);
-  if (in_v) f(first + next, weight);
-  if (in_u && in_v) f(first + next + 3, weight);
+void each_red(const Level& level, int b, const F& f) {
+  const Eigen::Index first = 3 * static_cast<Eigen::Index>(level.u.coarse()) * level.v.parent(b);
+  const auto loop = [&](auto in_u, auto in_v) {
+    const int end = level.A.nu - 1;
+    int a = b % 2;
+    for (; a < end; a += 2) f(a, first + 3 * level.u.parent(a), in_u, in_v);
+    if (a == end) f(a, first + 3 * level.u.parent(a), std::false_type(), in_v);
+  };
+  const auto along_v = [&](auto in_u) { level.v.between(b) ? loop(in_u, std::true_type()) : loop(in_u, std::false_type()); };
+  level.u.halved&& b % 2 == 1 ? along_v(std::true_type()) : along_v(std::false_type());
 }
 
 /// z = r / D on red nodes (a + b even), (r + what neighbours pull) / D on black ones. What then is left is on red nodes only:
@@ -45,12 +47,18 @@ void smooth_down(Level& level, const Vectors& r, Vectors& z) {
         store(z.data() + line.begin + 3 * a, line.nodes[a].inverse * (line.at(r.data(), a) + line.around(z.data(), a)));
     });
   };
+  const Eigen::Index next = 3 * static_cast<Eigen::Index>(level.u.coarse());
   const auto restricted = [&](int b) {
     with_line(A, b, [&](const auto& line) {
-      for (int a = b % 2; a < A.nu; a += 2) {
-        const Lanes residual = line.around(z.data(), a);
-        parents(level, level.r, a, b, [&](double* coarse, double w) { store(coarse, load(coarse) + w * residual); });
-      }
+      each_red(level, b, [&](int a, Eigen::Index coarse, auto in_u, auto in_v) {
+        double* const to = level.r.data() + coarse;
+        const Lanes part = (in_u ? 0.5 : 1) * (in_v ? 0.5 : 1) * line.around(z.data(), a);
+        const auto add = [&](double* place) { store(place, load(place) + part); };
+        add(to);
+        if (in_u) add(to + 3);
+        if (in_v) add(to + next);
+        if (in_u && in_v) add(to + next + 3);
+      });
     });
   };
   sweep(A.nv, red, black, restricted);
@@ -60,13 +68,17 @@ void smooth_down(Level& level, const Vectors& r, Vectors& z) {
 double smooth_up(Level& level, const Vectors& r, Vectors& z) {
   const FivePoint& A = level.A;
   Lanes rz = Lanes::Zero();
+  const Eigen::Index next = 3 * static_cast<Eigen::Index>(level.u.coarse());
   const auto corrected = [&](int b) {
     with_line(A, b, [&](const auto& line) {
-      for (int a = b % 2; a < A.nu; a += 2) {
-        Lanes value = line.at(z.data(), a);
-        parents(level, level.z, a, b, [&](const double* coarse, double w) { value += w * load(coarse); });
-        store(z.data() + line.begin + 3 * a, value);
-      }
+      each_red(level, b, [&](int a, Eigen::Index coarse, auto in_u, auto in_v) {
+        const double* const from = level.z.data() + coarse;
+        Lanes part = load(from);
+        if (in_u) part += load(from + 3);
+        if (in_v) part += load(from + next);
+        if (in_u && in_v) part += load(from + next + 3);
+        store(z.data() + line.begin + 3 * a, line.at(z.data(), a) + (in_u ? 0.5 : 1) * (in_v ? 0.5 : 1) * part);
+      });
     });
   };
   const auto smoothed = [&](int b, int first) {
@@ -97,7 +109,7 @@ class Multigrid : public Preconditioner {
  private:
   double cycle(std::size_t k, const Vectors& r, Vectors& z);
 
-  static constexpr int few = 2000;  ///< particles that are better solved for directly
+  static constexpr int few = 1000;  ///< particles that are better solved for directly
 
   std::vector<Level> levels_;
   std::unique_ptr<Preconditioner> coarsest_;

@@ -9,11 +9,11 @@ namespace drape::solver {
 template <class... Stages>
 void sweep(int lines, const Stages&... stages) {
   constexpr int count = sizeof...(Stages);
-  for (int front = 0; front < lines + count - 1; ++front) {
+  for (int front = 0; front < lines + 2 * (count - 1); ++front) {
     int b = front;
     const auto advance = [&](const auto& stage) {
       if (b >= 0 && b < lines) stage(b);
-      --b;
+      b -= 2;
     };
     (advance(stages), ...);
   }
