@@ -67,6 +67,7 @@ class Cholesky : public Preconditioner {
   }
 
   bool exact() const override { return true; }
+  std::string_view name() const override { return "cholesky"; }
 
   std::int64_t bytes() const override {
     const auto n = static_cast<std::int64_t>(inverse_.size());

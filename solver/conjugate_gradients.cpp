@@ -18,7 +18,9 @@ void ConjugateGradients::analyze(const SparseMatrix& A) {
 Outcome ConjugateGradients::factor(const SparseMatrix& A) {
   ++work_.factorizations;
   star_ = five_point(A);
-  return preconditioner_->factor(A);
+  const Outcome outcome = preconditioner_->factor(A);
+  ++work_.factorizations_of(preconditioner_->name());
+  return outcome;
 }
 
 LinearResult ConjugateGradients::solve_directly(Vectors& r, Vectors& d) {

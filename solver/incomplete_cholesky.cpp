@@ -56,6 +56,7 @@ class IncompleteCholesky : public Preconditioner {
   void analyze(const SparseMatrix& A) override;
   Outcome factor(const SparseMatrix& A) override;
   double apply(const Vectors& r, Vectors& z) override;
+  std::string_view name() const override { return omega_ == 0 ? "ic0" : "mic0"; }
   std::int64_t bytes() const override {
     const auto n = static_cast<std::int64_t>(diagonal_.size());
     return forward_.bytes() + backward_.bytes() + n * static_cast<std::int64_t>(2 * sizeof(double)) + vector_bytes(n, 5);

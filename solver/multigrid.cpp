@@ -104,6 +104,7 @@ class Multigrid : public Preconditioner {
   Outcome factor(const SparseMatrix& A) override;
   double apply(const Vectors& r, Vectors& z) override { return cycle(0, r, z); }
   bool exact() const override { return levels_.empty() && coarsest_->exact(); }
+  std::string_view name() const override { return levels_.empty() ? coarsest_->name() : "multigrid"; }
   std::int64_t bytes() const override;
 
  private:

@@ -13,6 +13,7 @@ std::span<const LinearSolver> linear_solvers() {
        "the complete Cholesky factor (CHOLMOD); in conjugate gradients where contacts or pins leave directions free",
        make_cholesky},
       {"multigrid", "conjugate gradients with a multigrid cycle where the scene is a grid, else as mic0", make_multigrid},
+      {"auto", "the quickest of these by size and stiffness of the matrix", make_automatic},
   };
   return table;
 }

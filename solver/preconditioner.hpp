@@ -26,6 +26,9 @@ class Preconditioner {
   /// Whether z = A⁻¹ r up to round-off.
   virtual bool exact() const { return false; }
 
+  /// The linear solver that was factored last: another than was asked for if that one chooses or cannot.
+  virtual std::string_view name() const = 0;
+
   /// Bytes that one application moves at least.
   virtual std::int64_t bytes() const = 0;
 };
@@ -47,5 +50,6 @@ std::unique_ptr<Preconditioner> make_incomplete_cholesky();
 std::unique_ptr<Preconditioner> make_modified_incomplete_cholesky();
 std::unique_ptr<Preconditioner> make_cholesky();
 std::unique_ptr<Preconditioner> make_multigrid();
+std::unique_ptr<Preconditioner> make_automatic();
 
 }  // namespace drape::solver

@@ -64,7 +64,8 @@ TEST(FivePointStar, IsFoundInEveryShapeOfSheet) {
 
 TEST(FivePointStar, IsNotFoundWhereThereIsNone) {
   SparseMatrix around = sheet(5, 4), one_sided = sheet(5, 4);
-  around.coeffRef(4, 5) = around.coeffRef(5, 4) = -1;  // from the end of a line to the begin of the next
+  for (const auto& [i, j] : {std::pair{4, 5}, {5, 4}})
+    around.coeffRef(i, j) = -1;  // from the end of a line to the begin of the next
   one_sided.coeffRef(3, 4) *= 2;
   for (const SparseMatrix& A : {around, one_sided, definite(60, 0.1, 7), SparseMatrix(sheet(5, 4) * sheet(5, 4))})
     EXPECT_FALSE(solver::five_point(A));
@@ -145,6 +146,38 @@ TEST(Multigrid, CoarsensAlongTheStrongerSpringsOnly) {
   EXPECT_EQ(coarsened(1), std::pair(21, 21));
   EXPECT_EQ(coarsened(1e-3), std::pair(21, 40));
   EXPECT_EQ(coarsened(1e3), std::pair(40, 21));
+}
+
+// --- The choice --------------------------------------------------------------------------------------------------------------
+
+/// What `auto` takes for a matrix.
+std::string chosen(const SparseMatrix& A) {
+  const auto automatic = solver::make_automatic();
+  automatic->analyze(A);
+  EXPECT_EQ(automatic->factor(A), Outcome::success);
+  return std::string(automatic->name());
+}
+
+TEST(AutomaticChoice, GoesBySizeStiffnessAndPattern) {
+  EXPECT_EQ(chosen(sheet(20, 20)), "cholesky");
+  const SparseMatrix large = pinned_sheet(160, 160, 1e3, line(160));
+  EXPECT_EQ(chosen(large), "multigrid");
+  EXPECT_EQ(chosen(diagonal(1e6 * Eigen::VectorXd::Ones(160 * 160)) + large), "mic0");
+  SparseMatrix no_grid = large;
+  for (const auto& [i, j] : {std::pair{200, 25000}, {25000, 200}}) no_grid.coeffRef(i, j) = -1;
+  no_grid.makeCompressed();
+  EXPECT_EQ(chosen(no_grid), "cholesky");
+}
+
+TEST(AutomaticChoice, IsCountedAndMadeAnewForNewValues) {
+  solver::Work work;
+  solver::ConjugateGradients cg(solver::make_automatic(), 100, work);
+  const SparseMatrix stiff = pinned_sheet(160, 160, 1e3, {}), soft = diagonal(1e6 * Eigen::VectorXd::Ones(160 * 160)) + stiff;
+  cg.analyze(stiff);
+  for (const SparseMatrix* A : {&stiff, &soft, &soft}) EXPECT_EQ(cg.factor(*A), Outcome::success);
+  EXPECT_EQ(work.count("linear_solver/multigrid"), 1);
+  EXPECT_EQ(work.count("linear_solver/mic0"), 2);
+  EXPECT_EQ(work.count("linear_solver/auto"), 0);
 }
 
 }  // namespace
