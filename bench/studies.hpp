@@ -43,5 +43,6 @@ std::vector<TableJob> table_3_2(bool quick);
 std::vector<TableJob> figure_3_2(bool quick);
 std::vector<TableJob> figure_3_3(bool quick);
 std::vector<TableJob> figure_4_3(bool quick);
+std::vector<TableJob> scaling(bool quick);
 
 }  // namespace drape::bench

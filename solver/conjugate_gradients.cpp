@@ -17,11 +17,36 @@ void ConjugateGradients::analyze(const SparseMatrix& A) {
 
 Outcome ConjugateGradients::factor(const SparseMatrix& A) {
   ++work_.factorizations;
-  return preconditioner_->factor(A);
+  star_ = five_point(A);
+  const Outcome outcome = preconditioner_->factor(A);
+  ++work_.factorizations_of(preconditioner_->name());
+  return outcome;
+}
+
+LinearResult ConjugateGradients::solve_directly(Vectors& r, Vectors& d) {
+  const double rd = preconditioner_->apply(r, d);
+  r.setZero();
+  ++work_.preconditioner;
+  work_.bytes += preconditioner_->bytes();
+  return {std::isfinite(rd) ? Outcome::success : Outcome::not_finite, 0};
+}
+
+/// The next direction p = z + β p and q = A p. Returns <p, q>.
+double ConjugateGradients::direct(const SparseMatrix& A, double beta) {
+  if (star_) return solver::direct(*star_, z_, beta, p_, q_);
+  if (beta == 0)
+    p_ = z_;
+  else
+    p_ = z_ + beta * p_;
+  return multiply(A, p_, q_);
+}
+
+std::int64_t ConjugateGradients::direct_bytes(const SparseMatrix& A) const {
+  return star_ ? star_->bytes() + vector_bytes(A.rows(), 4) : multiply_bytes(A) + vector_bytes(A.rows(), 3);
 }
 
 LinearResult ConjugateGradients::solve(const SparseMatrix& A, const Filter& filter, Vectors& r, Vectors& d, double target) {
-  const auto n = A.rows();
+  if (preconditioner_->exact() && filter.empty()) return solve_directly(r, d);
   d.setZero();
   double rz = 0;
   double norm = r.norm();
@@ -36,11 +61,7 @@ LinearResult ConjugateGradients::solve(const SparseMatrix& A, const Filter& filt
       filter(z_);
       rz = r.cwiseProduct(z_).sum();
     }
-    if (k == 0)
-      p_ = z_;
-    else
-      p_ = z_ + (rz / previous) * p_;
-    double pq = multiply(A, p_, q_);
+    double pq = direct(A, k == 0 ? 0 : rz / previous);
     if (!filter.empty()) {
       filter(q_);
       pq = p_.cwiseProduct(q_).sum();
@@ -48,7 +69,7 @@ LinearResult ConjugateGradients::solve(const SparseMatrix& A, const Filter& filt
     ++work_.cg_iterations;
     ++work_.products;
     ++work_.preconditioner;
-    work_.bytes += multiply_bytes(A) + preconditioner_->bytes() + vector_bytes(n, 9);
+    work_.bytes += direct_bytes(A) + preconditioner_->bytes() + vector_bytes(A.rows(), 6);
     if (std::isfinite(pq) && pq <= 0) return {Outcome::breakdown, k};
     norm = std::sqrt(advance(rz / pq, p_, q_, d, r));
   }

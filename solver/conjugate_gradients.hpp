@@ -1,8 +1,10 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "solver/filter.hpp"
+#include "solver/five_point.hpp"
 #include "solver/linear_work.hpp"
 #include "solver/outcome.hpp"
 #include "solver/preconditioner.hpp"
@@ -27,11 +29,19 @@ class ConjugateGradients {
 
   /// Solves P A P d = r from d = 0 until |residual| ≤ target (Euclidean norm), where P is the filter and P r = r
   /// [Etzmuß 2002, Alg. 7]: d keeps to the free directions. r is overwritten with the residual.
+  ///
+  /// A is the matrix that was factored last. If the factor is exact and the filter empty, there is one substitution and no
+  /// iteration, and the residual is taken for 0.
   LinearResult solve(const SparseMatrix& A, const Filter& filter, Vectors& r, Vectors& d, double target);
 
  private:
+  LinearResult solve_directly(Vectors& r, Vectors& d);
+  double direct(const SparseMatrix& A, double beta);
+  std::int64_t direct_bytes(const SparseMatrix& A) const;
+
   std::unique_ptr<Preconditioner> preconditioner_;
   int max_iterations_;
+  std::optional<FivePoint> star_;  ///< the matrix that was factored last, if it is one of a grid
   Vectors z_, p_, q_;
   LinearWork work_;
 };

@@ -1,5 +1,11 @@
 #pragma once
 
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "solver/preconditioner.hpp"
 #include "solver/work.hpp"
 
 namespace drape::solver {
@@ -14,9 +20,18 @@ struct LinearWork {
         builds(work.counter("matrix_builds", "assemblies of the constant matrix A")),
         factorizations(work.counter("factorizations", "factorizations of A, complete or incomplete")),
         entries(work.counter("matrix_entries", "entries of A")),
-        bytes(work.counter("linear_bytes", "bytes that the linear algebra moved, every array counted once a pass")) {}
+        bytes(work.counter("linear_bytes", "bytes that the linear algebra moved, every array counted once a pass")) {
+    for (const LinearSolver& solver : linear_solvers())
+      kinds.push_back({solver.name, &work.counter("linear_solver/" + std::string(solver.name),
+                                                  "factorizations for: " + std::string(solver.description))});
+  }
+
+  std::int64_t& factorizations_of(std::string_view solver) const {
+    return *std::ranges::find(kinds, solver, &std::pair<std::string_view, std::int64_t*>::first)->second;
+  }
 
   std::int64_t &updates, &cg_iterations, &products, &preconditioner, &builds, &factorizations, &entries, &bytes;
+  std::vector<std::pair<std::string_view, std::int64_t*>> kinds;  ///< which linear solver it was in the end
 };
 
 }  // namespace drape::solver

@@ -23,11 +23,17 @@ class Preconditioner {
   /// z ≈ A⁻¹ r; r, z: N × 3. Returns <r, z>.
   virtual double apply(const Vectors& r, Vectors& z) = 0;
 
+  /// Whether z = A⁻¹ r up to round-off.
+  virtual bool exact() const { return false; }
+
+  /// The linear solver that was factored last: another than was asked for if that one chooses or cannot.
+  virtual std::string_view name() const = 0;
+
   /// Bytes that one application moves at least.
   virtual std::int64_t bytes() const = 0;
 };
 
-/// A linear solver of the constant matrix: conjugate gradients with one of these preconditioners.
+/// A linear solver of the constant matrix: conjugate gradients with one of these preconditioners; an exact one alone will do.
 struct LinearSolver {
   std::string_view name;
   std::string_view description;
@@ -41,6 +47,9 @@ std::span<const LinearSolver> linear_solvers();
 const LinearSolver& linear_solver(std::string_view name);
 
 std::unique_ptr<Preconditioner> make_incomplete_cholesky();
+std::unique_ptr<Preconditioner> make_modified_incomplete_cholesky();
 std::unique_ptr<Preconditioner> make_cholesky();
+std::unique_ptr<Preconditioner> make_multigrid();
+std::unique_ptr<Preconditioner> make_automatic();
 
 }  // namespace drape::solver

@@ -70,10 +70,35 @@ int iterations(const LinearSolver& kind, const SparseMatrix& A) {
 
 TEST(ConjugateGradients, NeedOneIterationWithAnExactFactor) {
   for (const int n : sizes) EXPECT_EQ(iterations(solver::linear_solver("ic0"), tridiagonal(n)), 1) << n;
-  for (const SparseMatrix& A : definite_matrices()) EXPECT_EQ(iterations(solver::linear_solver("cholesky"), A), 1) << A.rows();
+}
+
+TEST(CompleteCholesky, SolvesByOneSubstitutionAlone) {
+  const SparseMatrix A = sheet(20, 20);
+  Vectors r = noise(400, 9), d = r;
+  Solver solver(solver::linear_solver("cholesky"), A);
+  EXPECT_EQ(solver.solve(A, r, d, 0).iterations, 0);
+  EXPECT_EQ(solver.work.count("preconditioner_applications"), 1);
+  EXPECT_EQ(solver.work.count("cg_iterations"), 0);
+  EXPECT_EQ(solver.work.count("matrix_products"), 0);
+}
+
+TEST(CompleteCholesky, SeesNumbersThatAreNotFinite) {
+  const SparseMatrix A = sheet(20, 20);
+  Solver solver(solver::linear_solver("cholesky"), A);
+  for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()})
+    for (const int particle : {0, 17, 399}) {
+      Vectors r = noise(400, 9), d = r;
+      r(particle, 1) = bad;
+      EXPECT_EQ(solver.solve(A, r, d, 1e-10).outcome, Outcome::not_finite) << particle;
+    }
 }
 
 TEST(ConjugateGradients, NeedMoreWithAnIncompleteOne) { EXPECT_GE(iterations(solver::linear_solver("ic0"), sheet(20, 20)), 5); }
+
+TEST(ConjugateGradients, NeedFewerWithOneThatKeepsRowSums) {
+  const SparseMatrix fine = diagonal(Eigen::VectorXd::Ones(3600)) + 20 * sheet(60, 60);
+  EXPECT_LE(2 * iterations(solver::linear_solver("mic0"), fine), iterations(solver::linear_solver("ic0"), fine));
+}
 
 TEST(ConjugateGradients, RememberTheDirectionsBefore) {
   EXPECT_LE(iterations(solver::linear_solver("ic0"), sheet(20, 20)), 50) << "steepest descent needs 175";
@@ -110,10 +135,12 @@ TEST_P(ConjugateGradientsWith, SolveInTheFreeCoordinates) {
 }
 
 TEST_P(ConjugateGradientsWith, TellHowTheyFailed) {
-  const SparseMatrix A = sheet(20, 20), indefinite = A - 60 * diagonal(Eigen::VectorXd::Ones(400));
-  const Vectors b = noise(400, 9);
+  const SparseMatrix A = definite(400, 0.01, 7), indefinite = A - 3 * diagonal(Eigen::VectorXd::Ones(400));
+  const std::vector<Pin> pins = {{.particle = 5, .fixed = {true, false, false}}};  // or a direct solver would not iterate
+  Vectors b = noise(400, 9);
+  filter(pins, b);
   Vectors r = b, d(400, 3);
-  Solver definite(kind, A);
+  Solver definite(kind, A, pins);
   EXPECT_EQ(definite.solve(indefinite, r, d, 1e-10).outcome, Outcome::breakdown);
   r = b;
   r(17, 1) = std::nan("");

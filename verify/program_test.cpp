@@ -72,7 +72,7 @@ TEST(ProgramHelp, OfRunHasEveryOptionAndAllThatThereIsToChooseFrom) {
   expect_all_in(help, {"--scene NAME|FILE.toml", "--method A,B", "--step H1,H2", "--until T", "--set key=value", "--repeat R",
                        "--out FILE.h5", "--format table|csv|json", "--no-reference", "--loop-tolerance", "--cg-tolerance",
                        "--max-updates", "--verlet-fraction", "--control MIN MAX"});
-  expect_all_in(help, lines(program.output({"list", "scenes"})) + methods + Words{"ic0", "cholesky"});
+  expect_all_in(help, lines(program.output({"list", "scenes"})) + methods + Words{"ic0", "mic0", "cholesky", "multigrid", "auto"});
   expect_all_in(help, {"grid.n", "material.tension", "material.damping", "material.shear", "material.bend"});
 }
 
