@@ -14,6 +14,8 @@ double dot(const Vec& a, const Vec& b) { return a.x * b.x + a.y * b.y + a.z * b.
 Vec difference(const Ends& ends, int k) { return ends.end[k] - ends.begin[k]; }
 void add(const Field& sum, int k, const Vec& a) { sum.set(k, sum[k] + a); }
 
+// The templates take laws and fields by value: nothing that a loop stores could change them.
+
 /// Calls f with a constant, so that what is not needed is not compiled.
 template <class F>
 void with(bool condition, const F& f) {
@@ -21,7 +23,7 @@ void with(bool condition, const F& f) {
 }
 
 template <bool thread, bool dashpot, bool drag>
-void pull(const EdgeLaw& law, Ends x, Ends v, const double* width, Columns columns, Edges edges) {
+void pull(EdgeLaw law, Ends x, Ends v, const double* width, Columns columns, Edges edges) {
 #pragma GCC ivdep
   for (int k = columns.begin; k < columns.end; ++k) {
     const Vec p = difference(x, k);
@@ -36,7 +38,7 @@ void pull(const EdgeLaw& law, Ends x, Ends v, const double* width, Columns colum
 }
 
 template <bool viscous>
-void strain(const CellLaw& law, double l, Ends v, Columns columns, Edges edges) {
+void strain(CellLaw law, double l, Ends v, Columns columns, Edges edges) {
 #pragma GCC ivdep
   for (int k = columns.begin; k < columns.end; ++k) {
     const Vec p = edges.along[k];
@@ -49,25 +51,27 @@ void strain(const CellLaw& law, double l, Ends v, Columns columns, Edges edges) 
 }
 
 template <bool viscous>
-void shear(const CellLaw& law, const double* exists, Columns columns, CellEdges cells) {
+void shear(CellLaw law, const double* exists, Columns columns, const CellEdges& cells) {
+  const Field lower = cells.lower.along, upper = cells.upper.along, left = cells.left.along, right = cells.right;
+  const Field pull_lower = cells.lower.pull, pull_upper = cells.upper.pull, pull_left = cells.left.pull;
+  const Field pull_right = cells.pull_right, v00 = cells.v00, v10 = cells.v10, v01 = cells.v01, v11 = cells.v11;
 #pragma GCC ivdep
   for (int k = columns.begin; k < columns.end; ++k) {
-    const Vec a = cells.lower.along[k], b = cells.upper.along[k], c = cells.left.along[k], d = cells.right[k];
+    const Vec a = lower[k], b = upper[k], c = left[k], d = right[k];
     double ac = law.shear * dot(a, c), ad = law.shear * dot(a, d);
     double bc = law.shear * dot(b, c), bd = law.shear * dot(b, d);
     if constexpr (viscous) {
-      const Vec va = difference(cells.lower_rate, k), vb = difference(cells.upper_rate, k);
-      const Vec vc = difference(cells.left_rate, k), vd = difference(cells.right_rate, k);
+      const Vec va = v10[k] - v00[k], vb = v11[k] - v01[k], vc = v01[k] - v00[k], vd = v11[k] - v10[k];
       ac += law.shear_rate * (dot(va, c) + dot(a, vc));
       ad += law.shear_rate * (dot(va, d) + dot(a, vd));
       bc += law.shear_rate * (dot(vb, c) + dot(b, vc));
       bd += law.shear_rate * (dot(vb, d) + dot(b, vd));
     }
     ac *= exists[k], ad *= exists[k], bc *= exists[k], bd *= exists[k];
-    add(cells.lower.pull, k, ac * c + ad * d);
-    add(cells.upper.pull, k, bc * c + bd * d);
-    add(cells.left.pull, k, ac * a + bc * b);
-    cells.pull_right.set(k, ad * a + bd * b);
+    add(pull_lower, k, ac * c + ad * d);
+    add(pull_upper, k, bc * c + bd * d);
+    add(pull_left, k, ac * a + bc * b);
+    pull_right.set(k, ad * a + bd * b);
   }
 }
 

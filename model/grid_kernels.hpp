@@ -45,12 +45,13 @@ struct Edges {
   double *inverse, *stress;
 };
 
-/// The edges of cells: lower and upper along u, left and right along v; with their rates. `pull_right`: what is added to the
+/// The edges of cells: lower and upper along u, left and right along v; and the
+/// velocities of the corners, v01 above v00. `pull_right`: what is added to the
 /// right edge, in the place of the cell, since the next cell adds to the same edge.
 struct CellEdges {
   Edges lower, upper, left;
   Field right;
-  Ends lower_rate, upper_rate, left_rate, right_rate;
+  Field v00, v10, v01, v11;
   const double *right_inverse, *right_stress;
   Field pull_right;
 };

@@ -72,17 +72,17 @@ void GridSweep::pull(int b, Columns columns, const Line& before, const Line& lin
 
 void GridSweep::pull_cells(Columns columns, const Line& before, const Line& line) const {
   const Edges& left = line.warp;
-  const CellEdges cells{before.weft,
-                        line.weft,
-                        left,
-                        left.along.next(),
-                        {before.v, before.v.next()},
-                        {line.v, line.v.next()},
-                        {before.v, line.v},
-                        {before.v.next(), line.v.next()},
-                        left.inverse + 1,
-                        left.stress + 1,
-                        line.pull_right};
+  const CellEdges cells{.lower = before.weft,
+                        .upper = line.weft,
+                        .left = left,
+                        .right = left.along.next(),
+                        .v00 = before.v,
+                        .v10 = before.v.next(),
+                        .v01 = line.v,
+                        .v11 = line.v.next(),
+                        .right_inverse = left.inverse + 1,
+                        .right_stress = left.stress + 1,
+                        .pull_right = line.pull_right};
   if (law_.cell.acts()) shear_cells(law_.cell, weft_width_.data(), columns, cells);
   if (law_.cell.contracts()) contract_cells(grid_.spacing_u(), grid_.spacing_v(), weft_width_.data(), columns, cells);
 }
