@@ -135,7 +135,7 @@ void register_all() {
       {"hung-sheet", {}},
   };
   for (const auto& [name, changes] : forces)
-    add("force/" + name, [changes = changes](benchmark::State& state) { force(state, changes); }, {20, 300});
+    add("force/" + name, [changes = changes](benchmark::State& state) { force(state, changes); }, sizes);
 }
 
 }  // namespace

@@ -25,10 +25,4 @@ inline std::vector<Cell> cells(const Grid& grid) {
 
 inline Eigen::Vector3d difference(const Vectors& x, EdgeEnds edge) { return x.row(edge.end) - x.row(edge.begin); }
 
-/// Adds the force −g on the end and +g on the begin of an edge.
-inline void add_pull(Vectors& f, EdgeEnds edge, const Eigen::Vector3d& g) {
-  f.row(edge.begin) += g;
-  f.row(edge.end) -= g;
-}
-
 }  // namespace drape::model

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "model/grid_sweep.hpp"
 #include "model/newton_matrix.hpp"
 #include "model/normals.hpp"
 #include "model/reaction.hpp"
@@ -30,21 +31,24 @@ class Forces {
   Configuration configuration(double t, const Vectors& x, const Vectors& v);
   void visit(const Configuration& c, const JacobianEntries& entries) const;
 
+  int particles_;
   std::vector<CountedTerm> terms_;
-  Vectors constant_, normals_;
+  std::unique_ptr<GridSweep> whole_law_, explicit_law_;  ///< null if the law is zero
+  Vectors normals_;
   Normals vertex_normals_;
   bool needs_normals_ = false;
   std::int64_t &forces_, &explicit_forces_, &jacobians_, &newton_matrices_, &normal_evaluations_;
 };
 
 Forces::Forces(const Sheet& sheet, solver::Work& work, Plan& plan)
-    : constant_(Vectors::Zero(sheet.grid.particles(), 3)),
+    : particles_(sheet.grid.particles()),
       vertex_normals_(sheet.grid),
       forces_(work.counter("forces", "evaluations of the whole force")),
       explicit_forces_(work.counter("explicit_forces", "evaluations of the explicit part of the force")),
       jacobians_(work.counter("jacobians", "evaluations of the exact Jacobian")),
       newton_matrices_(work.counter("newton_matrices", "assemblies of the Newton matrix from the exact Jacobian")),
       normal_evaluations_(work.counter("normals", "evaluations of all vertex normals")) {
+  GridLaw whole, rest;
   for (const TermKind& kind : term_kinds()) {
     const std::string name(kind.name);
     std::int64_t& evaluations = work.counter("force/" + name, "evaluations of: " + std::string(kind.description));
@@ -52,13 +56,13 @@ Forces::Forces(const Sheet& sheet, solver::Work& work, Plan& plan)
     if (!term) continue;
     plan.terms.push_back(name);
     needs_normals_ = needs_normals_ || term->needs_normals;
-    if (term->constant.size() > 0) {
-      constant_ += term->constant;
-      ++evaluations;
-    }
+    whole += term->law;
+    rest += term->explicit_law;
     terms_.push_back({std::move(*term), &evaluations});
   }
-  if (needs_normals_) normals_.resize(sheet.grid.particles(), 3);
+  if (whole.acts()) whole_law_ = std::make_unique<GridSweep>(sheet.grid, whole);
+  if (rest.acts()) explicit_law_ = std::make_unique<GridSweep>(sheet.grid, rest);
+  if (needs_normals_) normals_.resize(particles_, 3);
   plan.normals = needs_normals_;
 }
 
@@ -73,12 +77,15 @@ Configuration Forces::configuration(double t, const Vectors& x, const Vectors& v
 void Forces::force(double t, const Vectors& x, const Vectors& v, Vectors& f, bool whole) {
   ++(whole ? forces_ : explicit_forces_);
   const Configuration c = configuration(t, x, v);
-  f = constant_;
+  f.resize(particles_, 3);
+  if (const auto& sweep = whole ? whole_law_ : explicit_law_)
+    (*sweep)(x, v, f);
+  else
+    f.setZero();
   for (const auto& [term, evaluations] : terms_) {
     const auto& part = whole ? term.force : term.explicit_force;
-    if (!part) continue;
-    part(c, f);
-    ++*evaluations;
+    if (part) part(c, f);
+    if (part || (whole ? term.law : term.explicit_law).acts()) ++*evaluations;
   }
 }
 
@@ -120,7 +127,7 @@ SparseMatrix Forces::scalar_matrix(std::function<void(std::vector<Eigen::Triplet
   std::vector<Eigen::Triplet<double>> entries;
   for (const auto& [term, evaluations] : terms_)
     if (term.*part) (term.*part)(entries);
-  SparseMatrix matrix(constant_.rows(), constant_.rows());
+  SparseMatrix matrix(particles_, particles_);
   matrix.setFromTriplets(entries.begin(), entries.end());
   return matrix;
 }

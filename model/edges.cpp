@@ -1,7 +1,5 @@
 #include "model/edges.hpp"
 
-#include <algorithm>
-
 namespace drape::model {
 
 std::vector<Edge> edges(const Grid& grid) {
@@ -13,19 +11,6 @@ std::vector<Edge> edges(const Grid& grid) {
   for (int b = 0; b + 1 < grid.nv; ++b)
     for (int a = 0; a < grid.nu; ++a) all.push_back({grid.index(a, b), grid.index(a, b + 1), false, lv, grid.cell_width_u(a)});
   return all;
-}
-
-EdgeSweep::EdgeSweep(const Grid& grid) : pull_(3 * static_cast<std::size_t>(grid.nu)) {
-  const std::vector<Edge> all = edges(grid);
-  for (const Edge& edge : all) widths_.push_back(edge.width);
-  const double* width = widths_.data();
-  const auto add_line = [&](int i, int j, int count, bool weft) {
-    if (count == 0) return;
-    lines_.push_back({i, j, count, weft, width});
-    width += count;
-  };
-  for (int b = 0; b < grid.nv; ++b) add_line(grid.index(0, b), grid.index(1, b), grid.nu - 1, true);
-  for (int b = 0; b + 1 < grid.nv; ++b) add_line(grid.index(0, b), grid.index(0, b + 1), grid.nu, false);
 }
 
 void add_spring(std::vector<Eigen::Triplet<double>>& entries, int i, int j, double weight) {

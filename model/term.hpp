@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "model/grid.hpp"
+#include "model/grid_law.hpp"
 #include "model/material.hpp"
 
 namespace drape::model {
@@ -61,15 +62,17 @@ struct Sheet {
   double air = 0;  ///< c = c_w ρ_air of the air's resistance (2.37) [N s/m³]
 };
 
-/// One force of a compiled sheet. All functions add to their result; forces are in newtons.
+/// One force of a compiled sheet: what it adds to the law of the grid, which is evaluated for all terms together, or functions
+/// that add to their result. Forces are in newtons.
 struct Term {
+  GridLaw law;           ///< the whole force
+  GridLaw explicit_law;  ///< without K x + D v
   std::function<void(const Configuration&, Vectors& f)> force;
   std::function<void(const Configuration&, Vectors& f)> explicit_force;        ///< without K x + D v; absent: nothing is left
   std::function<double(const Vectors& x)> energy;                              ///< [J]; absent if there is none
   std::function<void(const Configuration&, const JacobianEntries&)> jacobian;  ///< exact; absent: zero
   std::function<void(std::vector<Eigen::Triplet<double>>& K)> stiffness;       ///< its part of K; absent: none
   std::function<void(std::vector<Eigen::Triplet<double>>& D)> damping;         ///< its part of D; absent: none
-  Vectors constant;                                                            ///< a force that never changes; empty: none
   bool needs_normals = false;
 };
 

@@ -9,27 +9,41 @@
 namespace drape::solver {
 namespace {
 
-/// Largest |eigenvalue| of M⁻¹ J with rows and columns of pinned coordinates removed.
-double largest_eigenvalue(const SplitOde& ode, const SparseMatrix& J) {
-  if (J.nonZeros() == 0) return 0;
-  const auto n = ode.particles();
-  Vectors z(n, 3), w(n, 3);
+constexpr double safety = 1.01;
+
+/// Largest |eigenvalue| of a linear map of N × 3 vectors by Arnoldi's iteration, whose eigenvalues approach the outermost
+/// from within: power iteration would need hundreds of products for what takes tens of them here.
+template <class Map>
+double largest_eigenvalue(const SplitOde& ode, const Map& map) {
+  constexpr int most = 60, check = 6;
+  const Eigen::Index n = 3 * ode.particles();
+  Eigen::MatrixXd V(n, most + 1), H = Eigen::MatrixXd::Zero(most + 1, most);
+  Vectors z(ode.particles(), 3), w = z;
   std::mt19937 random(1);
   std::normal_distribution<double> normal;
   for (double& component : z.reshaped()) component = normal(random);
   filter(ode.pins, z);
+  if (z.isZero(0)) return 0;
+  V.col(0) = Eigen::VectorXd::Map(z.data(), n).normalized();
   double eigenvalue = 0;
-  for (int k = 0; k < 1000; ++k) {
-    const double norm = z.norm();
-    if (norm == 0) return 0;
-    z /= norm;
-    Eigen::Map<Eigen::VectorXd>(w.data(), w.size()).noalias() = J * Eigen::Map<const Eigen::VectorXd>(z.data(), z.size());
-    w = ode.mass.cwiseInverse().asDiagonal() * w;
-    filter(ode.pins, w);
-    const double estimate = w.norm();
-    if (!std::isfinite(estimate) || (k > 10 && std::abs(estimate - eigenvalue) <= 1e-5 * estimate)) return estimate;
-    eigenvalue = estimate;
-    std::swap(z, w);
+  for (int k = 0; k < most; ++k) {
+    Eigen::VectorXd::Map(z.data(), n) = V.col(k);
+    map(z, w);
+    auto next = V.col(k + 1);
+    next = Eigen::VectorXd::Map(w.data(), n);
+    const double size = next.norm();
+    if (!std::isfinite(size)) return size;
+    const auto basis = V.leftCols(k + 1);
+    H.col(k).head(k + 1).noalias() = basis.transpose() * next;
+    next.noalias() -= basis * H.col(k).head(k + 1);
+    H(k + 1, k) = next.norm();
+    const bool complete = H(k + 1, k) <= 1e-6 * size;
+    if (complete || (k + 1) % check == 0) {
+      const double estimate = eigenvalues(H.topLeftCorner(k + 1, k + 1)).cwiseAbs().maxCoeff();
+      if (complete || estimate - eigenvalue <= 1e-3 * estimate) return estimate;
+      eigenvalue = estimate;
+    }
+    next /= H(k + 1, k);
   }
   return eigenvalue;
 }
@@ -47,9 +61,22 @@ double amplification(double W, double s) {
 }  // namespace
 
 Spectrum spectrum(const SplitOde& ode, double t, const State& y) {
-  SparseMatrix df_dx, df_dv;
-  ode.jacobian(t, y.x, y.v, df_dx, df_dv);
-  return {1.01 * largest_eigenvalue(ode, df_dx), 1.01 * largest_eigenvalue(ode, df_dv)};
+  Vectors f(ode.particles(), 3);
+  ode.force(t, y.x, y.v, f);
+  State moved = y;
+  const auto largest = [&](Vectors State::*argument) {
+    const double step = 1e-7 * (1 + (y.*argument).cwiseAbs().maxCoeff());
+    const double eigenvalue = largest_eigenvalue(ode, [&](const Vectors& z, Vectors& w) {
+      const double delta = step / z.cwiseAbs().maxCoeff();
+      moved.*argument = y.*argument + delta * z;
+      ode.force(t, moved.x, moved.v, w);
+      w = ode.mass.cwiseInverse().asDiagonal() * (w - f) / delta;
+      filter(ode.pins, w);
+    });
+    moved.*argument = y.*argument;
+    return safety * eigenvalue;
+  };
+  return {largest(&State::x), largest(&State::v)};
 }
 
 double verlet_limit(const Spectrum& spectrum) {

@@ -10,7 +10,7 @@
 
 namespace drape::solver {
 
-/// A state on the trajectory with what a method keeps of it: f_expl for the IMEX methods, the acceleration for `verlet`.
+/// A state on the trajectory with what a method keeps of it: f_expl for the IMEX methods, the whole force for `verlet`.
 struct Point {
   State y;
   Vectors f;

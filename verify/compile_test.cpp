@@ -66,7 +66,7 @@ TEST(Compile, CountsThePresentForcesAndLeavesTheAbsentAtZero) {
   EXPECT_THAT(work_of(cloth_of("printed_shear")), with(Pair("force/printed-shear", 5)));
   EXPECT_THAT(work_of(cloth_of("contraction")), with(Pair("force/contraction", 5)));
   EXPECT_THAT(work_of(cloth_of("unprojected_plate")), with(Pair("force/plate", 5)));
-  EXPECT_THAT(work_of(cloth_of("gravity")), with(Pair("force/gravity", 1)));  // it never changes
+  EXPECT_THAT(work_of(cloth_of("gravity")), with(Pair("force/gravity", 5)));
   EXPECT_THAT(work_of(cloth_of("plate")), with(Pair("force/plate", 5), Pair("normals", 6)));
   EXPECT_THAT(work_of(cloth_of("wind")), with(Pair("force/wind", 5), Pair("normals", 6)));
   EXPECT_THAT(work_of(cloth_of("air")), with(Pair("force/air", 5), Pair("normals", 6)));

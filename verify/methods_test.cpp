@@ -150,7 +150,7 @@ SplitOde linear_ode(double share, bool damped) {
 
 /// Springs that weaken as they stretch, without damping: neither time nor velocity matters.
 SplitOde conservative_ode() {
-  SplitOde ode = linear_ode(1, false);  // with its Jacobian, which is near enough for the step of `verlet`
+  SplitOde ode = linear_ode(1, false);
   ode.explicit_force = [](double, const Vectors& x, const Vectors&, Vectors& f) { f = Nonlinear::force(0, x, 0 * x); };
   ode.force = [K = ode.stiffness](double, const Vectors& x, const Vectors&, Vectors& f) {
     f = K * x + Nonlinear::force(0, x, 0 * x);

@@ -43,11 +43,6 @@ struct Moduli {
   }
 };
 
-void add_forces(const Moduli& moduli, const std::array<Strained, 2>& pair, const std::array<Strained, 2>& other, Vectors& f) {
-  const double stress = moduli.stress(other);
-  for (const Strained& edge : pair) add_pull(f, edge.ends, stress / edge.length * edge.n);
-}
-
 void add_jacobians(const Moduli& moduli, const std::array<Strained, 2>& pair, const std::array<Strained, 2>& other,
                    const JacobianEntries& entries) {
   const auto &dx = entries.add_dx, &dv = entries.add_dv;
@@ -79,14 +74,8 @@ std::optional<Term> make_contraction(const Sheet& sheet) {
   const auto all = std::make_shared<const std::vector<Cell>>(cells(sheet.grid));
 
   Term term;
-  term.force = [=](const Configuration& c, Vectors& f) {
-    for (const Cell& cell : *all) {
-      const Pairs pairs(c, cell, lu, lv);
-      add_forces(moduli, pairs.u, pairs.v, f);
-      add_forces(moduli, pairs.v, pairs.u, f);
-    }
-  };
-  term.explicit_force = term.force;
+  term.law.cell = {.contraction = m.contraction / 4, .contraction_rate = m.contraction_damping / 4};
+  term.explicit_law = term.law;
   term.energy = [=](const Vectors& x) {
     double energy = 0;
     const auto strain = [&](EdgeEnds edge, double l) { return difference(x, edge).norm() / l - 1; };

@@ -2,16 +2,14 @@
 
 namespace drape::model {
 
-/// Weight m g. It never changes and is computed once, when the scene is compiled.
+/// Weight m g.
 std::optional<Term> make_gravity(const Sheet& sheet) {
   if (sheet.gravity.isZero(0)) return {};
-  const Grid& grid = sheet.grid;
   Term term;
-  term.constant.resize(grid.particles(), 3);
-  for (int b = 0; b < grid.nv; ++b)
-    for (int a = 0; a < grid.nu; ++a)
-      term.constant.row(grid.index(a, b)) = sheet.material.density * grid.cell_area(a, b) * sheet.gravity.transpose();
-  term.energy = [weight = term.constant](const Vectors& x) { return -weight.cwiseProduct(x).sum(); };
+  term.law.load = term.explicit_law.load = sheet.material.density * sheet.gravity;
+  term.energy = [weight = Vectors(sheet.grid.cell_areas() * term.law.load.transpose())](const Vectors& x) {
+    return -weight.cwiseProduct(x).sum();
+  };
   return term;
 }
 

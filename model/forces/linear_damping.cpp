@@ -10,19 +10,10 @@ std::optional<Term> make_linear_damping(const Sheet& sheet) {
   const WeftWarp d = sheet.material.damping;
   if (!d.any() || sheet.material.damping_form != DampingForm::linear) return {};
   const double lu = sheet.grid.spacing_u(), lv = sheet.grid.spacing_v();
-  const auto sweep = std::make_shared<EdgeSweep>(sheet.grid);
   const auto all = std::make_shared<const std::vector<Edge>>(edges(sheet.grid));
 
   Term term;
-  term.force = [=](const Configuration& c, Vectors& f) {
-    (*sweep)(f, [&](const EdgeSweep::Line& line, double* __restrict g) {
-      const double weight = line.weft ? d.weft / lu : d.warp / lv;
-      const double* const vi = c.v.data() + 3 * line.i;
-      const double* const vj = c.v.data() + 3 * line.j;
-      for (int e = 0; e < line.count; ++e)
-        for (int a = 0; a < 3; ++a) g[3 * e + a] = weight * line.widths[e] * (vj[3 * e + a] - vi[3 * e + a]);
-    });
-  };
+  term.law = {.weft = {.drag = d.weft / lu}, .warp = {.drag = d.warp / lv}};
   term.jacobian = [=](const Configuration&, const JacobianEntries& entries) {
     for (const Edge& edge : *all) {
       const EdgeEnds ends{edge.i, edge.j};

@@ -1,30 +1,9 @@
 #include <algorithm>
-#include <cmath>
 #include <memory>
 
 #include "model/edges.hpp"
 
 namespace drape::model {
-namespace {
-
-/// Pulls of one line of springs: g = (linear − k w/|d|) d with d = x_j − x_i and linear = k w/l, or 0 for the remainder
-/// that K leaves over.
-void pull(const EdgeSweep::Line& line, const Vectors& x, double k, double k_over_l, double* __restrict g) {
-  const double* const xi = x.data() + 3 * line.i;
-  const double* const xj = x.data() + 3 * line.j;
-  const double* const width = line.widths;
-  for (int e = 0; e < line.count; ++e) {
-    const double d0 = xj[3 * e] - xi[3 * e];
-    const double d1 = xj[3 * e + 1] - xi[3 * e + 1];
-    const double d2 = xj[3 * e + 2] - xi[3 * e + 2];
-    const double s = width[e] * (k_over_l - k / std::sqrt(d0 * d0 + d1 * d1 + d2 * d2));
-    g[3 * e] = s * d0;
-    g[3 * e + 1] = s * d1;
-    g[3 * e + 2] = s * d2;
-  }
-}
-
-}  // namespace
 
 /// Tension: σ = k ε, ε = |d|/l − 1 along every edge [Etzmuß 2002, (2.20), Alg. 1]; E = Σ ½ k ε² l w with the strip's width
 /// w, half on borders. K takes k w/l (x_j − x_i), the explicit remainder is −k w (x_j − x_i)° [(3.18)].
@@ -32,18 +11,11 @@ std::optional<Term> make_tension(const Sheet& sheet) {
   const WeftWarp k = sheet.material.tension;
   if (!k.any()) return {};
   const double lu = sheet.grid.spacing_u(), lv = sheet.grid.spacing_v();
-  const auto sweep = std::make_shared<EdgeSweep>(sheet.grid);
   const auto all = std::make_shared<const std::vector<Edge>>(edges(sheet.grid));
-  const auto forces = [=](const Vectors& x, Vectors& f, bool whole) {
-    (*sweep)(f, [&](const EdgeSweep::Line& line, double* g) {
-      const double modulus = line.weft ? k.weft : k.warp;
-      pull(line, x, modulus, whole ? modulus / (line.weft ? lu : lv) : 0.0, g);
-    });
-  };
 
   Term term;
-  term.force = [=](const Configuration& c, Vectors& f) { forces(c.x, f, true); };
-  term.explicit_force = [=](const Configuration& c, Vectors& f) { forces(c.x, f, false); };
+  term.law = {.weft = {.spring = k.weft / lu, .thread = k.weft}, .warp = {.spring = k.warp / lv, .thread = k.warp}};
+  term.explicit_law = {.weft = {.thread = k.weft}, .warp = {.thread = k.warp}};
   term.energy = [=](const Vectors& x) {
     double energy = 0;
     for (const Edge& edge : *all) {
