@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <span>
+#include <sstream>
 #include <stdexcept>
 
 #include "bench/contact_record.hpp"
@@ -20,16 +23,42 @@ std::vector<results::Parameter> parameters(const Cell& cell) {
   } else {
     all.push_back({"verlet_fraction", o.verlet_fraction, "1", "sub-step over its stability limit"});
   }
-  if (cell.method->stage_solver == "fixed-point") {
-    all.push_back({"loop_tolerance", o.loop_tolerance, "1", "residual of the fixed-point loop over |b|"});
+  if (cell.method->nonlinear()) {
+    if (o.stage->accelerated)
+      all.push_back({"stage_accuracy", o.stage_accuracy, "1", "error left in a stage over the error of the time step"});
+    else
+      all.push_back({"loop_tolerance", o.loop_tolerance, "1", "residual of the fixed-point loop over |b|"});
     all.push_back({"max_updates", double(o.max_updates), "1", "updates a stage before it counts as failed"});
   }
+  if (o.error_control.enabled())
+    all.push_back({"tolerance", o.error_control.tolerance, "1", "of the local error, over the size"});
   if (o.control.enabled()) {
     all.push_back({"control_min_updates", double(o.control.min_updates), "1", "the step grows after fewer updates"});
     all.push_back({"control_max_updates", double(o.control.max_updates), "1", "the step shrinks after more updates"});
     all.push_back({"control_factor", o.control.factor, "1", "by which the step grows and shrinks"});
   }
   return all;
+}
+
+std::string_view stage_solver(const Cell& cell) {
+  switch (cell.method->stages) {
+    case solver::Method::Stages::none: return "none";
+    case solver::Method::Stages::linear: return "linear";
+    case solver::Method::Stages::nonlinear: break;
+  }
+  return cell.options.stage->name;
+}
+
+std::string expected(const solver::Method& method) {
+  using Stages = solver::Method::Stages;
+  if (method.stages == Stages::none) return fmt::format("{}, it solves no linear systems", method.name);
+  if (method.stages == Stages::linear) return fmt::format("{}/LINEAR_SOLVER, its stages are linear", method.name);
+  return fmt::format("{}/STAGE_SOLVER/LINEAR_SOLVER", method.name);
+}
+
+template <class Row>
+bool knows(std::span<const Row> table, std::string_view name) {
+  return std::ranges::find(table, name, &Row::name) != table.end();
 }
 
 results::RunRecord describe(const Cell& cell, const model::Plan& plan) {
@@ -39,7 +68,7 @@ results::RunRecord describe(const Cell& cell, const model::Plan& plan) {
   run.overrides = cell.overrides;
   run.plan = model::to_string(plan);
   run.method = cell.method_name();
-  run.stage_solver = cell.method->stage_solver;
+  run.stage_solver = stage_solver(cell);
   run.linear_solver = cell.method->implicit() ? cell.options.linear_solver->name : "none";
   run.step = cell.step;
   run.until = cell.scene.end;
@@ -52,17 +81,26 @@ results::RunRecord describe(const Cell& cell, const model::Plan& plan) {
 }  // namespace
 
 std::string Cell::method_name() const {
-  if (options.linear_solver == &solver::linear_solvers().front()) return std::string(method->name);
-  return fmt::format("{}/{}", method->name, options.linear_solver->name);
+  std::string name(method->name);
+  if (method->nonlinear() && options.stage != &solver::stage_kinds().front()) name += fmt::format("/{}", options.stage->name);
+  if (method->implicit() && options.linear_solver != &solver::linear_solvers().front())
+    name += fmt::format("/{}", options.linear_solver->name);
+  return name;
 }
 
 void choose_method(Cell& cell, const std::string& name) {
-  const auto slash = name.find('/');
-  cell.method = &solver::method(name.substr(0, slash));
-  if (slash == std::string::npos) return;
-  cell.options.linear_solver = &solver::linear_solver(name.substr(slash + 1));
-  if (!cell.method->implicit())
-    throw std::invalid_argument(fmt::format("method '{}': expected {}, it solves no linear systems", name, cell.method->name));
+  std::vector<std::string> parts;
+  std::istringstream stream(name);
+  for (std::string part; std::getline(stream, part, '/');) parts.push_back(part);
+  const std::string first = parts.empty() ? name : parts.front();
+  cell.method = &solver::method(first);
+  const solver::Method& method = *cell.method;
+  std::size_t next = 1;
+  if (next < parts.size() && method.nonlinear() && knows(solver::stage_kinds(), parts[next]))
+    cell.options.stage = &solver::stage_kind(parts[next++]);
+  if (next < parts.size() && method.implicit()) cell.options.linear_solver = &solver::linear_solver(parts[next++]);
+  if (next < parts.size() || name.ends_with('/'))
+    throw std::invalid_argument(fmt::format("method '{}': expected {}", name, expected(method)));
 }
 
 results::RunRecord record(const Cell& cell, const solver::Observer& look) {

@@ -17,11 +17,12 @@ struct Cell {
   double step;  ///< [s]
   solver::Options options;
 
-  /// The method with its linear solver if that is not the usual one: "bdf2", "bdf2/cholesky".
+  /// The method with its stage and linear solvers where they are not the usual ones: "bdf2", "bdf2/fixed-point/ic0".
   std::string method_name() const;
 };
 
-/// Sets method and linear solver from a name like that. Throws std::invalid_argument with all that there is to choose from.
+/// Sets method, stage and linear solver from a name like that. Throws std::invalid_argument with all that there is to choose
+/// from.
 void choose_method(Cell& cell, const std::string& name);
 
 /// Cells that are compared with each other: repetitions are interleaved within a group and it is recorded as a whole.

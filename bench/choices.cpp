@@ -35,6 +35,8 @@ Choices scene_key_choices() {
 
 Choices method_choices() { return from_table(solver::methods()); }
 
+Choices stage_solver_choices() { return from_table(solver::stage_kinds()); }
+
 Choices linear_solver_choices() { return from_table(solver::linear_solvers()); }
 
 Choices study_choices() { return from_table(studies()); }

@@ -16,6 +16,7 @@ using Choices = std::vector<Choice>;
 Choices scene_choices();
 Choices scene_key_choices();
 Choices method_choices();
+Choices stage_solver_choices();
 Choices linear_solver_choices();
 Choices study_choices();
 

@@ -37,6 +37,7 @@ struct Arguments {
   std::vector<std::string> sets;
   std::vector<int> control;
   solver::Options options;
+  double tolerance = 0;
   std::string study;
   bool quick = false;
   bool no_reference = false;
@@ -89,8 +90,10 @@ std::vector<Group> run_groups(const Arguments& a) {
   check_steps(a, scene.end);
   Cell cell{scene, fmt::format("{}", fmt::join(a.sets, " ")), nullptr, 0, a.options};
   cell.options.control = step_control(a.control);
+  cell.options.error_control = {a.tolerance, model::size(scene), scene.end};
   Group group;
   for (const std::string& name : a.methods) {
+    cell.options.stage = a.options.stage;
     cell.options.linear_solver = a.options.linear_solver;
     choose_method(cell, name);
     for (const double h : a.steps) {
@@ -191,10 +194,20 @@ void add_solver_options(CLI::App& command, Arguments& a) {
       ->type_name("X")
       ->check(between(1e-3, 1.0))
       ->capture_default_str();
+  CLI::Option* tolerance =
+      command
+          .add_option("--tolerance", a.tolerance, "of the local error over the scene's size: steps of --step at most follow it")
+          ->type_name("X")
+          ->check(between(1e-15, 1.0));
+  command.add_option("--stage-accuracy", a.options.stage_accuracy, "error left in a stage over the error of the time step")
+      ->type_name("X")
+      ->check(between(1e-9, 1.0))
+      ->capture_default_str();
   command.add_option("--control", a.control, "step control by the number of updates a step")
       ->option_text("MIN MAX")
       ->check(between(0, 1000000))
-      ->expected(2);
+      ->expected(2)
+      ->excludes(tolerance);
 }
 
 void add_frame_options(CLI::App& run, Arguments& a) {
@@ -211,7 +224,8 @@ void add_frame_options(CLI::App& run, Arguments& a) {
 void add_run(CLI::App& app, Arguments& a) {
   CLI::App& run = *app.add_subcommand("run", "run methods on a scene and compare them with the reference");
   run.add_option("--scene", a.scene, "built-in scene or TOML file")->required()->type_name("NAME|FILE.toml");
-  run.add_option("--method", a.methods, "methods, each with /LINEAR_SOLVER if not the first: bdf2,sbdf2/cholesky")
+  run.add_option("--method", a.methods,
+                 "methods, with /STAGE_SOLVER and /LINEAR_SOLVER if not the first: bdf2,sbdf2/ic0,bdf2/newton")
       ->required()
       ->type_name("A,B")
       ->delimiter(',')
@@ -227,7 +241,8 @@ void add_run(CLI::App& app, Arguments& a) {
   add_solver_options(run, a);
   add_frame_options(run, a);
   add_output_options(run, a);
-  run.footer(fmt::format("{}\n{}\n{}\n{}", paragraph("Scenes", scene_choices()), paragraph("Methods", method_choices()),
+  run.footer(fmt::format("{}\n{}\n{}\n{}\n{}", paragraph("Scenes", scene_choices()), paragraph("Methods", method_choices()),
+                         paragraph("Stage solvers", stage_solver_choices()),
                          paragraph("Linear solvers", linear_solver_choices()),
                          paragraph("Keys of scenes", scene_key_choices())));
   run.callback([&a] { sweep_and_print(run_groups(a), a, "run"); });

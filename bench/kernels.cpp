@@ -135,7 +135,8 @@ void register_all() {
       {"hung-sheet", {}},
   };
   for (const auto& [name, changes] : forces)
-    add("force/" + name, [changes = changes](benchmark::State& state) { force(state, changes); }, sizes);
+    add(
+        "force/" + name, [changes = changes](benchmark::State& state) { force(state, changes); }, sizes);
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ bool loop_converges(std::string_view method, const Mode& mode) {
 }
 
 solver::Options exact_options() {
-  solver::Options options;
+  solver::Options options = solver::thesis_options();
   options.loop_tolerance = 1e-14;
   options.cg_tolerance = 1e-15;
   options.max_updates = 1'000'000;

@@ -10,7 +10,7 @@ namespace drape::reference {
 namespace {
 
 solver::Options tight() {
-  solver::Options options;
+  solver::Options options = solver::thesis_options();
   options.loop_tolerance = 1e-9;
   options.cg_tolerance = 5e-10;
   options.linear_solver = &solver::linear_solver("cholesky");

@@ -13,17 +13,21 @@ struct Method {
   std::string_view name;         ///< on command lines and in files
   std::string_view description;  ///< a few words, with the equation
   int order;
-  bool two_step;                  ///< needs the state before the last
-  bool keeps_force;               ///< needs a force or acceleration with every state
-  std::string_view stage_solver;  ///< "linear" (one system a step), "fixed-point", or "none" for explicit methods
+  bool two_step;                                         ///< needs the state before the last
+  bool keeps_force;                                      ///< needs a force or acceleration with every state
+  enum class Stages { none, linear, nonlinear } stages;  ///< linear: one system a stage; none: explicit
   void (*step)(Step&);
   int past_states = 0;  ///< that it finds in the history, the start of the step among them
 
-  bool implicit() const { return stage_solver != "none"; }
+  bool implicit() const { return stages != Stages::none; }
+  bool nonlinear() const { return stages == Stages::nonlinear; }
 };
 
-/// All methods, in the order of the thesis.
+/// All methods, those of the thesis first.
 std::span<const Method> methods();
+
+/// The thesis' methods, and velocity Verlet.
+std::span<const Method> thesis_methods();
 
 /// The method with this name. Throws std::invalid_argument, naming all that there are.
 const Method& method(std::string_view name);

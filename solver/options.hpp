@@ -35,7 +35,7 @@ struct StageKind {
   bool accelerated;  ///< by Anderson's method, until an estimate of the error itself is small; else until the residual is
 };
 
-/// All ways to solve a stage; the first is the thesis' loop.
+/// All ways to solve a stage; the first is the default.
 std::span<const StageKind> stage_kinds();
 
 /// The one with this name. Throws std::invalid_argument, naming all that there are.
@@ -50,9 +50,12 @@ struct Options {
   double verlet_fraction = 0.9;  ///< sub-step of `verlet` as a fraction of its stability limit
   StepControl control;
   ErrorControl error_control;
-  double stage_accuracy = 0.02;  ///< error left in an accelerated stage over the error of the time step
+  double stage_accuracy = 0.1;  ///< error left in an accelerated stage over the error of the time step
   const StageKind* stage = &stage_kinds().front();
   const LinearSolver* linear_solver = &linear_solvers().front();
 };
+
+/// The thesis' own: the fixed-point loop and CG with IC(0)   [Etzmuß 2002, 3.4].
+Options thesis_options();
 
 }  // namespace drape::solver

@@ -31,13 +31,13 @@ struct Step {
   Point now;                  ///< at t
   Point next;                 ///< at t + h: the result
 
-  History history;            ///< states up to t, for first guesses and estimates of errors
-  double error_constant = 0;  ///< c of the last stage
-  State error;                ///< of the step, if the method is embedded in another
-  bool embedded = false;      ///< whether it is
-  Vectors split_error;        ///< in v, of IMEX methods with error control
-  double split_gamma = 0;     ///< makes it one in x [s]
-  std::vector<State> rates;   ///< dy/dt of stages, for Runge-Kutta methods
+  History history = History(0);   ///< states up to t, for first guesses and estimates of errors
+  double error_constant = 0;      ///< c of the last stage
+  State error = {};               ///< of the step, if the method is embedded in another
+  bool embedded = false;          ///< whether it is
+  Vectors split_error = {};       ///< in v, of IMEX methods with error control
+  double split_gamma = 0;         ///< makes it one in x [s]
+  std::vector<State> rates = {};  ///< dy/dt of stages, for Runge-Kutta methods
 
   Vectors ax, av, f_hat;  ///< scratch, N × 3
 

@@ -83,7 +83,7 @@ struct Flutter {
 };
 
 Flutter flutter(const model::Scene& scene, const char* method) {
-  solver::Options options;
+  solver::Options options = solver::thesis_options();
   options.max_updates = 20'000;  // with little damping the loop is slow
   const Waves waves(scene);
   Flutter seen;

@@ -37,7 +37,7 @@ struct Fall {
 
 /// `substeps` make a step.
 Fall fall(const model::Cloth& cloth, const char* method, double end, int substeps = 1) {
-  solver::Options options;
+  solver::Options options = solver::thesis_options();
   options.loop_tolerance = 1e-8;
   options.max_updates = 20'000;
   options.linear_solver = &solver::linear_solver("cholesky");

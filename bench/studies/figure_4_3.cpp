@@ -91,7 +91,7 @@ results::Table bars(bool quick, Progress& progress) {
   const model::Scene scene = swing(quick);
   model::Scene without_box = scene;
   without_box.obstacles.clear();
-  for (const solver::Method& method : solver::methods()) {
+  for (const solver::Method& method : solver::thesis_methods()) {
     if (!method.implicit()) continue;
     progress.show(fmt::format("cost of contact, {}", method.name));
     const Group group{cell(scene, method.name), cell(without_box, method.name)};
@@ -113,7 +113,7 @@ results::Table bars(bool quick, Progress& progress) {
 
 std::vector<TableJob> figure_4_3(bool quick) {
   const auto runs = std::make_shared<std::vector<RunRecord>>();  // of the first table, for the last
-  const auto implicit = std::ranges::count_if(solver::methods(), [](const solver::Method& m) { return m.implicit(); });
+  const auto implicit = std::ranges::count_if(solver::thesis_methods(), [](const solver::Method& m) { return m.implicit(); });
   return {{2,
            [=](Progress& progress) {
              for (const char* method : {"bdf2", "sbdf2"}) {

@@ -72,7 +72,7 @@ void add_verdict(results::TableBuilder& table, const std::string& verdict) {
 results::Table amplification(bool quick, Progress& progress) {
   results::TableBuilder table("amplification", "Amplification by the running code against the characteristic polynomials");
   constexpr double agreement = 1e-10, far_outside = 1e3;
-  for (const Method& method : solver::methods()) {
+  for (const Method& method : solver::thesis_methods()) {
     progress.show(fmt::format("amplification of {}", method.name));
     for (const NamedMode& named : modes_of_the_sheet())
       for (const double nu : stiffnesses(quick)) {
@@ -96,7 +96,7 @@ results::Table amplification(bool quick, Progress& progress) {
 /// Where methods become unstable: bisection on the spectral radius of the running step.
 results::Table stability(bool, Progress& progress) {
   results::TableBuilder table("stability", "Largest stable W = h² ω² by bisection, for shares ω²/κ of the implicit part");
-  for (const Method& method : solver::methods()) {
+  for (const Method& method : solver::thesis_methods()) {
     progress.show(fmt::format("stability limit of {}", method.name));
     for (const double share : {2.5, 1.5, 1.0, 0.1, 1e-3}) {
       const double h = reference::stability_limit(method, {1 / share, 1, 0}), W = h * h;
@@ -118,7 +118,7 @@ results::Table stability(bool, Progress& progress) {
 results::Table artificial(bool quick, Progress& progress) {
   results::TableBuilder table("artificial", "Artificial inertia and damping of a transverse mode, h ω = 0.01, undamped");
   constexpr double W = 1e-4, tolerance = 1e-3;
-  for (const Method& method : solver::methods()) {
+  for (const Method& method : solver::thesis_methods()) {
     progress.show(fmt::format("artificial inertia of {}", method.name));
     for (const double nu : stiffnesses(quick)) {
       if (nu < W) continue;
@@ -149,7 +149,7 @@ results::Table artificial(bool quick, Progress& progress) {
 }  // namespace
 
 std::vector<TableJob> modes(bool quick) {
-  const int parts = static_cast<int>(solver::methods().size());
+  const int parts = static_cast<int>(solver::thesis_methods().size());
   std::vector<TableJob> jobs;
   for (auto* compute : {amplification, stability, artificial})
     jobs.push_back({parts, [=](Progress& progress) { return compute(quick, progress); }});

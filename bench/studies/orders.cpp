@@ -30,7 +30,7 @@ std::vector<Setting> settings(bool quick) {
 
 /// So tight that what is left of the error is the method's own.
 solver::Options tight() {
-  solver::Options options;
+  solver::Options options = solver::thesis_options();
   options.loop_tolerance = 1e-11;
   options.cg_tolerance = 1e-12;
   options.linear_solver = &solver::linear_solver("cholesky");

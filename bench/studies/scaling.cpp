@@ -89,7 +89,7 @@ struct StepCost {
 };
 
 StepCost cost_of_step(const model::Cloth& cloth, const std::string& method) {
-  solver::Options options;
+  solver::Options options = solver::thesis_options();
   options.linear_solver = &solver::linear_solver("auto");
   solver::Integrator integrator(cloth.ode, solver::method(method), options, cloth.start);
   const auto advance = [&] {

@@ -36,7 +36,7 @@ model::Scene scene(double k, double d, bool quick) {
 }
 
 results::RunRecord run_bdf2(const model::Scene& scene) {
-  solver::Options options;
+  solver::Options options = solver::thesis_options();
   options.max_updates = 20'000;  // k = 1e5 needs some thousands a step where it drapes
   return record({scene, "", &solver::method("bdf2"), step, options});
 }

@@ -37,9 +37,9 @@ Group cells(const Block& block, bool quick) {
   if (quick) overrides.insert(overrides.end(), {{"grid.n", "8"}, {"end.time", "0.1"}});
   const model::Scene scene = model::load_scene("tablecloth", overrides);
   Group group;
-  for (const solver::Method& method : solver::methods()) {
+  for (const solver::Method& method : solver::thesis_methods()) {
     if (block.loose() && !method.implicit()) continue;  // it has no tolerances
-    Cell cell{scene, "", &method, 0.01, {}};
+    Cell cell{scene, "", &method, 0.01, solver::thesis_options()};
     cell.options.loop_tolerance = block.loop_tolerance;
     cell.options.cg_tolerance = block.cg_tolerance;
     group.push_back(cell);
