@@ -46,7 +46,7 @@ struct CellLaw {
 /// Forces of a sheet that depend on nothing but the edges of single cells: the laws of several terms add up to one, which
 /// GridSweep evaluates.
 struct GridLaw {
-  EdgeLaw weft, warp;
+  EdgeLaw weft = {}, warp = {};
   CellLaw cell = {};
   Eigen::Vector3d load = Eigen::Vector3d::Zero();  ///< force on a unit of area [N/m²]
 

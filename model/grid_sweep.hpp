@@ -31,7 +31,8 @@ class GridSweep {
   };
 
   void read(int b, Columns columns, const solver::Vectors& from, const Field& to) const;
-  void pull(int b, Columns columns, const Line& before, const Line& line) const;
+  void pull_weft(int b, Columns columns, const Line& line) const;
+  void pull_warp(Columns columns, const Line& before, const Line& line) const;
   void pull_cells(Columns columns, const Line& before, const Line& line) const;
   void write(int b, Columns columns, const Line& line, const Line& next, solver::Vectors& f) const;
   void clear_warp(const Line& line) const;
@@ -39,6 +40,7 @@ class GridSweep {
   Grid grid_;
   GridLaw law_;
   int length_;                 ///< of the loops over columns
+  bool fetches_;               ///< whether x, v and f come from memory
   Eigen::ArrayXd weft_width_;  ///< 1 where the edge and the cell towards the next column exist, else 0
   Eigen::ArrayXd warp_width_;  ///< of the edges along v [m], 0 where there is no column
   Eigen::ArrayXd memory_;      ///< of the lines

@@ -51,6 +51,16 @@ TEST(GridSweep, IsTheSameAlongWeftAndWarp) {
     }
 }
 
+/// Grids that do not fit into a cache are cut into other blocks.
+TEST(GridSweep, HasNoForcesInsideAHomogeneousStrainOfALargeGrid) {
+  const Grid grid{211, 101, 2.1, 1};
+  const Vectors uv = grid.parameters();
+  const Vectors x = uv.col(0) * Eigen::RowVector3d(1.1, 0.2, 0.1) + uv.col(1) * Eigen::RowVector3d(0.3, 0.9, -0.2);
+  const Vectors f = evaluate(ode_with(everything, grid).force, {x, at_rest(x)});
+  for (int b = 1; b < grid.nv - 1; ++b)
+    EXPECT_LE(largest(f.middleRows(grid.index(1, b), grid.nu - 2)), 1e-10 * largest(f)) << "line " << b;
+}
+
 TEST(GridSweep, AddsUpAllCombinationsOfTerms) {
   using Part = void (*)(Material&);
   const Part parts[] = {tension, linear_damping, shear, contraction, projected_damping};
