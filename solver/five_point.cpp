@@ -86,9 +86,8 @@ SparseMatrix sparse(const FivePoint& A) {
 
 double direct(const FivePoint& A, const Vectors& z, double beta, Vectors& p, Vectors& q) {
   const Eigen::Index length = 3 * static_cast<Eigen::Index>(A.nu);
-  Lanes pq = Lanes::Zero();
-  sweep(
-      A.nv,
+  const Lanes pq = sweep(
+      A,
       [&](int b) {
         auto line = Eigen::ArrayXd::Map(p.data() + length * b, length);
         const auto news = Eigen::ArrayXd::Map(z.data() + length * b, length);
@@ -96,18 +95,21 @@ double direct(const FivePoint& A, const Vectors& z, double beta, Vectors& p, Vec
           line = news;  // whatever is there, even if it is not finite
         else
           line = news + beta * line;
+        return Lanes(Lanes::Zero());
       },
       [&](int b) {
+        Lanes sum = Lanes::Zero();
         with_line(A, b, [&](const auto& line) {
           double* const to = q.data() + line.begin;
           const auto product = [&](int a) -> Lanes {
             const Lanes x = line.at(p.data(), a), y = line.nodes[a].diagonal * x - line.around(p.data(), a);
-            pq += x * y;
+            sum += x * y;
             return y;
           };
           for (int a = 0; a < A.nu - 1; ++a) Eigen::Map<Lanes>(to + 3 * a) = product(a);  // the next overwrites the fourth lane
           store(to + 3 * (A.nu - 1), product(A.nu - 1));
         });
+        return sum;
       });
   return sum(pq);
 }

@@ -1,5 +1,7 @@
 #include "solver/kernels.hpp"
 
+#include "solver/threads.hpp"
+
 namespace drape::solver {
 namespace {
 
@@ -7,6 +9,26 @@ Eigen::Array3d row_product(const SparseMatrix& A, const Vectors& x, int row) {
   Eigen::Array3d s = Eigen::Array3d::Zero();
   for (SparseMatrix::InnerIterator a(A, row); a; ++a) s += a.value() * x.row(a.col()).transpose().array();
   return s;
+}
+
+/// The coordinates [begin, end) of x += a p, r −= a q and <r, r>.
+double advance(double a, const Vectors& p, const Vectors& q, Vectors& x, Vectors& r, Eigen::Index begin, Eigen::Index end) {
+  using Block = Eigen::Array<double, 8, 1>;
+  const Eigen::Index whole = end - (end - begin) % 8;
+  Block squares = Block::Zero();
+  for (Eigen::Index k = begin; k < whole; k += 8) {
+    Block::Map(x.data() + k) += a * Block::Map(p.data() + k);
+    const Block residual = Block::Map(r.data() + k) - a * Block::Map(q.data() + k);
+    Block::Map(r.data() + k) = residual;
+    squares += residual.square();
+  }
+  double rr = squares.sum();
+  for (Eigen::Index k = whole; k < end; ++k) {
+    x.data()[k] += a * p.data()[k];
+    r.data()[k] -= a * q.data()[k];
+    rr += r.data()[k] * r.data()[k];
+  }
+  return rr;
 }
 
 }  // namespace
@@ -37,21 +59,11 @@ double multiply(const SparseMatrix& A, const Vectors& x, Vectors& y) {
 }
 
 double advance(double a, const Vectors& p, const Vectors& q, Vectors& x, Vectors& r) {
-  using Block = Eigen::Array<double, 8, 1>;
-  const Eigen::Index n = x.size(), whole = n - n % 8;
-  Block squares = Block::Zero();
-  for (Eigen::Index k = 0; k < whole; k += 8) {
-    Block::Map(x.data() + k) += a * Block::Map(p.data() + k);
-    const Block residual = Block::Map(r.data() + k) - a * Block::Map(q.data() + k);
-    Block::Map(r.data() + k) = residual;
-    squares += residual.square();
-  }
-  double rr = squares.sum();
-  for (Eigen::Index k = whole; k < n; ++k) {
-    x.data()[k] += a * p.data()[k];
-    r.data()[k] -= a * q.data()[k];
-    rr += r.data()[k] * r.data()[k];
-  }
+  const int threads = threads_for(x.rows());
+  if (threads == 1) return advance(a, p, q, x, r, 0, x.size());
+  double rr = 0;
+#pragma omp parallel for num_threads(threads) reduction(+ : rr) schedule(static)
+  for (int k = 0; k < threads; ++k) rr += advance(a, p, q, x, r, x.size() * k / threads, x.size() * (k + 1) / threads);
   return rr;
 }
 

@@ -40,12 +40,14 @@ void smooth_down(Level& level, const Vectors& r, Vectors& z) {
     with_line(A, b, [&](const auto& line) {
       for (int a = b % 2; a < A.nu; a += 2) store(z.data() + line.begin + 3 * a, line.nodes[a].inverse * line.at(r.data(), a));
     });
+    return Lanes(Lanes::Zero());
   };
   const auto black = [&](int b) {
     with_line(A, b, [&](const auto& line) {
       for (int a = 1 - b % 2; a < A.nu; a += 2)
         store(z.data() + line.begin + 3 * a, line.nodes[a].inverse * (line.at(r.data(), a) + line.around(z.data(), a)));
     });
+    return Lanes(Lanes::Zero());
   };
   const Eigen::Index next = 3 * static_cast<Eigen::Index>(level.u.coarse());
   const auto restricted = [&](int b) {
@@ -60,14 +62,14 @@ void smooth_down(Level& level, const Vectors& r, Vectors& z) {
         if (in_u && in_v) add(to + next + 3);
       });
     });
+    return Lanes(Lanes::Zero());
   };
-  sweep(A.nv, red, black, restricted);
+  sweep(A, red, black, restricted);
 }
 
 /// Adds the coarse correction on the red nodes, for black ones depend on these only; then black and red. Returns <r, z>.
 double smooth_up(Level& level, const Vectors& r, Vectors& z) {
   const FivePoint& A = level.A;
-  Lanes rz = Lanes::Zero();
   const Eigen::Index next = 3 * static_cast<Eigen::Index>(level.u.coarse());
   const auto corrected = [&](int b) {
     with_line(A, b, [&](const auto& line) {
@@ -80,8 +82,10 @@ double smooth_up(Level& level, const Vectors& r, Vectors& z) {
         store(z.data() + line.begin + 3 * a, line.at(z.data(), a) + (in_u ? 0.5 : 1) * (in_v ? 0.5 : 1) * part);
       });
     });
+    return Lanes(Lanes::Zero());
   };
   const auto smoothed = [&](int b, int first) {
+    Lanes rz = Lanes::Zero();
     with_line(A, b, [&](const auto& line) {
       for (int a = first; a < A.nu; a += 2) {
         const Lanes residual = line.at(r.data(), a);
@@ -90,9 +94,10 @@ double smooth_up(Level& level, const Vectors& r, Vectors& z) {
         store(z.data() + line.begin + 3 * a, value);
       }
     });
+    return rz;
   };
-  sweep(
-      A.nv, corrected, [&](int b) { smoothed(b, 1 - b % 2); }, [&](int b) { smoothed(b, b % 2); });
+  const Lanes rz = sweep(
+      A, corrected, [&](int b) { return smoothed(b, 1 - b % 2); }, [&](int b) { return smoothed(b, b % 2); });
   return sum(rz);
 }
 

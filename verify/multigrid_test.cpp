@@ -6,6 +6,7 @@
 
 #include "solver/coarse_grid.hpp"
 #include "solver/conjugate_gradients.hpp"
+#include "solver/threads.hpp"
 #include "verify/small_matrices.hpp"
 #include "verify/small_problems.hpp"
 
@@ -146,6 +147,49 @@ TEST(Multigrid, CoarsensAlongTheStrongerSpringsOnly) {
   EXPECT_EQ(coarsened(1), std::pair(21, 21));
   EXPECT_EQ(coarsened(1e-3), std::pair(21, 40));
   EXPECT_EQ(coarsened(1e3), std::pair(40, 21));
+}
+
+// --- Threads -----------------------------------------------------------------------------------------------------------------
+
+/// Allows so many threads while it lives.
+struct Threads {
+  explicit Threads(int threads) { solver::use_threads(threads); }
+  ~Threads() { solver::use_threads(1); }
+};
+
+TEST(ThreadsOfLargeGrids, ChangeNothingButRoundOff) {
+  for (const auto& [nu, nv] : {std::pair{201, 206}, {1000, 49}, {400, 101}}) {
+    const int n = nu * nv;
+    const SparseMatrix A = pinned_sheet(nu, nv, 1e2, line(nu));
+    const auto star = solver::five_point(A);
+    const auto cycle = solver::make_multigrid();
+    ASSERT_EQ(cycle->factor(A), Outcome::success);
+    const Vectors r = noise(n, 1);
+    std::vector<Vectors> p, q, z;
+    for (const int threads : {1, 2, 3}) {
+      const Threads allowed(threads);
+      EXPECT_EQ(solver::threads_for(n), threads);
+      p.push_back(noise(n, 2)), q.emplace_back(n, 3), z.emplace_back(n, 3);
+      const double pq = direct(*star, r, 0.3, p.back(), q.back()), rz = cycle->apply(r, z.back());
+      EXPECT_NEAR(pq, dot(p.back(), q.back()), 1e-12 * pq);
+      EXPECT_NEAR(rz, dot(r, z.back()), 1e-12 * rz);
+      Vectors x = noise(n, 3), y = r;
+      const double rr = solver::advance(0.7, p.back(), q.back(), x, y), expected = (r - 0.7 * q.back()).squaredNorm();
+      EXPECT_NEAR(rr, expected, 1e-12 * expected);
+      EXPECT_EQ(p.back(), p.front());
+      EXPECT_EQ(q.back(), q.front());
+      EXPECT_LE(largest(z.back() - z.front()), 1e-12 * largest(z.front())) << "bands add to the coarse grid in another order";
+    }
+  }
+}
+
+TEST(ThreadsOfLargeGrids, AreOneUnlessAskedForAndForSmallGrids) {
+  EXPECT_EQ(solver::threads_for(1000000), 1);
+  const Threads allowed(2);
+  EXPECT_EQ(solver::threads_for(1000000), 2);
+  EXPECT_EQ(solver::threads_for(10000), 1);
+  EXPECT_THROW(solver::use_threads(0), std::invalid_argument);
+  EXPECT_THROW(solver::use_threads(1000), std::invalid_argument);
 }
 
 // --- The choice --------------------------------------------------------------------------------------------------------------

@@ -12,6 +12,7 @@
 #include "results/table_builder.hpp"
 #include "solver/integrator.hpp"
 #include "solver/kernels.hpp"
+#include "solver/threads.hpp"
 
 namespace drape::bench {
 namespace {
@@ -26,6 +27,22 @@ const std::vector<std::string> methods{"bdf2", "sbdf2"};
 std::vector<int> sizes(bool quick) {
   if (quick) return {20, 40};
   return {20, 50, 100, 200, 316, 500, 1000};
+}
+
+/// Only what is worth it uses more than one.
+std::vector<int> threads(int n) {
+  if (n < 200) return {1};
+  return {1, 2};
+}
+
+/// Calls f(threads) with as many threads as it is told.
+template <class F>
+void with_threads(int n, const F& f) {
+  for (const int count : threads(n)) {
+    solver::use_threads(count);
+    f(count);
+  }
+  solver::use_threads(1);
 }
 
 /// Least wall time of some calls [s].
@@ -65,9 +82,10 @@ model::Cloth hung_sheet(int n) {
   return model::compile(model::load_scene("hung-edge", size));
 }
 
-void add_size(results::TableBuilder& table, int n) {
+void add_size(results::TableBuilder& table, int n, int thread_count) {
   table.row();
   table.count("n", "n", "particles a side", n);
+  table.count("threads", "threads", "that the linear solver may use; forces use one", thread_count);
 }
 
 /// The exponent p in time ~ particles^p by least squares; sizes are particles a side.
@@ -119,20 +137,22 @@ results::Table steps(bool quick, Progress& progress) {
   for (const int n : all) {
     for (std::size_t k = 0; k < methods.size(); ++k) {
       progress.show(fmt::format("{} x {}, {}", n, n, methods[k]));
-      const StepCost cost = cost_of_step(hung_sheet(n), methods[k]);
-      times[k].push_back(cost.seconds);
-      add_size(table, n);
-      table.text("method", "method", "time integrator", methods[k]);
-      table.text("linear_solver", "chosen", "the linear solver that auto chose", cost.linear_solver);
-      table.number("step", "step", "ms", "least wall time of a step", 1e3 * cost.seconds);
-      table.number("per_particle", "/particle", "ns", "the same, over the number of particles", 1e9 * cost.seconds / n / n);
-      table.number("updates", "updates", "1", "linear systems a step", cost.updates);
-      table.number("cg_iterations", "CG", "1", "iterations of conjugate gradients a step", cost.cg_iterations);
-      if (n > 100)
-        table.number("ratio", "of 100 x 100", "1",
-                     "time per particle over that of 100 x 100; for BDF(2) at most 3 is asked for",
-                     cost.seconds / (times[k][hundred] * n * n / 1e4));
-      table.number("memory", "memory", "MB", "most memory that the process had until then", peak_memory_mb());
+      with_threads(n, [&](int thread_count) {
+        const StepCost cost = cost_of_step(hung_sheet(n), methods[k]);
+        if (thread_count == 1) times[k].push_back(cost.seconds);
+        add_size(table, n, thread_count);
+        table.text("method", "method", "time integrator", methods[k]);
+        table.text("linear_solver", "chosen", "the linear solver that auto chose", cost.linear_solver);
+        table.number("step", "step", "ms", "least wall time of a step", 1e3 * cost.seconds);
+        table.number("per_particle", "/particle", "ns", "the same, over the number of particles", 1e9 * cost.seconds / n / n);
+        table.number("updates", "updates", "1", "linear systems a step", cost.updates);
+        table.number("cg_iterations", "CG", "1", "iterations of conjugate gradients a step", cost.cg_iterations);
+        if (n > 100)
+          table.number("ratio", "of 100 x 100", "1",
+                       "time per particle over that of 100 x 100; for BDF(2) at most 3 is asked for",
+                       cost.seconds / (times[k][hundred] * n * n / 1e4));
+        table.number("memory", "memory", "MB", "most memory that the process had until then", peak_memory_mb());
+      });
       progress.advance();
     }
   }
@@ -193,8 +213,9 @@ IterationCost cost_of_iteration(const model::Cloth& cloth, const SparseMatrix& A
   return {time / iterations, (count("linear_bytes") - bytes) / solves / iterations};
 }
 
-void add_iteration(results::TableBuilder& table, int n, const std::string& name, const IterationCost& cost, double bandwidth) {
-  add_size(table, n);
+void add_iteration(results::TableBuilder& table, int n, int thread_count, const std::string& name, const IterationCost& cost,
+                   double bandwidth) {
+  add_size(table, n, thread_count);
   table.text("linear_solver", "linear solver", "with which preconditioner, or a substitution", name);
   table.number("iteration", "/particle", "ns", "time of an iteration over the number of particles", 1e9 * cost.seconds / n / n);
   table.number("bytes", "/particle", "B", "bytes that an iteration moves at least, over the number of particles",
@@ -211,11 +232,13 @@ results::Table iterations(bool quick, Progress& progress) {
     const model::Cloth cloth = hung_sheet(n);
     const SparseMatrix A = stage_matrix(cloth.ode);
     const double bandwidth = triad(n * n);
-    add_iteration(table, n, "none", cost_of_bare_iteration(A), bandwidth);
-    table.number("triad", "triad", "GB/s", "bandwidth of the triad at this size", 1e-9 * bandwidth);
-    for (const char* name : {"ic0", "mic0", "multigrid"})
-      add_iteration(table, n, name, cost_of_iteration(cloth, A, name), bandwidth);
-    if (n <= 316) add_iteration(table, n, "cholesky", cost_of_iteration(cloth, A, "cholesky"), bandwidth);
+    with_threads(n, [&](int thread_count) {
+      add_iteration(table, n, thread_count, "none", cost_of_bare_iteration(A), bandwidth);
+      table.number("triad", "triad", "GB/s", "bandwidth of the triad at this size with one thread", 1e-9 * bandwidth);
+      for (const char* name : {"ic0", "mic0", "multigrid", "cholesky"})
+        if (name != std::string_view("cholesky") || n <= 316)
+          add_iteration(table, n, thread_count, name, cost_of_iteration(cloth, A, name), bandwidth);
+    });
     progress.advance();
   }
   return table.finish();
