@@ -82,6 +82,13 @@ solver::StepControl step_control(const std::vector<int>& bounds) {
   return {.min_updates = low, .max_updates = high};
 }
 
+std::string for_obstacles() {
+  std::vector<std::string_view> names;
+  for (const solver::Method& method : solver::methods())
+    if (method.meets_obstacles) names.push_back(method.name);
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
 std::vector<Group> run_groups(const Arguments& a) {
   std::vector<model::Override> overrides;
   for (const std::string& text : a.sets) overrides.push_back(model::parse_override(text));
@@ -96,6 +103,9 @@ std::vector<Group> run_groups(const Arguments& a) {
     cell.options.stage = a.options.stage;
     cell.options.linear_solver = a.options.linear_solver;
     choose_method(cell, name);
+    if (!scene.obstacles.empty() && !cell.method->meets_obstacles)
+      throw std::invalid_argument(
+          fmt::format("method '{}': expected one of {} in a scene with obstacles", name, for_obstacles()));
     for (const double h : a.steps) {
       cell.step = h;
       group.push_back(cell);

@@ -1,6 +1,7 @@
 #include "solver/accelerated_loop.hpp"
 
 #include <cmath>
+#include <stdexcept>
 
 namespace drape::solver {
 namespace {
@@ -34,6 +35,8 @@ AcceleratedLoop::AcceleratedLoop(const SplitOde& ode, const Options& options, St
       work_(*ode.work),
       renewals_(ode.work->counter("newton_factorizations", "factorizations of a Newton matrix")),
       escalations_(ode.work->counter("escalations", "stages that auto gave to Newton's matrix")) {
+  const bool newton = options.stage->matrix == Matrix::newton || options.stage->matrix == Matrix::lean_newton;
+  if (newton && !ode.newton_matrix) throw std::invalid_argument("stage solver 'newton': expected an ODE with a newton_matrix");
   for (Vectors* field : {&guess_, &best_v_, &best_d_}) field->setZero(ode.particles(), 3);
 }
 
@@ -42,9 +45,8 @@ StageResult AcceleratedLoop::ended(Outcome outcome) {
   return result_;
 }
 
-/// Which factor a stage begins with. While contacts act, constraints are filtered out of the constant matrix only.
+/// Which factor a stage begins with.
 NewtonFactor* AcceleratedLoop::preferred() {
-  if (system_.touches()) return nullptr;
   switch (options_.stage->matrix) {
     case Matrix::newton: return &newton_;
     case Matrix::lean_newton: return &lean_newton_;
@@ -119,9 +121,13 @@ bool AcceleratedLoop::retreat(State& y) {
   return true;
 }
 
+bool AcceleratedLoop::may_escalate() const {
+  return options_.stage->matrix == Matrix::chosen && ode_.newton_matrix && factor_ == nullptr;
+}
+
 /// On with Newton's matrix where `auto` may; not converged otherwise.
 bool AcceleratedLoop::escalate(State& y) {
-  if (options_.stage->matrix != Matrix::chosen || factor_ != nullptr || system_.touches()) {
+  if (!may_escalate()) {
     result_.outcome = Outcome::not_converged;
     return false;
   }
@@ -180,19 +186,10 @@ StageResult AcceleratedLoop::solve(const Stage& stage, State& y) {
     made_here_ = false;
     if (!usable && !use_newton(factor, y)) return result_;
   }
-  const bool contacts = system_.touches();
-  double noise = 0;
-  for (bool close = false;;) {
-    system_.evaluate(stage, nullptr, y);
-    if (contacts && result_.updates > 0 && system_.adapt_contacts(stage, nullptr, y, noise, result_.updates >= 50)) {
-      close = false;
-      anderson_.restart();
-      best_ = infinity;
-    }
-    system_.filter_residual(stage.gamma);
-    if (contacts && result_.updates == 0) noise = system_.scale(y, stage.gamma).target(options_.loop_tolerance);
-    if (close) break;
+  for (;;) {
     if (result_.updates >= options_.max_updates) return ended(Outcome::not_converged);
+    system_.evaluate(stage, nullptr, y);
+    system_.filter_residual(stage.gamma);
     if (!correct()) return result_;
     ++result_.updates;
     ++work_.updates;
@@ -202,11 +199,9 @@ StageResult AcceleratedLoop::solve(const Stage& stage, State& y) {
       continue;
     }
     advance(y);
-    close = close_enough(y);
-    if (close && !contacts) break;
-    if (close) continue;
-    if (factor_ == nullptr && result_.updates >= most_constant_updates && options_.stage->matrix == Matrix::chosen) {
-      if (!system_.touches() && !escalate(y)) return result_;
+    if (close_enough(y)) break;
+    if (may_escalate() && result_.updates >= most_constant_updates) {
+      if (!escalate(y)) return result_;
     } else if (slow() && !use_newton(factor_, y)) {
       return result_;
     }

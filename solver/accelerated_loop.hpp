@@ -6,9 +6,9 @@
 
 namespace drape::solver {
 
-/// Solves stages by Anderson's method. What it accelerates is the iteration v ← v + P⁻¹ r(v), where P is the constant matrix A
-/// or the factor of a Newton matrix, which is kept until convergence slows. An update that leads away is taken back and tried
-/// with a smaller part, or with a new factor.
+/// Solves stages without contacts by Anderson's method. What it accelerates is the iteration v ← v + P⁻¹ r(v), where P is the
+/// constant matrix A or the factor of a Newton matrix, which is kept until convergence slows. An update that leads away is
+/// taken back and tried with a smaller part, or with a new factor.
 ///
 /// It ends when an estimate of the error of v is a small part of the error of the time step, which the distance between
 /// solution and first guess tells (Stage::accuracy). There are two estimates: |P⁻¹ r| over the weakest response seen to a
@@ -31,6 +31,7 @@ class AcceleratedLoop {
   bool escalate(State& y);
   void advance(State& y);
   bool close_enough(const State& y) const;
+  bool may_escalate() const;
   bool slow() const;
   NewtonFactor* preferred();
   void plan_next();

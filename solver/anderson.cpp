@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace drape::solver {
 namespace {
@@ -9,47 +10,52 @@ namespace {
 /// Part of the diagonal that is added to the normal equations: below it differences are parallel.
 constexpr double ridge = 1e-13;
 
-double dot(const Vectors& a, const Vectors& b) { return a.cwiseProduct(b).sum(); }
+/// What counts as the response to a change before any was seen.
+constexpr double unknown_response = 0.05;
 
 }  // namespace
 
-Anderson::Anderson(Eigen::Index particles) {
-  for (Vectors* field : {&v_, &d_}) field->setZero(particles, 3);
-  for (auto* fields : {&dv_, &dd_})
-    for (Vectors& field : *fields) field.setZero(particles, 3);
-}
+Anderson::Anderson(Eigen::Index particles)
+    : v_(3 * particles), d_(3 * particles), dd_(3 * particles, depth), dg_(3 * particles, depth) {}
 
-void Anderson::remember(const Vectors& v, const Vectors& d) {
-  const int slot = (count_ - 1) % depth, kept = std::min(count_, depth);
-  dv_[slot] = v - v_;
-  dd_[slot] = d - d_;
-  length_[slot] = dv_[slot].norm();
-  for (int i = 0; i < kept; ++i) gram_(i, slot) = gram_(slot, i) = dot(dd_[i], dd_[slot]);
+/// The differences from the last iterate to this one take the place of the oldest.
+void Anderson::remember(const Eigen::Ref<const Eigen::VectorXd>& v, const Eigen::Ref<const Eigen::VectorXd>& d) {
+  const int slot = (count_ - 2) % depth, count = kept();
+  dd_.col(slot) = d - d_;
+  dg_.col(slot) = dd_.col(slot) + (v - v_);
+  lengths_[slot] = (v - v_).norm();
+  gram_.col(slot).head(count).noalias() = dd_.leftCols(count).transpose() * dd_.col(slot);
+  gram_.row(slot).head(count) = gram_.col(slot).head(count).transpose();
 }
 
 double Anderson::weakest() const {
-  const int kept = std::min(count_ - 1, depth);
-  constexpr double unknown = 0.05;
-  double w = 1;
-  for (int i = 0; i < kept; ++i) w = std::min(w, std::sqrt(gram_(i, i)) / length_[i]);
-  return kept == 0 ? unknown : w;
+  if (kept() < 1) return unknown_response;
+  double weakest = 1;
+  for (int i = 0; i < kept(); ++i) weakest = std::min(weakest, std::sqrt(gram_(i, i)) / lengths_[i]);
+  return weakest;
+}
+
+/// Those of the normal equations of min |d − Σ w_i Δd_i|, with columns of length one.
+Anderson::Small Anderson::weights() const {
+  const int count = kept();
+  const Small scale = gram_.diagonal().head(count).cwiseMax(std::numeric_limits<double>::min()).cwiseSqrt().cwiseInverse();
+  Gram normal = Gram::Identity();
+  normal.topLeftCorner(count, count) = scale.asDiagonal() * gram_.topLeftCorner(count, count) * scale.asDiagonal();
+  normal.diagonal().array() += ridge;
+  Eigen::Matrix<double, depth, 1> right = Eigen::Matrix<double, depth, 1>::Zero();
+  right.head(count) = scale.cwiseProduct(projections_.head(count));
+  return scale.cwiseProduct(normal.ldlt().solve(right).head(count));
 }
 
 void Anderson::advance(Vectors& v, Vectors& d) {
-  if (count_ > 0) remember(v, d);
-  v_ = v;
-  d_ = d;
-  const int kept = std::min(count_, depth);
+  Eigen::Map<Eigen::VectorXd> flat_v(v.data(), v.size()), flat_d(d.data(), d.size());
   ++count_;
-  if (kept > 0) {
-    Eigen::VectorXd projections(kept);
-    for (int i = 0; i < kept; ++i) projections[i] = dot(dd_[i], d_);
-    Eigen::MatrixXd normal = gram_.topLeftCorner(kept, kept);
-    const Eigen::VectorXd scale = normal.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-    normal = scale.asDiagonal() * normal * scale.asDiagonal();
-    normal.diagonal().array() += ridge;
-    const Eigen::VectorXd weights = scale.cwiseProduct(normal.ldlt().solve(scale.cwiseProduct(projections)));
-    for (int i = 0; i < kept; ++i) d -= weights[i] * (dv_[i] + dd_[i]);
+  if (count_ > 1) remember(flat_v, flat_d);
+  v_ = flat_v;
+  d_ = flat_d;
+  if (const int count = kept(); count > 0) {
+    projections_.head(count).noalias() = dd_.leftCols(count).transpose() * d_;
+    flat_d.noalias() -= dg_.leftCols(count) * weights();
   }
   v += d;
 }

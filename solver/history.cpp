@@ -6,20 +6,17 @@ namespace drape::solver {
 
 void History::push(double t, const State& y) {
   if (points_ == 0) return;
-  if (full())
-    std::rotate(kept_.begin(), kept_.begin() + 1, kept_.end());
-  else
-    kept_.emplace_back();
-  kept_.back().t = t;
-  kept_.back().y = y;
+  if (kept_.empty()) kept_.assign(points_, {t, y});
+  std::rotate(kept_.begin(), kept_.end() - 1, kept_.end());
+  kept_.front().t = t;
+  kept_.front().y = y;
+  size_ = std::min(size_ + 1, points_);
 }
 
-void History::restart() {
-  if (size() > 1) kept_.erase(kept_.begin(), kept_.end() - 1);
-}
+void History::restart() { size_ = std::min(size_, 1); }
 
-Eigen::VectorXd History::weights(double t, int points) const {
-  Eigen::VectorXd all = Eigen::VectorXd::Ones(points);
+History::Weights History::weights(double t, int points) const {
+  Weights all = Weights::Ones(points);
   for (int k = 0; k < points; ++k)
     for (int j = 0; j < points; ++j)
       if (j != k) all[k] *= (t - time(j)) / (time(k) - time(j));
@@ -27,7 +24,7 @@ Eigen::VectorXd History::weights(double t, int points) const {
 }
 
 void History::extrapolate(double t, Vectors& v, Vectors* x) const {
-  const Eigen::VectorXd all = weights(t, size());
+  const Weights all = weights(t, size());
   v = all[0] * state(0).v;
   for (int k = 1; k < size(); ++k) v += all[k] * state(k).v;
   if (x == nullptr) return;

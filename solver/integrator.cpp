@@ -58,6 +58,9 @@ Integrator::Integrator(const SplitOde& ode, const Method& method, const Options&
             .result = {}},
       steps_(ode.work->counter("steps", "accepted steps")),
       rejected_(ode.work->counter("rejected_steps", "steps that failed and were not passed on")) {
+  if (ode.contacts && !method.meets_obstacles)
+    throw std::invalid_argument("method '" + std::string(method.name) +
+                                "': expected a method of one stage in a scene with obstacles");
   const LinearWork registered(*ode.work);  // so that explicit methods record zeros
   if (method.implicit()) {
     ContactResponse* const contacts = ode.contacts ? &contacts_.emplace(ode) : nullptr;

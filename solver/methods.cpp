@@ -14,12 +14,12 @@ std::span<const Method> methods() {
       {"midpoint", "implicit midpoint rule (3.26)", 2, false, false, Stages::nonlinear, midpoint},
       {"imex-midpoint", "IMEX midpoint rule, ARS(1,2,2) (3.4.1)", 2, false, true, Stages::linear, imex_midpoint},
       {"verlet", "velocity Verlet, explicit, sub-stepped inside its stability limit", 2, false, true, Stages::none, verlet},
-      {"tr-bdf2", "TR-BDF2, one step of two stages, L-stable", 2, false, true, Stages::nonlinear, tr_bdf2},
-      {"esdirk3", "ESDIRK3(2)4L[2]SA, L-stable", 3, false, true, Stages::nonlinear, esdirk3},
-      {"esdirk4", "ESDIRK4(3)6L[2]SA, L-stable", 4, false, true, Stages::nonlinear, esdirk4},
-      {"bdf3", "BDF(3), stable for angles up to 86 degrees", 3, false, true, Stages::nonlinear, bdf3, 3},
-      {"bdf4", "BDF(4), up to 73 degrees", 4, false, true, Stages::nonlinear, bdf4, 4},
-      {"bdf5", "BDF(5), up to 51 degrees", 5, false, true, Stages::nonlinear, bdf5, 5},
+      {"tr-bdf2", "TR-BDF2, one step of two stages, L-stable", 2, false, true, Stages::nonlinear, tr_bdf2, 0, false},
+      {"esdirk3", "ESDIRK3(2)4L[2]SA, L-stable", 3, false, true, Stages::nonlinear, esdirk3, 0, false},
+      {"esdirk4", "ESDIRK4(3)6L[2]SA, L-stable", 4, false, true, Stages::nonlinear, esdirk4, 0, false},
+      {"bdf3", "BDF(3), stable for angles up to 86 degrees", 3, false, true, Stages::nonlinear, bdf3, 3, false},
+      {"bdf4", "BDF(4), up to 73 degrees", 4, false, true, Stages::nonlinear, bdf4, 4, false},
+      {"bdf5", "BDF(5), up to 51 degrees", 5, false, true, Stages::nonlinear, bdf5, 5, false},
   };
   return table;
 }

@@ -17,7 +17,8 @@ struct Method {
   bool keeps_force;                                      ///< needs a force or acceleration with every state
   enum class Stages { none, linear, nonlinear } stages;  ///< linear: one system a stage; none: explicit
   void (*step)(Step&);
-  int past_states = 0;  ///< that it finds in the history, the start of the step among them
+  int past_states = 0;          ///< that it finds in the history, the start of the step among them
+  bool meets_obstacles = true;  ///< whether its stages end where contacts are defined
 
   bool implicit() const { return stages != Stages::none; }
   bool nonlinear() const { return stages == Stages::nonlinear; }

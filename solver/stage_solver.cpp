@@ -3,19 +3,23 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/accelerated_loop.hpp"
+
 namespace drape::solver {
 
 StageSolver::StageSolver(const SplitOde& ode, const Options& options, ContactResponse* contacts)
     : ode_(ode), options_(options), system_(ode, options, contacts), work_(*ode.work) {
-  if (options.stage->accelerated) accelerated_.emplace(ode, options, system_);
+  if (options.stage->accelerated) accelerated_ = std::make_unique<AcceleratedLoop>(ode, options_, system_);
 }
+
+StageSolver::~StageSolver() = default;
 
 StageResult StageSolver::solve_linear(const Stage& stage, const Vectors& f_explicit, State& y) {
   return solve(stage, &f_explicit, y);
 }
 
 StageResult StageSolver::solve(const Stage& stage, State& y) {
-  return accelerated_ ? accelerated_->solve(stage, y) : solve(stage, nullptr, y);
+  return accelerates() ? accelerated_->solve(stage, y) : solve(stage, nullptr, y);
 }
 
 const Vectors& StageSolver::respond(const Vectors& r, StageResult& result) {

@@ -1,11 +1,12 @@
 #pragma once
 
-#include <optional>
+#include <memory>
 
-#include "solver/accelerated_loop.hpp"
 #include "solver/stage_system.hpp"
 
 namespace drape::solver {
+
+class AcceleratedLoop;
 
 /// Solves stages in the way the options say. All calls take the state with a first guess of v; its prescribed velocities are
 /// set here.
@@ -13,14 +14,19 @@ class StageSolver {
  public:
   /// `contacts`: the response to contacts, null if there are no obstacles.
   StageSolver(const SplitOde& ode, const Options& options, ContactResponse* contacts = nullptr);
+  ~StageSolver();
 
   /// The stage with f = K x + D v + f̂ and given f̂: one linear system   [Etzmuß 2002, (3.23), (3.30)], and one more
   /// whenever contacts change.
   StageResult solve_linear(const Stage& stage, const Vectors& f_explicit, State& y);
 
-  /// The whole stage, either accelerated or by the fixed-point loop: a simplified Newton method with A for the Jacobian
-  /// [Etzmuß 2002, (3.33)–(3.36), Alg. 6]. There the guess counts as a solution only if its own residual passes the test of CG.
+  /// The whole stage, either accelerated, unless something is touched, or by the fixed-point loop: a simplified Newton method
+  /// with A for the Jacobian [Etzmuß 2002, (3.33)–(3.36), Alg. 6]. There the guess counts as a solution only if its own
+  /// residual passes the test of CG.
   StageResult solve(const Stage& stage, State& y);
+
+  /// Whether the next stage is accelerated.
+  bool accelerates() const { return accelerated_ && !system_.touches(); }
 
   /// What a change `r` of γ f would have changed in v at the last linear stage; its linear system counts.
   const Vectors& respond(const Vectors& r, StageResult& result);
@@ -31,7 +37,7 @@ class StageSolver {
   const SplitOde& ode_;
   const Options options_;
   StageSystem system_;
-  std::optional<AcceleratedLoop> accelerated_;
+  std::unique_ptr<AcceleratedLoop> accelerated_;  ///< if the options ask for it
   LinearWork work_;
 };
 

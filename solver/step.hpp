@@ -63,7 +63,7 @@ struct Step {
     State& y = next.y;
     y.v = now.y.v;  // predictor (3.25), (3.32)
     error_constant = c;
-    if (options.stage->accelerated) {
+    if (stage->accelerates()) {
       if (history.size() > 1) history.extrapolate(given.t, y.v);
       given.accuracy = options.stage_accuracy * std::min(1.0, error_over_miss(given.t));
       if (!history.full()) given.accuracy *= 1e-2;  // the miss is of a lower order than the error

@@ -89,13 +89,13 @@ class Allocations : public testing::TestWithParam<std::tuple<std::string, std::s
 
   void SetUp() override { options.linear_solver = &solver::linear_solver(std::get<1>(GetParam())); }
 
-  /// Allocations of 50 steps after the first two.
+  /// Allocations of 50 steps after those that begin a history.
   std::int64_t of_steps(const model::Cloth& cloth, const Options& chosen) {
     Integrator integrator(cloth.ode, method, chosen, cloth.start);
     const auto steps = [&](int n) {
       for (int k = 0; k < n; ++k) EXPECT_EQ(integrator.step(2e-4).outcome, Outcome::success);
     };
-    steps(2);
+    steps(method.past_states + 2);
     return allocations_of([&] { steps(50); });
   }
 };

@@ -30,7 +30,7 @@ using solver::method;
 using solver::Outcome;
 
 class Amplification : public testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(, Amplification, testing::ValuesIn(names(solver::methods())),
+INSTANTIATE_TEST_SUITE_P(, Amplification, testing::ValuesIn(names(solver::thesis_methods())),
                          [](const auto& test) { return identifier(test.param); });
 
 /// In-plane, where all is in K, and transverse with a strain of 0.3 and of 0.001.

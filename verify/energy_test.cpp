@@ -99,7 +99,7 @@ double imbalance(const model::Cloth& cloth, const Method& method, double h, int 
 }
 
 class EnergyOfEveryMethod : public testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(, EnergyOfEveryMethod, testing::ValuesIn(small_problems::names(solver::methods())),
+INSTANTIATE_TEST_SUITE_P(, EnergyOfEveryMethod, testing::ValuesIn(small_problems::names(solver::thesis_methods())),
                          [](const auto& test) { return small_problems::identifier(test.param); });
 
 TEST_P(EnergyOfEveryMethod, IsLostAsMuchAsIsDissipatedToTheOrderOfTheMethod) {

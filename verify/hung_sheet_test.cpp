@@ -63,7 +63,7 @@ class HungSheetWith : public testing::TestWithParam<std::string> {
  protected:
   const Method& method = solver::method(GetParam());
 };
-INSTANTIATE_TEST_SUITE_P(, HungSheetWith, testing::ValuesIn(names(solver::methods())),
+INSTANTIATE_TEST_SUITE_P(, HungSheetWith, testing::ValuesIn(names(solver::thesis_methods())),
                          [](const auto& test) { return identifier(test.param); });
 
 TEST_P(HungSheetWith, AgreesWithCvodeAtTheDeclaredRate) {

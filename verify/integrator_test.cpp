@@ -42,7 +42,10 @@ TEST_P(IntegratorWith, TakesExactlyTheStepsThatDivideTheTime) {
     EXPECT_EQ(p.ode.work->count("steps"), n);
     EXPECT_EQ(run.rejected_steps, 0);
     EXPECT_NEAR(integrator.time(), t_end, 1e-12);
-    const int matrices = !method.implicit() ? 0 : method.two_step && n > 1 ? 2 : 1;  // one for the start
+    const int matrices = !method.implicit() ? 0
+                         : (method.two_step && n > 1) || (method.past_states > 0 && n >= method.past_states)
+                             ? 2
+                             : 1;  // one for the start
     EXPECT_EQ(p.ode.work->count("matrix_builds"), matrices) << n;
     EXPECT_EQ(p.ode.work->count("factorizations"), matrices) << n;
   }
@@ -132,7 +135,7 @@ TEST_P(IntegratorWith, KeepsPinnedCoordinatesOnTheirWay) {
   for (const Pin& pin : problem.ode.pins)
     for (int c = 0; c < 3; ++c) {
       if (!pin.fixed[c]) continue;
-      EXPECT_NEAR(integrator.state().x(pin.particle, c), exact.x(pin.particle, c), 1e-14);
+      EXPECT_NEAR(integrator.state().x(pin.particle, c), exact.x(pin.particle, c), 1e-13);
       EXPECT_EQ(integrator.state().v(pin.particle, c), pin.velocity[c]);
     }
 }

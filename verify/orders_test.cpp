@@ -19,7 +19,11 @@ using solver::Step;
 using solver::StepReport;
 
 constexpr double duration = 1.5;  // [s]
-constexpr int refinements[] = {150, 300, 600, 1200, 2400};
+/// From where on the order rules to where round-off does.
+std::vector<int> refinements(const Method& method) {
+  if (method.order >= 4) return {50, 75, 110, 165};
+  return {150, 300, 600, 1200, 2400};
+}
 
 double rms(const Vectors& difference) { return std::sqrt(difference.rowwise().squaredNorm().mean()); }
 
@@ -93,19 +97,19 @@ std::vector<double> steps_of(const Pattern& pattern, int n) {
 
 Measured with_equal_steps(const Problem& problem, const Method& method) {
   Measured measured;
-  for (const int n : refinements) measured.add(duration / n, run_to_the_end(problem, method, n));
+  for (const int n : refinements(method)) measured.add(duration / n, run_to_the_end(problem, method, n));
   return measured;
 }
 
 Measured with_a_clipped_last_step(const Problem& problem, const Method& method) {
   Measured measured;
-  for (const int n : refinements) measured.add(duration / (n + 0.37), run_to_the_end(problem, method, n + 0.37));
+  for (const int n : refinements(method)) measured.add(duration / (n + 0.37), run_to_the_end(problem, method, n + 0.37));
   return measured;
 }
 
 Measured with_variable_steps(const Problem& problem, const Method& method, const Pattern& pattern) {
   Measured measured;
-  for (const int n : refinements) measured.add(duration / n, run_with(problem, method, steps_of(pattern, n)));
+  for (const int n : refinements(method)) measured.add(duration / n, run_with(problem, method, steps_of(pattern, n)));
   return measured;
 }
 

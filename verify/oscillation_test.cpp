@@ -57,7 +57,7 @@ std::complex<double> fitted_exponent(const Oscillation& o, const std::vector<Sta
 std::complex<double> exponent(const reference::ModeBehaviour& b, double h) { return {-b.decay / h, b.frequency / h}; }
 
 class OscillationBy : public testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(, OscillationBy, testing::ValuesIn(small_problems::names(solver::methods())),
+INSTANTIATE_TEST_SUITE_P(, OscillationBy, testing::ValuesIn(small_problems::names(solver::thesis_methods())),
                          [](const auto& test) { return small_problems::identifier(test.param); });
 
 constexpr SheetMode modes[] = {{2, 1, reference::Motion::transverse}, {1, 2, reference::Motion::along_v}};

@@ -83,14 +83,15 @@ TEST(ProgramRun, PrintsARowOfCsvForEveryMethodAndStep) {
 
 TEST(ProgramRun, PrintsSaneNumbers) {
   const BenchIntegrators program;
-  const std::vector<Row> rows = csv(program, tiny + Words{"--method", "bdf2,sbdf2,verlet", "--step", "0.01,0.005"});
+  const std::vector<Row> rows =
+      csv(program, tiny + Words{"--method", "bdf2/fixed-point/ic0,sbdf2/ic0,verlet", "--step", "0.01,0.005"});
   ASSERT_THAT(rows, SizeIs(6));
   for (const Row& row : rows) {
     const std::string& method = row.at("method");
     const double steps = number(row, "steps"), updates = number(row, "updates");
     EXPECT_DOUBLE_EQ(steps * number(row, "step"), 0.05);
-    EXPECT_EQ(updates > steps, method == "bdf2");
-    EXPECT_EQ(updates == steps, method == "sbdf2");
+    EXPECT_EQ(updates > steps, method == "bdf2/fixed-point/ic0");
+    EXPECT_EQ(updates == steps, method == "sbdf2/ic0");
     EXPECT_EQ(updates == 0, method == "verlet");
     EXPECT_EQ(number(row, "cg_iterations") > updates, method != "verlet");
     EXPECT_THAT(number(row, "wall_ms_min"), Gt(0));
@@ -115,7 +116,7 @@ TEST(ProgramRun, DividesErrorsByTheSizeOfTheScene) {
 
 TEST(ProgramRun, PrintsTheSameAsJson) {
   const BenchIntegrators program;
-  const Words command = tiny + Words{"--method", "bdf2,verlet", "--step", "0.01"};
+  const Words command = tiny + Words{"--method", "bdf2/fixed-point/ic0,verlet,bdf2", "--step", "0.01"};
   const auto json = nlohmann::json::parse(program.output(command + Words{"--format", "json"}));
   const std::vector<Row> rows = csv(program, command);
   ASSERT_THAT(json, SizeIs(2));
@@ -161,6 +162,8 @@ TEST(ProgramRun, HandsEveryOptionToTheSolver) {
   EXPECT_THAT(number(with({"--cg-tolerance", "1e-9"})[0], "cg_iterations"), Gt(number(usual[0], "cg_iterations")));
   EXPECT_THAT(number(with({"--verlet-fraction", "0.1"})[1], "error_rms"), Lt(number(usual[1], "error_rms")));
   EXPECT_THAT(number(with({"--control", "0", "5"})[0], "steps"), Gt(number(usual[0], "steps")));
+  EXPECT_THAT(number(with({"--stage-accuracy", "1e-6"})[2], "updates"), Gt(number(usual[2], "updates")));
+  EXPECT_THAT(number(with({"--tolerance", "1e-7"})[2], "steps"), Gt(number(usual[2], "steps")));
 }
 
 // --- Scenes --------------------------------------------------------------------------------------------------------------

@@ -79,7 +79,7 @@ Problem manufactured(const std::string& name, const std::vector<Pin>& pins) {
 }  // namespace
 
 Options tolerances(double loop, double cg) {
-  Options options;
+  Options options = solver::thesis_options();
   options.loop_tolerance = loop;
   options.cg_tolerance = cg;
   return options;

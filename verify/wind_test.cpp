@@ -173,7 +173,7 @@ class InTime : public testing::TestWithParam<std::string> {
     return integrator.state();
   }
 };
-INSTANTIATE_TEST_SUITE_P(, InTime, testing::ValuesIn(names(solver::methods())),
+INSTANTIATE_TEST_SUITE_P(, InTime, testing::ValuesIn(names(solver::thesis_methods())),
                          [](const auto& test) { return identifier(test.param); });
 
 /// A falling sheet ends at the speed ρ g/c.

@@ -12,7 +12,7 @@ void bdf(Step& s, int k) {
   // dy/dt(t1) ≈ α y1 − Σ α_j y_j of the polynomial through y1 and the last k states
   double alpha = 0;
   for (int j = 0; j < k; ++j) alpha += 1 / (t1 - s.history.time(j));
-  const Eigen::VectorXd weights = s.history.weights(t1, k);
+  const History::Weights weights = s.history.weights(t1, k);
   s.ax.setZero();
   s.av.setZero();
   for (int j = 0; j < k; ++j) {

@@ -18,10 +18,10 @@ struct Tableau {
 /// About what the error of such a step is, over h^(p+1) times a derivative.
 constexpr double embedded_error = 0.01;
 
-void add(State& sum, double weight, const State& rate) {
+void add(double weight, const State& rate, Vectors& x, Vectors& v) {
   if (weight == 0) return;
-  sum.x += weight * rate.x;
-  sum.v += weight * rate.v;
+  x += weight * rate.x;
+  v += weight * rate.v;
 }
 
 /// M⁻¹ f at the start; the last stage of the step before knows it.
@@ -42,16 +42,17 @@ void esdirk(Step& s, const Tableau& T) {
   start_rate(s);
   State& y = s.y1();
   for (int i = 1; i < T.stages; ++i) {
-    State sum = s.y0();
-    for (int j = 0; j < i; ++j) add(sum, s.h * T.a[i][j], s.rates[j]);
+    s.ax = s.y0().x;
+    s.av = s.y0().v;
+    for (int j = 0; j < i; ++j) add(s.h * T.a[i][j], s.rates[j], s.ax, s.av);
     const double gamma = s.h * T.a[i][i];
-    if (!s.solve({gamma, s.t + T.c[i] * s.h, sum.x, sum.v}, embedded_error)) return;
+    if (!s.solve({gamma, s.t + T.c[i] * s.h, s.ax, s.av}, embedded_error)) return;
     s.rates[i].x = y.v;
-    s.rates[i].v = (y.v - sum.v) / gamma;
+    s.rates[i].v = (y.v - s.av) / gamma;
   }
   s.error.x.setZero(y.x.rows(), 3);
   s.error.v.setZero(y.v.rows(), 3);
-  for (int j = 0; j < T.stages; ++j) add(s.error, s.h * (T.a[T.stages - 1][j] - T.b_hat[j]), s.rates[j]);
+  for (int j = 0; j < T.stages; ++j) add(s.h * (T.a[T.stages - 1][j] - T.b_hat[j]), s.rates[j], s.error.x, s.error.v);
   s.next.f = s.rates[T.stages - 1].v;
   s.next.has_f = true;
   s.embedded = true;
