@@ -90,11 +90,11 @@ bool AcceleratedLoop::correct() {
   const Vectors& r = system_.residual();
   bound_ = (ode_.mass.cwiseInverse().asDiagonal() * r).norm();
   size_ = infinity;
-  if (!std::isfinite(bound_)) return true;
+  if (!std::isfinite(residual_)) return true;
   if (factor_ != nullptr) {
     factor_->solve(r, system_.correction());
   } else {
-    const LinearResult solved = system_.correct(forcing * r.norm());
+    const LinearResult solved = system_.correct(forcing * residual_);
     result_.cg_iterations += solved.iterations;
     if (solved.outcome != Outcome::success) {
       result_.outcome = solved.outcome;
@@ -190,6 +190,9 @@ StageResult AcceleratedLoop::solve(const Stage& stage, State& y) {
     if (result_.updates >= options_.max_updates) return ended(Outcome::not_converged);
     system_.evaluate(stage, nullptr, y);
     system_.filter_residual(stage.gamma);
+    residual_ = system_.residual().norm();
+    if (result_.updates == 0) noise_ = system_.noise(y, stage.gamma);
+    if (result_.updates > 0 && residual_ <= noise_) break;
     if (!correct()) return result_;
     ++result_.updates;
     ++work_.updates;

@@ -49,6 +49,8 @@ class AcceleratedLoop {
   const Stage* stage_ = nullptr;
   StageResult result_;
   NewtonFactor* factor_ = nullptr;  ///< P; null for A
+  double residual_ = 0;             ///< |r|
+  double noise_ = 0;                ///< what of it is round-off
   double size_ = 0;                 ///< |d|
   double bound_ = 0;                ///< |M⁻¹ r|
   double best_ = 0;                 ///< smallest |d|

@@ -70,18 +70,20 @@ Outcome StageSystem::prepare(double gamma, double different) {
   return outcome;
 }
 
-/// At rest b vanishes like r does, but for the round-off of differences of positions times spring constants, which a relative
-/// test alone would never get below.
-StageSystem::Scale StageSystem::scale(const State& y, double gamma) {
+double StageSystem::noise(const State& y, double gamma) const {
   const double underflow = std::sqrt(std::numeric_limits<double>::min());  // squares of what is smaller vanish
+  return round_off(gamma * (spring_ * flat(y.x)).matrix().norm()) + underflow;
+}
+
+/// At rest b vanishes like r does, but for its noise, which a relative test alone would never get below.
+StageSystem::Scale StageSystem::scale(const State& y, double gamma) {
   multiply(A_, y.v, q_);
   ++work_.products;
   work_.bytes += multiply_bytes(A_) + vector_bytes(A_.rows(), 3);
   q_ += r_;
   filter(ode_.pins, q_);
   filtered()(q_);
-  const double forces = (spring_ * flat(y.x)).matrix().norm();
-  return {q_.norm(), round_off(gamma * forces) + underflow};
+  return {q_.norm(), noise(y, gamma)};
 }
 
 void StageSystem::evaluate(const Stage& stage, const Vectors* f_explicit, State& y) {

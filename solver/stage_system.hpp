@@ -48,8 +48,11 @@ class StageSystem {
   };
   Scale scale(const State& y, double gamma);
 
-  /// Round-off of a sum of forces of this size [N s].
-  static double round_off(double impulse) { return 8 * std::numeric_limits<double>::epsilon() * impulse; }
+  /// Below this no |r| falls: the round-off of differences of positions times spring constants [N s].
+  double noise(const State& y, double gamma) const;
+
+  /// Round-off of a sum of terms of this size.
+  static double round_off(double size) { return 8 * std::numeric_limits<double>::epsilon() * size; }
 
   /// A d = r for another r; what pins and constraints bear of it does not count.
   LinearResult respond(const Vectors& r, double tolerance);

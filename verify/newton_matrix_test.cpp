@@ -113,7 +113,9 @@ TEST_P(NewtonMatrixOf, IsAssembledAnewIntoTheSamePlaces) {
 
 TEST(NewtonMatrixOfExactJacobian, WouldNotBePositiveDefinite) {
   const model::Cloth cloth = sheet({{"material.tension", "1e6"}, {"material.damping", "0"}});
-  const Eigen::MatrixXd J = exact(cloth, crumpled(cloth));
+  State y = crumpled(cloth, 0.001);
+  y.x *= 0.5;
+  const Eigen::MatrixXd J = exact(cloth, y);
   EXPECT_LT(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(J).eigenvalues()[0], 0);
 }
 

@@ -21,7 +21,7 @@ using solver::StepReport;
 constexpr double duration = 1.5;  // [s]
 /// From where on the order rules to where round-off does.
 std::vector<int> refinements(const Method& method) {
-  if (method.order >= 4) return {50, 75, 110, 165};
+  if (method.order >= 4) return {100, 140, 200, 280};
   return {150, 300, 600, 1200, 2400};
 }
 

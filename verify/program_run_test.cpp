@@ -116,7 +116,7 @@ TEST(ProgramRun, DividesErrorsByTheSizeOfTheScene) {
 
 TEST(ProgramRun, PrintsTheSameAsJson) {
   const BenchIntegrators program;
-  const Words command = tiny + Words{"--method", "bdf2/fixed-point/ic0,verlet,bdf2", "--step", "0.01"};
+  const Words command = tiny + Words{"--method", "bdf2,verlet", "--step", "0.01"};
   const auto json = nlohmann::json::parse(program.output(command + Words{"--format", "json"}));
   const std::vector<Row> rows = csv(program, command);
   ASSERT_THAT(json, SizeIs(2));
@@ -155,7 +155,7 @@ TEST(ProgramRun, FailsIfItsOutputIsLost) {
 
 TEST(ProgramRun, HandsEveryOptionToTheSolver) {
   const BenchIntegrators program;
-  const Words command = tiny + Words{"--method", "bdf2,verlet", "--step", "0.01"};
+  const Words command = tiny + Words{"--method", "bdf2/fixed-point/ic0,verlet,bdf2", "--step", "0.01"};
   const std::vector<Row> usual = csv(program, command);
   const auto with = [&](const Words& option) { return csv(program, command + option); };
   EXPECT_THAT(number(with({"--loop-tolerance", "1e-9"})[0], "updates"), Gt(number(usual[0], "updates")));

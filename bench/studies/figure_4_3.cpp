@@ -25,7 +25,9 @@ model::Scene swing(bool quick) {
   return model::load_scene("box_swing", overrides);
 }
 
-Cell cell(const model::Scene& scene, std::string_view method) { return {scene, "", &solver::method(method), h, {}}; }
+Cell cell(const model::Scene& scene, std::string_view method) {
+  return {scene, "", &solver::method(method), h, solver::thesis_options()};
+}
 
 using results::RunRecord;
 using results::StepRecord;
