@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "model/cloth.hpp"
+#include "results/verdict.hpp"
+#include "solver/integrator.hpp"
+
+/// Short runs whose only question is what becomes of them.
+namespace drape::bench {
+
+/// A cloth to be tried, from its start on: compiled from its scene, but it may have been changed since.
+struct Specimen {
+  model::Scene scene;
+  model::Cloth cloth;
+};
+
+/// How it is tried. A run may evaluate forces, or make Newton matrices, so many times before it counts as not finished: a limit
+/// that does not depend on the machine.
+struct Conditions {
+  const solver::Method* method;
+  solver::Options options;
+  double step;   ///< [s]
+  double until;  ///< [s]
+  std::int64_t budget = 10'000;
+};
+
+/// What became of it.
+struct Trial {
+  solver::RunResult run;
+  bool finished = true;
+  solver::State end;
+  std::int64_t evaluations = 0;
+  std::int64_t newton_matrices = 0;
+  double cpu_ms = 0;
+
+  bool succeeded() const { return finished && run.outcome == solver::Outcome::success; }
+
+  /// Why it did not; empty if it did.
+  std::string reason() const;
+};
+
+Trial attempt(const Specimen& specimen, const Conditions& conditions);
+
+/// The end of a specimen as two L-stable methods of different families find it with controlled errors, and how far they differ.
+class Yardstick {
+ public:
+  Yardstick(const Specimen& specimen, double until, double tolerance);
+
+  /// The same for a specimen that `run` takes to its end as it is told.
+  Yardstick(const Specimen& specimen, double until, double tolerance, const std::function<Trial(const Conditions&)>& run);
+
+  /// Error of a trial over the size of the scene, with what the yardstick itself is uncertain by: root mean square of
+  /// positions, or, where that cannot be told from `bound`, the distance of the centres of mass. NaN if that cannot either.
+  results::Measured measure(const Trial& trial, double bound) const;
+
+  double uncertainty() const { return positions_; }  ///< of positions; NaN if a method failed
+
+ private:
+  double size_;
+  Eigen::VectorXd mass_;
+  solver::Vectors truth_;
+  double positions_, centre_;
+};
+
+}  // namespace drape::bench
