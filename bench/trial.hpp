@@ -44,19 +44,20 @@ struct Trial {
 
 Trial attempt(const Specimen& specimen, const Conditions& conditions);
 
-/// The end of a specimen as two L-stable methods of different families find it with controlled errors, and how far they differ.
+/// The end of a specimen as two different methods find it, and how far they differ: the first two that succeed of ESDIRK3 and
+/// TR-BDF2 with controlled errors, velocity Verlet, the midpoint rule and SBDF(2) with many steps.
 class Yardstick {
  public:
-  Yardstick(const Specimen& specimen, double until, double tolerance);
+  Yardstick(const Specimen& specimen, double until);
 
   /// The same for a specimen that `run` takes to its end as it is told.
-  Yardstick(const Specimen& specimen, double until, double tolerance, const std::function<Trial(const Conditions&)>& run);
+  Yardstick(const Specimen& specimen, double until, const std::function<Trial(const Conditions&)>& run);
 
   /// Error of a trial over the size of the scene, with what the yardstick itself is uncertain by: root mean square of
   /// positions, or, where that cannot be told from `bound`, the distance of the centres of mass. NaN if that cannot either.
   results::Measured measure(const Trial& trial, double bound) const;
 
-  double uncertainty() const { return positions_; }  ///< of positions; NaN if a method failed
+  double uncertainty() const { return positions_; }  ///< of positions; NaN if there are no two
 
  private:
   double size_;

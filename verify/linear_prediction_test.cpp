@@ -4,10 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <limits>
-
-#include "solver/integrator.hpp"
 
 namespace drape::verify {
 namespace {
@@ -30,28 +27,6 @@ TEST(LinearPrediction, KnowsHowMuchDampingTheHigherBdfNeed) {
   EXPECT_FALSE(stable("bdf5", 3));
   EXPECT_TRUE(stable("bdf3", 3));
   EXPECT_FALSE(stable("bdf4", 30) || stable("bdf5", 30) || stable("bdf3", undamped));
-}
-
-TEST(LinearPrediction, GrowsAsTheRunningBdfDoes) {
-  for (const char* name : {"bdf3", "bdf4", "bdf5"}) {
-    const double radius = predict(method(name), 1e3, undamped).radius;
-    double fastest = 0;
-    for (double W = 0.25; W < 16; W *= 1.5) {
-      const solver::SplitOde ode = reference::mode_ode({W, W, 0});
-      solver::Options options = solver::thesis_options();
-      options.loop_tolerance = 1e-13;
-      options.cg_tolerance = 1e-14;
-      solver::Integrator integrator(ode, method(name), options,
-                                    {solver::Vectors::Constant(1, 3, 1), solver::Vectors::Zero(1, 3)});
-      const auto size = [&] { return std::hypot(integrator.state().x(0) * std::sqrt(W), integrator.state().v(0)); };
-      for (int k = 0; k < 100; ++k) integrator.step(1);
-      const double before = size();
-      for (int k = 0; k < 100; ++k) integrator.step(1);
-      fastest = std::max(fastest, std::pow(size() / before, 1e-2));
-    }
-    EXPECT_GT(radius, 1.01) << name;
-    EXPECT_NEAR(fastest, radius, 0.05 * (radius - 1) + 2e-3) << name;
-  }
 }
 
 TEST(LinearPrediction, SeesTheThesisLoopSlowDownWithStiffnessOverDamping) {

@@ -10,7 +10,7 @@ namespace {
 
 using results::Verdict;
 
-constexpr int particles = 20;       ///< a side
+constexpr int particles = 10;       ///< a side
 constexpr int finest = 1024;        ///< steps
 constexpr double resolution = 0.1;  ///< of h*, relative
 
@@ -43,8 +43,12 @@ class Search {
   const Judged& operator()(int steps) {
     auto known = known_.find(steps);
     if (known == known_.end())
-      known =
-          known_.emplace(steps, judged(attempt(specimen_, {&method_, {}, horizon / steps, horizon, 20'000}), yardstick_)).first;
+      known = known_
+                  .emplace(
+                      steps,
+                      judged(attempt(specimen_, {&method_, {}, horizon / steps, horizon, method_.implicit() ? 4'000 : 100'000}),
+                             yardstick_))
+                  .first;
     return known->second;
   }
 
@@ -70,7 +74,7 @@ TableJob largest_steps(bool quick) {
                             horizon / finest, horizon));
             for (const auto& [k, d] : sheets) {
               const Specimen specimen = hung_by_corners(quick ? 6 : particles, k, d);
-              const Yardstick yardstick(specimen, horizon, 1e-5);
+              const Yardstick yardstick(specimen, horizon);
               for (const solver::Method& method : solver::methods()) {
                 progress.show(fmt::format("largest step of {}, k = {}, d = {}", method.name, k, d));
                 Search search(specimen, yardstick, method);
