@@ -162,6 +162,8 @@ results::Table explore(Atlas& atlas, Progress& progress) {
 }
 
 results::Table count_verdicts(const Atlas& atlas) {
+  static constexpr const char* columns[results::verdicts] = {"accurate", "wrong",         "bounded",
+                                                             "unstable", "not_converged", "not_finished"};
   results::TableBuilder table("stability-verdicts", "How many runs of the atlas end how, method by method");
   for (const Sheet& sheet : atlas.sheets)
     for (const Row& row : atlas.rows) {
@@ -179,8 +181,8 @@ results::Table count_verdicts(const Atlas& atlas) {
       table.number("step", "h", "s", "time step", sheet.step);
       table.text("method", "method", "time integrator, with its stage solver if that is not auto", row.name);
       for (int k = 0; k < results::verdicts; ++k) {
-        const std::string name(to_string(static_cast<Verdict>(k)));
-        table.count(name.c_str(), name.c_str(), "runs", counts[static_cast<std::size_t>(k)]);
+        const std::string title(to_string(static_cast<Verdict>(k)));
+        table.count(columns[k], title.c_str(), "runs", counts[static_cast<std::size_t>(k)]);
       }
       table.count("total", "of", "runs", total);
       table.count("as_predicted", "as predicted", "runs that are stable and converge just where linear theory says so",
