@@ -83,12 +83,14 @@ Trial attempt(const Specimen& specimen, const Conditions& conditions) {
   return trial;
 }
 
-Yardstick::Yardstick(const Specimen& specimen, double until)
-    : Yardstick(specimen, until, [&](const Conditions& conditions) { return attempt(specimen, conditions); }) {}
+Yardstick::Yardstick(const Specimen& specimen, double until, double effort)
+    : Yardstick(
+          specimen, until, [&](const Conditions& conditions) { return attempt(specimen, conditions); }, effort) {}
 
-Yardstick::Yardstick(const Specimen& specimen, double until, const std::function<Trial(const Conditions&)>& run)
+Yardstick::Yardstick(const Specimen& specimen, double until, const std::function<Trial(const Conditions&)>& run, double effort)
     : size_(model::size(specimen.scene)), mass_(specimen.cloth.ode.mass), positions_(not_known), centre_(not_known) {
-  for (const Conditions& conditions : yardsticks(size_, until)) {
+  for (Conditions& conditions : yardsticks(size_, until)) {
+    conditions.budget = static_cast<std::int64_t>(effort * static_cast<double>(conditions.budget));
     const Trial trial = run(conditions);
     if (!trial.succeeded()) continue;
     if (truth_.size() == 0) {

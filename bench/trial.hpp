@@ -48,10 +48,11 @@ Trial attempt(const Specimen& specimen, const Conditions& conditions);
 /// TR-BDF2 with controlled errors, velocity Verlet, the midpoint rule and SBDF(2) with many steps.
 class Yardstick {
  public:
-  Yardstick(const Specimen& specimen, double until);
+  /// `effort`: part of what the methods may usually cost.
+  Yardstick(const Specimen& specimen, double until, double effort = 1);
 
   /// The same for a specimen that `run` takes to its end as it is told.
-  Yardstick(const Specimen& specimen, double until, const std::function<Trial(const Conditions&)>& run);
+  Yardstick(const Specimen& specimen, double until, const std::function<Trial(const Conditions&)>& run, double effort = 1);
 
   /// Error of a trial over the size of the scene, with what the yardstick itself is uncertain by: root mean square of
   /// positions, or, where that cannot be told from `bound`, the distance of the centres of mass. NaN if that cannot either.

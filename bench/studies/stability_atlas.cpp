@@ -24,6 +24,7 @@ struct Sheet {
   int n;
   double step;  ///< [s]
   std::vector<double> stiffnesses, ratios;
+  double effort = 1;        ///< part of the usual budgets
   bool spot_check = false;  ///< only what the bar is about
 };
 
@@ -43,10 +44,10 @@ std::vector<double> ratios(int from, int to, int step = 1) {
 std::vector<Sheet> sheets(bool quick) {
   if (quick) return {{6, 0.02, {1, 1e5}, {1, 1e4}}};
   return {{10, 0.01, decades(0, 7), ratios(-2, 6)},
-          {20, 0.01, decades(1, 7, 2), ratios(-2, 6, 2)},
+          {20, 0.01, decades(1, 7, 2), ratios(-2, 6, 2), 0.5},
           {10, 0.04, decades(1, 7, 3), ratios(-2, 6, 2)},
           {10, 0.0025, decades(1, 7, 3), ratios(-2, 6, 2)},
-          {40, 0.01, {1e3, 1e7}, {1, 1e3, infinity}, true}};
+          {40, 0.01, {1e3, 1e7}, {1, 1e3, infinity}, 0.2, true}};
 }
 
 /// A method with its stage solver as it stands in the atlas.
@@ -148,12 +149,15 @@ results::Table explore(Atlas& atlas, Progress& progress) {
         progress.show(fmt::format("{0} x {0}, h = {1}, ν = {2:g}, h k/d = {3:g}", sheet.n, sheet.step, nu, ratio));
         const double l = 0.8 / (sheet.n - 1), h = sheet.step, k = nu * l * l / (h * h);
         const Specimen specimen = hung_by_corners(sheet.n, k, h * k / ratio);
-        const Yardstick yardstick(specimen, horizon);
+        const Yardstick yardstick(specimen, horizon, sheet.effort);
         for (const Row& row : atlas.rows) {
           if (sheet.spot_check && !is_bar_method(row.name)) continue;
           const Expected expected = predict(row, sheet, nu, ratio);
-          atlas.cells.push_back({&sheet, &row, nu, ratio, expected,
-                                 judged(attempt(specimen, {row.method, row.options, h, horizon, row.budget}), yardstick)});
+          atlas.cells.push_back(
+              {&sheet, &row, nu, ratio, expected,
+               judged(attempt(specimen, {row.method, row.options, h, horizon,
+                                         static_cast<std::int64_t>(sheet.effort * static_cast<double>(row.budget))}),
+                      yardstick)});
           add_cell(table, atlas.cells.back(), false);
         }
         progress.advance();

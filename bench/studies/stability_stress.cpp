@@ -88,7 +88,7 @@ Trial endure(const Stress& stress, int n, Conditions conditions) {
   Specimen specimen = stress.make(n);
   if (!stress.then) return attempt(specimen, conditions);
   conditions.until /= 2;
-  const Trial first = attempt(specimen, conditions);
+  Trial first = attempt(specimen, conditions);
   if (!first.succeeded()) return first;
   specimen = stress.then(n);
   specimen.cloth.start = first.end;
