@@ -58,6 +58,9 @@ class Search {
   std::map<int, Judged> known_;
 };
 
+/// A step that the solver had to cut is not the one that was asked for.
+bool uncut(const Judged& run) { return run.trial.run.rejected_steps == 0; }
+
 void add_step(results::TableBuilder& table, const char* name, const char* title, const char* description, int steps) {
   if (steps > 0) table.number(name, title, "s", description, horizon / steps);
 }
@@ -83,9 +86,9 @@ TableJob largest_steps(bool quick) {
                 table.number("damping", "d", "N s/m", "damping, linear", d);
                 table.text("method", "method", "time integrator", std::string(method.name));
                 add_step(table, "accurate", "accurate", "largest step that is accurate",
-                         search.fewest([](const Judged& run) { return run.verdict == Verdict::accurate; }));
+                         search.fewest([](const Judged& run) { return uncut(run) && run.verdict == Verdict::accurate; }));
                 add_step(table, "stable", "stable", "largest step that is stable, right or wrong",
-                         search.fewest([](const Judged& run) { return run.stable(); }));
+                         search.fewest([](const Judged& run) { return uncut(run) && run.stable(); }));
                 table.number("uncertainty", "±", "1", "how far the two reference methods differ", yardstick.uncertainty());
               }
               progress.advance();
