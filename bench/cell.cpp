@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "bench/contact_record.hpp"
+#include "model/energy_guard.hpp"
 #include "model/scene_file.hpp"
 
 namespace drape::bench {
@@ -111,12 +112,14 @@ results::RunRecord record(const Cell& cell, const solver::Observer& look) {
   if (look) look({0, 0, 0, 0, integrator.state(), {}});
   ContactWatch watch(cell.scene, cloth);
   watch.see(0, cloth.start, solver::kinetic_energy(ode, cloth.start.v), ode.potential_energy(0, cloth.start.x));
-  const solver::RunResult result = integrate(integrator, cell.scene.end, cell.step, [&](const solver::StepReport& step) {
-    const double kinetic = solver::kinetic_energy(ode, step.y.v), potential = ode.potential_energy(step.t, step.y.x);
-    run.steps.push_back({step.t, step.h, step.updates, step.cg_iterations, kinetic, potential, step.contacts.constrained});
-    watch.see(step.t, step.y, kinetic, potential);
-    if (look) look(step);
-  });
+  const model::EnergyGuard guard(cell.scene, cloth);
+  const solver::RunResult result =
+      integrate(integrator, ode, guard, cell.scene.end, cell.step, [&](const solver::StepReport& step) {
+        const double kinetic = solver::kinetic_energy(ode, step.y.v), potential = ode.potential_energy(step.t, step.y.x);
+        run.steps.push_back({step.t, step.h, step.updates, step.cg_iterations, kinetic, potential, step.contacts.constrained});
+        watch.see(step.t, step.y, kinetic, potential);
+        if (look) look(step);
+      });
   run.contact = watch.result();
   run.outcome = to_string(result.outcome);
   run.message = result.message;

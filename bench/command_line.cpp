@@ -11,6 +11,7 @@
 #include "bench/argument_checks.hpp"
 #include "bench/choices.hpp"
 #include "bench/frames.hpp"
+#include "bench/plot.hpp"
 #include "bench/studies.hpp"
 #include "bench/sweep.hpp"
 #include "bench/table_jobs.hpp"
@@ -162,6 +163,9 @@ void run_study(const Study& chosen, const Arguments& a) {
   const std::filesystem::path out = out_file(a, name);
   print_tables(compute(chosen.tables(a.quick), out, a.command_line), a.format);
   say_where(out, a.format);
+  if (chosen.plot.empty()) return;
+  const std::string said = plot(chosen.plot, out);
+  if (a.format == "table") fmt::print("{}", said);
 }
 
 void add_output_options(CLI::App& command, Arguments& a) {

@@ -27,6 +27,8 @@ std::span<const Study> studies() {
        figure_4_3},
       {"scaling", "time of a step and of a CG iteration from 20 x 20 to a million particles, beside the machine's bandwidth",
        nullptr, scaling},
+      {"stability", "what becomes of every method over stiffness and damping, its largest usable step, and stress cases",
+       nullptr, stability, "plot_stability.py"},
   };
   return table;
 }

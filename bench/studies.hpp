@@ -25,6 +25,7 @@ struct Study {
   std::string_view description;
   std::vector<Group> (*groups)(bool quick) = nullptr;     ///< runs, compared with references
   std::vector<TableJob> (*tables)(bool quick) = nullptr;  ///< or tables
+  std::string_view plot = {};                             ///< script that draws them; empty: none
 };
 
 /// All studies; the first is the main job.
@@ -44,5 +45,6 @@ std::vector<TableJob> figure_3_2(bool quick);
 std::vector<TableJob> figure_3_3(bool quick);
 std::vector<TableJob> figure_4_3(bool quick);
 std::vector<TableJob> scaling(bool quick);
+std::vector<TableJob> stability(bool quick);
 
 }  // namespace drape::bench

@@ -11,6 +11,7 @@ enum class Outcome {
   breakdown,      ///< a matrix that must be positive definite is not
   not_finite,     ///< a NaN or an infinity appeared
   inaccurate,     ///< the estimated error is above its tolerance
+  unstable,       ///< the energy is far above all that the scene can have
 };
 
 /// The outcome as it is written in tables and files, for example "not converged".
@@ -21,6 +22,7 @@ constexpr std::string_view to_string(Outcome outcome) {
     case Outcome::breakdown: return "breakdown";
     case Outcome::not_finite: return "not finite";
     case Outcome::inaccurate: return "inaccurate";
+    case Outcome::unstable: return "unstable";
   }
   return "unknown";
 }

@@ -24,6 +24,7 @@ using results::Table;
 using results::TableBuilder;
 using results::verdict;
 using testing::AllOf;
+using testing::AnyOf;
 using testing::Contains;
 using testing::DoubleNear;
 using testing::Each;
@@ -277,6 +278,24 @@ TEST_F(ProgramStudies, RestingOnTheBoxIsNoHarderThanSwinging) {
   EXPECT_THAT(all[2].columns, Contains(Field(&Column::name, "bdf2_contacts")));
   EXPECT_THAT(all[2].columns, Each(Field(&Column::title, IsEmpty()))) << "every step is for the file";
   EXPECT_EQ(all[2].columns[0].cells.size() / 5, all[0].columns[0].cells.size());
+}
+
+TEST_F(ProgramStudies, EveryCellOfTheAtlasEndsInAVerdict) {
+  const auto all = tables("stability");  // in the order of their names
+  ASSERT_THAT(all, SizeIs(6));
+  const auto table = [&](const std::string& name) { return *std::ranges::find(all, "stability-" + name, &Table::name); };
+  EXPECT_THAT(verdicts(table("bar")), AllOf(SizeIs(3), Each("all converge")));
+  const auto all_cells = verdicts(table("atlas"));
+  EXPECT_THAT(all_cells, SizeIs(4 * 16));
+  const auto known =
+      AnyOf("accurate", "stable but wrong", "stable, error unknown", "unstable", "not converged", "not finished");
+  EXPECT_THAT(all_cells, Each(known));
+  EXPECT_THAT(verdicts(table("stress")), AllOf(SizeIs(2 * 17), Each(known)));
+  EXPECT_THAT(numbers(table("verdicts"), "accurate", "method", "bdf2"), ElementsAre(4));
+  EXPECT_THAT(numbers(table("verdicts"), "not_converged", "method", "bdf2/fixed-point"), ElementsAre(1));
+  EXPECT_THAT(numbers(table("verdicts"), "wrong", "method", "sbdf2"), ElementsAre(2)) << "of the slack sheets";
+  EXPECT_LT(numbers(table("steps"), "accurate", "method", "sbdf2").at(0),
+            numbers(table("steps"), "accurate", "method", "bdf2").at(0));
 }
 
 }  // namespace

@@ -1,0 +1,239 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <memory>
+
+#include "bench/studies/stability.hpp"
+#include "reference/linear_prediction.hpp"
+
+namespace drape::bench {
+namespace {
+
+using results::Verdict;
+using solver::Method;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double visible_growth = 10;  ///< of an amplitude in a run: its energy is then out of bounds
+
+/// A part of the atlas: one mesh and one time step.
+struct Sheet {
+  int n;
+  double step;  ///< [s]
+  std::vector<double> stiffnesses, ratios;
+  double effort = 1;        ///< part of the usual budgets
+  bool spot_check = false;  ///< only what the bar is about
+};
+
+std::vector<double> decades(int from, int to, int step = 1) {
+  std::vector<double> all;
+  for (int k = from; k <= to; k += step) all.push_back(std::pow(10, k));
+  return all;
+}
+
+/// h k/d, without damping at the end.
+std::vector<double> ratios(int from, int to, int step = 1) {
+  std::vector<double> all = decades(from, to, step);
+  all.push_back(infinity);
+  return all;
+}
+
+std::vector<Sheet> sheets(bool quick) {
+  if (quick) return {{6, 0.02, {1, 1e5}, {1, 1e4}}};
+  return {{10, 0.01, decades(0, 7), ratios(-2, 6)},
+          {20, 0.01, decades(1, 7, 2), ratios(-2, 6, 2), 0.5},
+          {10, 0.04, decades(1, 7, 3), ratios(-2, 6, 2)},
+          {10, 0.0025, decades(1, 7, 3), ratios(-2, 6, 2)},
+          {40, 0.01, {1e3, 1e7}, {1, 1e3, infinity}, 0.2, true}};
+}
+
+/// A method with its stage solver as it stands in the atlas.
+struct Row {
+  std::string name;
+  const Method* method;
+  solver::Options options;
+  std::int64_t budget;
+};
+
+constexpr const char* bar_methods[] = {"implicit-euler", "bdf2", "midpoint"};
+
+bool is_bar_method(std::string_view name) { return std::ranges::find(bar_methods, name) != std::end(bar_methods); }
+
+/// What a run may cost. A sub-step of an explicit method is far cheaper than an update of an implicit one.
+std::int64_t budget(const Method& method) {
+  if (!method.implicit()) return 100'000;
+  return is_bar_method(method.name) ? 10'000 : 4'000;
+}
+
+/// All methods, and the thesis' loop where a method has one.
+std::vector<Row> rows() {
+  std::vector<Row> all;
+  for (const Method& method : solver::methods()) all.push_back({std::string(method.name), &method, {}, budget(method)});
+  for (const char* name : bar_methods)
+    all.push_back(
+        {fmt::format("{}/fixed-point", name), &solver::method(name), solver::thesis_options(), budget(solver::method(name))});
+  return all;
+}
+
+/// What linear theory leads one to expect of a run.
+struct Expected {
+  double growth;  ///< of the fastest growing mode in the run
+  double loop;    ///< contraction of the thesis' loop; 0: there is none
+  bool stable, converges;
+
+  bool good() const { return stable && converges; }
+};
+
+struct AtlasCell {
+  const Sheet* sheet;
+  const Row* row;
+  double stiffness, ratio;
+  Expected expected;
+  Judged judged;
+};
+
+/// The atlas as the jobs share it.
+struct Atlas {
+  std::vector<Sheet> sheets;
+  std::vector<Row> rows;
+  std::vector<AtlasCell> cells;
+};
+
+class Predictions {
+ public:
+  Expected operator()(const Row& row, const Sheet& sheet, double stiffness, double ratio) {
+    const auto key = std::tuple(row.method, stiffness, ratio);
+    auto known = known_.find(key);
+    if (known == known_.end()) known = known_.emplace(key, reference::predict(*row.method, stiffness, ratio)).first;
+    const reference::LinearPrediction& linear = known->second;
+    const double growth = std::pow(linear.radius, std::round(horizon / sheet.step));
+    const bool thesis_loop = !row.options.stage->accelerated && row.method->nonlinear();
+    const double loop = thesis_loop ? linear.loop : 0;
+    return {growth, loop, growth < visible_growth, std::pow(loop, row.options.max_updates) < row.options.loop_tolerance};
+  }
+
+ private:
+  std::map<std::tuple<const Method*, double, double>, reference::LinearPrediction> known_;
+};
+
+std::string_view describe(const Expected& expected) {
+  if (!expected.stable) return "unstable";
+  return expected.converges ? "stable" : "loop too slow";
+}
+
+void add_cell(results::TableBuilder& table, const AtlasCell& cell, bool shown) {
+  const auto title = [shown](const char* text) { return shown ? text : ""; };
+  table.row();
+  table.count("n", title("n"), "particles a side", cell.sheet->n);
+  table.number("step", title("h"), "s", "time step", cell.sheet->step);
+  table.text("method", title("method"), "time integrator, with its stage solver if that is not auto", cell.row->name);
+  table.number("nu", title("ν_h"), "1", "numerical stiffness h² k/(ρ l²)", cell.stiffness);
+  table.number("to_damping", title("h k/d"), "1", "infinite without damping", cell.ratio);
+  table.text("predicted", title("predicted"), "by the amplification of linear modes and the contraction of the thesis' loop",
+             std::string(describe(cell.expected)));
+  table.number("growth", "", "1", "of the fastest growing linear mode in the run", cell.expected.growth);
+  table.number("loop", "", "1", "contraction of the thesis' loop, 0 if there is none", cell.expected.loop);
+  add_verdict(table, cell.judged, shown);
+}
+
+/// All runs: for the file.
+results::Table explore(Atlas& atlas, Progress& progress) {
+  results::TableBuilder table("stability-atlas", "Every run of the atlas");
+  Predictions predict;
+  for (const Sheet& sheet : atlas.sheets)
+    for (const double nu : sheet.stiffnesses)
+      for (const double ratio : sheet.ratios) {
+        progress.show(fmt::format("{0} x {0}, h = {1}, ν = {2:g}, h k/d = {3:g}", sheet.n, sheet.step, nu, ratio));
+        const double l = 0.8 / (sheet.n - 1), h = sheet.step, k = nu * l * l / (h * h);
+        const Specimen specimen = hung_by_corners(sheet.n, k, h * k / ratio);
+        const Yardstick yardstick(specimen, horizon, sheet.effort);
+        for (const Row& row : atlas.rows) {
+          if (sheet.spot_check && !is_bar_method(row.name)) continue;
+          const Expected expected = predict(row, sheet, nu, ratio);
+          atlas.cells.push_back(
+              {&sheet, &row, nu, ratio, expected,
+               judged(attempt(specimen, {row.method, row.options, h, horizon,
+                                         static_cast<std::int64_t>(sheet.effort * static_cast<double>(row.budget))}),
+                      yardstick)});
+          add_cell(table, atlas.cells.back(), false);
+        }
+        progress.advance();
+      }
+  return table.finish();
+}
+
+results::Table count_verdicts(const Atlas& atlas) {
+  static constexpr const char* columns[results::verdicts] = {"accurate", "wrong",         "bounded",
+                                                             "unstable", "not_converged", "not_finished"};
+  results::TableBuilder table("stability-verdicts", "How many runs of the atlas end how, method by method");
+  for (const Sheet& sheet : atlas.sheets)
+    for (const Row& row : atlas.rows) {
+      if (sheet.spot_check && !is_bar_method(row.name)) continue;
+      std::array<int, results::verdicts> counts{};
+      int total = 0, as_predicted = 0;
+      for (const AtlasCell& cell : atlas.cells) {
+        if (cell.sheet != &sheet || cell.row != &row) continue;
+        ++total;
+        ++counts[static_cast<std::size_t>(cell.judged.verdict)];
+        if (cell.expected.good() == cell.judged.stable()) ++as_predicted;
+      }
+      table.row();
+      table.count("n", "n", "particles a side", sheet.n);
+      table.number("step", "h", "s", "time step", sheet.step);
+      table.text("method", "method", "time integrator, with its stage solver if that is not auto", row.name);
+      for (int k = 0; k < results::verdicts; ++k) {
+        const std::string title(to_string(static_cast<Verdict>(k)));
+        table.count(columns[k], title.c_str(), "runs", counts[static_cast<std::size_t>(k)]);
+      }
+      table.count("total", "of", "runs", total);
+      table.count("as_predicted", "as predicted", "runs that are stable and converge just where linear theory says so",
+                  as_predicted);
+    }
+  return table.finish();
+}
+
+/// The bar: what is predicted stable converges with the default solvers.
+results::Table check_bar(const Atlas& atlas) {
+  results::TableBuilder table("stability-bar", "Runs that are predicted stable and do converge, with the default solvers");
+  for (const char* name : bar_methods) {
+    int stable = 0, converge = 0;
+    for (const AtlasCell& cell : atlas.cells) {
+      if (cell.row->name != name || !cell.expected.good()) continue;
+      ++stable;
+      if (cell.judged.trial.succeeded()) ++converge;
+    }
+    table.row();
+    table.text("method", "method", "time integrator", name);
+    table.count("stable", "predicted stable", "runs", stable);
+    table.count("converge", "converge", "of these", converge);
+    table.text("verdict", "verdict", "whether all of them do", converge == stable ? "all converge" : "NOT all converge");
+  }
+  return table.finish();
+}
+
+/// Runs that are not what linear theory says.
+results::Table list_surprises(const Atlas& atlas) {
+  results::TableBuilder table("stability-surprises",
+                              "Runs of the atlas that are stable and converge where linear theory does not expect it, or not "
+                              "where it does");
+  for (const AtlasCell& cell : atlas.cells)
+    if (cell.expected.good() != cell.judged.stable()) add_cell(table, cell, true);
+  return table.finish();
+}
+
+}  // namespace
+
+std::vector<TableJob> stability_atlas(bool quick) {
+  const auto atlas = std::make_shared<Atlas>(Atlas{sheets(quick), rows(), {}});
+  int scenes = 0;
+  for (const Sheet& sheet : atlas->sheets) scenes += static_cast<int>(sheet.stiffnesses.size() * sheet.ratios.size());
+  std::vector<TableJob> jobs{{scenes, [=](Progress& progress) { return explore(*atlas, progress); }}};
+  for (auto* summarise : {count_verdicts, check_bar, list_surprises})
+    jobs.push_back({0, [=](Progress&) { return summarise(*atlas); }});
+  return jobs;
+}
+
+}  // namespace drape::bench

@@ -1,0 +1,100 @@
+#include <fmt/format.h>
+
+#include <limits>
+#include <map>
+
+#include "bench/studies/stability.hpp"
+
+namespace drape::bench {
+namespace {
+
+using results::Verdict;
+
+constexpr int particles = 10;       ///< a side
+constexpr int finest = 1024;        ///< steps
+constexpr double resolution = 0.1;  ///< of h*, relative
+
+struct Sheet {
+  double k, d;
+};
+
+/// Finds the fewest equal steps to the horizon with which a method does well.
+class Search {
+ public:
+  Search(const Specimen& specimen, const Yardstick& yardstick, const solver::Method& method)
+      : specimen_(specimen), yardstick_(yardstick), method_(method) {}
+
+  /// Where doubling the number first does well, bisected between there and the number before; 0 if none does.
+  template <class Good>
+  int fewest(const Good& good) {
+    int bad = 0, enough = 1;
+    for (; !good((*this)(enough)); enough *= 2) {
+      if (enough == finest) return 0;
+      bad = enough;
+    }
+    while (enough - bad > 1 && enough - bad > resolution * bad) {
+      const int middle = (bad + enough) / 2;
+      (good((*this)(middle)) ? enough : bad) = middle;
+    }
+    return enough;
+  }
+
+ private:
+  const Judged& operator()(int steps) {
+    auto known = known_.find(steps);
+    if (known == known_.end())
+      known = known_
+                  .emplace(
+                      steps,
+                      judged(attempt(specimen_, {&method_, {}, horizon / steps, horizon, method_.implicit() ? 4'000 : 100'000}),
+                             yardstick_))
+                  .first;
+    return known->second;
+  }
+
+  const Specimen& specimen_;
+  const Yardstick& yardstick_;
+  const solver::Method& method_;
+  std::map<int, Judged> known_;
+};
+
+/// A step that the solver had to cut is not the one that was asked for.
+bool uncut(const Judged& run) { return run.trial.run.rejected_steps == 0; }
+
+void add_step(results::TableBuilder& table, const char* name, const char* title, const char* description, int steps) {
+  if (steps > 0) table.number(name, title, "s", description, horizon / steps);
+}
+
+}  // namespace
+
+TableJob largest_steps(bool quick) {
+  const std::vector<Sheet> sheets =
+      quick ? std::vector<Sheet>{{1e4, 50}} : std::vector<Sheet>{{1e4, 50}, {1e4, 5}, {1e4, 0.5}, {1e6, 5}};
+  return {static_cast<int>(sheets.size()), [=](Progress& progress) {
+            results::TableBuilder table(
+                "stability-steps",
+                fmt::format("The largest usable step of every method by bisection, at least {:.2g} s, to {} s",
+                            horizon / finest, horizon));
+            for (const auto& [k, d] : sheets) {
+              const Specimen specimen = hung_by_corners(quick ? 6 : particles, k, d);
+              const Yardstick yardstick(specimen, horizon);
+              for (const solver::Method& method : solver::methods()) {
+                progress.show(fmt::format("largest step of {}, k = {}, d = {}", method.name, k, d));
+                Search search(specimen, yardstick, method);
+                table.row();
+                table.number("tension", "k", "N/m", "tension modulus", k);
+                table.number("damping", "d", "N s/m", "damping, linear", d);
+                table.text("method", "method", "time integrator", std::string(method.name));
+                add_step(table, "accurate", "accurate", "largest step that is accurate",
+                         search.fewest([](const Judged& run) { return uncut(run) && run.verdict == Verdict::accurate; }));
+                add_step(table, "stable", "stable", "largest step that is stable, right or wrong",
+                         search.fewest([](const Judged& run) { return uncut(run) && run.stable(); }));
+                table.number("uncertainty", "±", "1", "how far the two reference methods differ", yardstick.uncertainty());
+              }
+              progress.advance();
+            }
+            return table.finish();
+          }};
+}
+
+}  // namespace drape::bench

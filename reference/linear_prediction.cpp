@@ -1,0 +1,69 @@
+#include "reference/linear_prediction.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "solver/decompositions.hpp"
+
+namespace drape::reference {
+namespace {
+
+constexpr double parts[] = {1, 0.5, 0.1, 1e-2, 1e-3, 1e-4};  ///< ω²/κ of the modes
+
+/// How many of a sheet's modes are sampled: ν from the stiffest one down in steps of 2.
+constexpr int octaves = 40;
+
+Eigen::VectorXd product(const Eigen::VectorXd& p, const Eigen::VectorXd& q) {
+  Eigen::VectorXd result = Eigen::VectorXd::Zero(p.size() + q.size() - 1);
+  for (Eigen::Index i = 0; i < p.size(); ++i) result.segment(i, q.size()) += p[i] * q;
+  return result;
+}
+
+/// z^n as a polynomial of the degree n.
+Eigen::VectorXd power_of_z(int n) { return Eigen::VectorXd::Unit(n + 1, n); }
+
+/// z^k δ(z) of BDF(k) with δ(z) = Σ (1 − 1/z)^j/j, j = 1 … k, and then δ² + s δ + W = 0.
+Eigen::VectorXd bdf_polynomial(int k, const Mode& mode) {
+  const Eigen::Vector2d dz(-1, 1);
+  Eigen::VectorXd D = Eigen::VectorXd::Zero(k + 1), power = Eigen::VectorXd::Ones(1);
+  for (int j = 1; j <= k; ++j) {
+    power = product(power, dz);
+    D += product(power, power_of_z(k - j)) / j;
+  }
+  return product(D, D) + mode.s * product(D, power_of_z(k)) + mode.W * power_of_z(2 * k);
+}
+
+double largest_root(const Eigen::VectorXd& polynomial) {
+  const Eigen::Index n = polynomial.size() - 1;
+  Eigen::MatrixXd companion = Eigen::MatrixXd::Zero(n, n);
+  companion.diagonal(-1).setOnes();
+  companion.col(n - 1) = -polynomial.head(n) / polynomial[n];
+  return solver::eigenvalues(companion).cwiseAbs().maxCoeff();
+}
+
+double radius(const solver::Method& method, const Mode& mode) {
+  if (method.name.starts_with("bdf") && method.order > 2) return largest_root(bdf_polynomial(method.order, mode));
+  const bool divides = !method.implicit(), stable = method.order > 2 || method.name == "tr-bdf2";
+  if (divides || stable) return 1;
+  return largest_root(characteristic_polynomial(method.name, mode));
+}
+
+bool has_loop(const solver::Method& method) {
+  return method.name == "implicit-euler" || method.name == "bdf2" || method.name == "midpoint";
+}
+
+}  // namespace
+
+LinearPrediction predict(const solver::Method& method, double stiffness, double stiffness_to_damping) {
+  LinearPrediction prediction{0, 0};
+  double nu = 8 * stiffness;
+  for (int k = 0; k < octaves; ++k, nu /= 2)
+    for (const double part : parts) {
+      const Mode mode{nu, part * nu, nu / stiffness_to_damping};
+      prediction.radius = std::max(prediction.radius, radius(method, mode));
+      if (has_loop(method)) prediction.loop = std::max(prediction.loop, loop_contraction(method.name, mode));
+    }
+  return prediction;
+}
+
+}  // namespace drape::reference
