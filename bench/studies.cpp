@@ -27,6 +27,9 @@ std::span<const Study> studies() {
        figure_4_3},
       {"scaling", "time of a step and of a CG iteration from 20 x 20 to a million particles, beside the machine's bandwidth",
        nullptr, scaling},
+      {"work-precision",
+       "time against error of all methods and solvers, and of SUNDIALS at its best: who wins, and by what ratio", nullptr,
+       work_precision},
   };
   return table;
 }

@@ -44,5 +44,6 @@ std::vector<TableJob> figure_3_2(bool quick);
 std::vector<TableJob> figure_3_3(bool quick);
 std::vector<TableJob> figure_4_3(bool quick);
 std::vector<TableJob> scaling(bool quick);
+std::vector<TableJob> work_precision(bool quick);
 
 }  // namespace drape::bench
