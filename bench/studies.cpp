@@ -29,7 +29,7 @@ std::span<const Study> studies() {
        nullptr, scaling},
       {"work-precision",
        "time against error of all methods and solvers, and of SUNDIALS at its best: who wins, and by what ratio", nullptr,
-       work_precision},
+       work_precision, plot_work_precision},
   };
   return table;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <span>
 #include <string>
@@ -25,6 +26,7 @@ struct Study {
   std::string_view description;
   std::vector<Group> (*groups)(bool quick) = nullptr;     ///< runs, compared with references
   std::vector<TableJob> (*tables)(bool quick) = nullptr;  ///< or tables
+  void (*plots)(std::span<const results::Table> tables, const std::filesystem::path& out) = nullptr;  ///< of them, beside out
 };
 
 /// All studies; the first is the main job.
@@ -45,5 +47,6 @@ std::vector<TableJob> figure_3_3(bool quick);
 std::vector<TableJob> figure_4_3(bool quick);
 std::vector<TableJob> scaling(bool quick);
 std::vector<TableJob> work_precision(bool quick);
+void plot_work_precision(std::span<const results::Table> tables, const std::filesystem::path& out);
 
 }  // namespace drape::bench

@@ -7,12 +7,11 @@ namespace drape::reference {
 std::span<const NewtonSolve> newton_solves() {
   using Matrix = NewtonSolve::Matrix;
   static constexpr NewtonSolve table[] = {
-      {"klu", "KLU on positions and velocities, ordered by COLAMD (SUNDIALS' default)", Matrix::klu},
-      {"klu-amd", "the same ordered by AMD", Matrix::klu, true},
+      {"klu", "KLU on positions and velocities, together", Matrix::klu},
       {"newton", "CHOLMOD on the velocities, with the convex part of the Jacobian", Matrix::newton},
       {"constant", "CHOLMOD on the velocities, with the constant matrix", Matrix::constant},
-      {"newton-gmres", "GMRES preconditioned by the former", Matrix::newton, false, true},
-      {"constant-gmres", "GMRES preconditioned by the constant matrix", Matrix::constant, false, true},
+      {"newton-gmres", "GMRES preconditioned by the former", Matrix::newton, true},
+      {"constant-gmres", "GMRES preconditioned by the constant matrix", Matrix::constant, true},
   };
   return table;
 }

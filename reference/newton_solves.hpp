@@ -14,8 +14,7 @@ struct NewtonSolve {
     newton,    ///< that of velocities alone, with the convex part of the exact Jacobian, factored by CHOLMOD
     constant,  ///< that of velocities alone, M − γ² K − γ D, factored once for each γ
   } matrix;
-  bool minimum_degree = false;  ///< KLU orders by AMD instead of COLAMD
-  bool gmres = false;           ///< the factor only preconditions GMRES on the exact system
+  bool gmres = false;  ///< the factor only preconditions GMRES on the exact system
 
   bool reduced() const { return matrix != Matrix::klu; }
 };

@@ -11,15 +11,12 @@
 namespace drape::reference::sundials_tools {
 namespace {
 
-constexpr int amd = 0;                ///< KLU's number for it
 constexpr int krylov_dimension = 10;  ///< of GMRES
 
 SUNLinearSolver make_linear_solver(const NewtonSolve& newton, N_Vector y, SUNMatrix matrix, SUNContext context) {
   if (newton.gmres) return SUNLinSol_SPGMR(y, SUN_PREC_LEFT, krylov_dimension, context);
   if (newton.reduced()) return make_preconditioner_only(context);
-  SUNLinearSolver klu = SUNLinSol_KLU(y, matrix, context);
-  if (newton.minimum_degree) SUNLinSol_KLUSetOrdering(klu, amd);
-  return klu;
+  return SUNLinSol_KLU(y, matrix, context);
 }
 
 }  // namespace

@@ -18,23 +18,31 @@ constexpr int held_out[] = {7, 9, 10};
 struct Entry {
   std::string name, scene;
   std::vector<model::Override> overrides;
+  Search search = Search::usual;
 };
 
 std::vector<Entry> entries(bool quick) {
   std::vector<Entry> all;
-  for (const char* scene : {"hung-corners", "hung-edge"})
+  const std::string hardest = "hung-corners";
+  for (const std::string scene : {"hung-corners", "hung-edge"})
     for (const char* d : {"50", "5", "0.5"})
-      all.push_back({fmt::format("{} d={}", scene, d), scene, {{"material.damping", d}}});
+      all.push_back({fmt::format("{} d={}", scene, d),
+                     scene,
+                     {{"material.damping", d}},
+                     scene == hardest ? Search::full : Search::usual});
   all.push_back(
       {"projected", "hung-corners", {{"material.damping_form", "projected"}, {"material.bend", "0.01"}, {"end.time", "0.3"}}});
-  all.push_back({"pulled", "pulled", {}});
+  all.push_back({"pulled", "pulled", {{"material.damping_form", "projected"}}});
   all.push_back({"wind", "wind", {{"end.time", "0.5"}}});
   all.push_back({"tablecloth", "tablecloth", {{"end.time", "0.3"}}});
   for (const char* n : {"20", "100"}) all.push_back({fmt::format("peer-edge n={}", n), "peer-edge", {{"grid.n", n}}});
+  if (const char* only = std::getenv("WP_ONLY"))
+    std::erase_if(all, [&](const Entry& e) { return e.name.find(only) == std::string::npos; });
   if (!quick) return all;
   std::vector<Entry> few{all[1], all[10]};
   few[0].overrides.insert(few[0].overrides.end(), {{"grid.n", "6"}, {"end.time", "0.2"}});
   few[1].overrides = {{"grid.n", "8"}, {"end.time", "0.1"}};
+  for (Entry& entry : few) entry.search = Search::quick;
   return few;
 }
 
@@ -93,9 +101,8 @@ results::Table try_scene(const Entry& entry, bool quick, All& all, Progress& pro
   progress.show("reference of " + entry.name);
   SceneTrials& scene = all.emplace_back(SceneTrials{problem(entry), {}, {}});
   Problem& problem = scene.problem;
-  const bool large = problem.scene.sheet.grid.particles() > 2000;
   entry.scene == "peer-edge" ? find_explicit_truth(problem) : find_truth(problem);
-  scene.families = families(problem.scene, !quick && !large);
+  scene.families = families(problem.scene, entry.search);
   scene.trials = try_all(problem, scene.families, effort, progress);
   progress.show("timing " + entry.name);
   time_fronts(problem, scene.trials, effort);
@@ -110,7 +117,7 @@ std::vector<TableJob> work_precision(bool quick) {
   const auto list = entries(quick);
   all->reserve(list.size());  // trials point into what is in it
   for (const Entry& entry : list)
-    jobs.push_back({static_cast<int>(families(problem(entry).scene, !quick).size()),
+    jobs.push_back({static_cast<int>(families(problem(entry).scene, entry.search).size()),
                     [=](Progress& progress) { return try_scene(entry, quick, *all, progress); }});
   for (auto* table : {winners_table, defaults_table, bars_table, peers_table})
     jobs.push_back({0, [=](Progress&) { return table(*all); }});

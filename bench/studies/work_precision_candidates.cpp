@@ -67,6 +67,9 @@ std::vector<double> tolerances(int finest) {
   return all;
 }
 
+/// Into how many parts a tenth of the end is divided at most.
+int finest_parts(Search search) { return search == Search::quick ? 16 : 512; }
+
 Candidate ours(const Cell& cell, double value) {
   return {value, [cell](const model::Cloth& cloth, std::span<const double> times) { return solve_ours(cell, cloth, times); }};
 }
@@ -109,18 +112,18 @@ Family by_fraction(Cell cell, int halvings) {
   return family;
 }
 
-void add_ours(std::vector<Family>& all, const model::Scene& scene, bool thorough) {
-  const int parts = thorough ? 512 : 16;
+void add_ours(std::vector<Family>& all, const model::Scene& scene, Search search) {
+  const int parts = finest_parts(search);
   for (const solver::Method& method : solver::methods()) {
     const std::string name(method.name);
     if (!method.implicit()) {
-      all.push_back(by_fraction(cell(scene, name), thorough ? 10 : 3));
+      all.push_back(by_fraction(cell(scene, name), search == Search::quick ? 3 : 10));
       continue;
     }
-    if (!thorough && name != "bdf2" && name != "midpoint" && name != "sbdf2") continue;
+    if (search == Search::quick && name != "bdf2" && name != "midpoint" && name != "sbdf2") continue;
     all.push_back(by_steps(cell(scene, name), "drape", parts));
     all.push_back(by_tolerance(cell(scene, name)));
-    if (!thorough) continue;
+    if (search != Search::full) continue;
     if (method.nonlinear())
       for (const solver::StageKind& stage : solver::stage_kinds().subspan(1))
         all.push_back(by_steps(cell(scene, fmt::format("{}/{}", name, stage.name)), "drape", parts));
@@ -130,13 +133,19 @@ void add_ours(std::vector<Family>& all, const model::Scene& scene, bool thorough
   }
 }
 
+std::vector<int> loop_digits(Search search) {
+  if (search == Search::quick) return {3};
+  if (search == Search::usual) return {2, 4};
+  return {1, 2, 3, 4, 5, 6};
+}
+
 /// The fixed-point loop with IC(0)   [Etzmuß 2002, 3.4].
-void add_thesis(std::vector<Family>& all, const model::Scene& scene, bool thorough) {
+void add_thesis(std::vector<Family>& all, const model::Scene& scene, Search search) {
   for (const char* method : {"implicit-euler", "bdf2", "midpoint"})
-    for (int digits = thorough ? 1 : 3; digits <= (thorough ? 6 : 3); ++digits) {
+    for (const int digits : loop_digits(search)) {
       solver::Options options = solver::thesis_options();
       options.loop_tolerance = std::pow(10.0, -digits);
-      Family family = by_steps(cell(scene, fmt::format("{}/fixed-point/ic0", method), options), "thesis", thorough ? 512 : 16);
+      Family family = by_steps(cell(scene, fmt::format("{}/fixed-point/ic0", method), options), "thesis", finest_parts(search));
       family.name += fmt::format(" to {:.0e}", options.loop_tolerance);
       all.push_back(std::move(family));
     }
@@ -155,23 +164,24 @@ Family peer(const std::string& package, const reference::NewtonSolve& newton, in
   return family;
 }
 
-/// Orders worth a try: of the multistep methods the A-stable one and all, of the Runge-Kutta methods each.
+/// Orders worth a try: of the multistep methods the A-stable one and all, of the Runge-Kutta methods a low and the highest.
 std::vector<int> orders(const std::string& package) {
-  if (package == "arkode-esdirk") return {2, 3, 4, 5};
-  if (package == "arkode-imex") return {3, 4, 5};
+  if (package == "arkode-esdirk") return {3, 5};
+  if (package == "arkode-imex") return {3, 5};
   return {2, 5};
 }
 
-void add_peers(std::vector<Family>& all, const model::Scene& scene, bool thorough) {
+void add_peers(std::vector<Family>& all, const model::Scene& scene, Search search) {
   if (!scene.obstacles.empty()) return;  // they have no contacts
   for (const reference::Family& package : reference::families()) {
     const std::string name(package.name);
     for (const reference::NewtonSolve& newton : reference::newton_solves()) {
       const bool constant = newton.matrix == reference::NewtonSolve::Matrix::constant && !newton.gmres;
       if (name == "arkode-imex" && newton.reduced() && !constant) continue;  // that one is exact
-      if (!thorough && newton.reduced()) continue;
+      if (search == Search::quick && newton.reduced()) continue;
       for (const int order : orders(name))
-        if (thorough || order == 5) all.push_back(peer(name, newton, order, scene, thorough ? 9 : 4));
+        if (search == Search::full || order == 5)
+          all.push_back(peer(name, newton, order, scene, search == Search::quick ? 4 : 9));
     }
   }
 }
@@ -188,11 +198,11 @@ std::vector<double> divided_steps(double end, int parts) {
   }
 }
 
-std::vector<Family> families(const model::Scene& scene, bool thorough) {
+std::vector<Family> families(const model::Scene& scene, Search search) {
   std::vector<Family> all;
-  add_ours(all, scene, thorough);
-  add_thesis(all, scene, thorough);
-  add_peers(all, scene, thorough);
+  add_ours(all, scene, search);
+  add_thesis(all, scene, search);
+  add_peers(all, scene, search);
   return all;
 }
 

@@ -29,9 +29,15 @@ struct Family {
   std::vector<Candidate> candidates;
 };
 
-/// Everything that is compared on a scene. `thorough`: with all stage and linear solvers and all configurations of SUNDIALS;
-/// else a few of each.
-std::vector<Family> families(const model::Scene& scene, bool thorough);
+/// How much is tried.
+enum class Search {
+  quick,  ///< a few methods and configurations, for tests
+  usual,  ///< all methods with automatic stages and linear solvers, SUNDIALS' packages with all linear solvers
+  full,   ///< also all stage and linear solvers, and all orders of SUNDIALS' methods
+};
+
+/// Everything that is compared on a scene.
+std::vector<Family> families(const model::Scene& scene, Search search);
 
 /// Steps that divide a tenth of the end into 1 to so many parts, each about √2 times the next.
 std::vector<double> divided_steps(double end, int parts);

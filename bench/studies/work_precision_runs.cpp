@@ -20,6 +20,9 @@ using Clock = std::chrono::steady_clock;
 /// Below so many uncertainties of the truth an error says nothing.
 constexpr double too_exact = 1;
 
+/// A family that is so many times slower than another of the same code twice in a row will not win.
+constexpr double hopeless = 4;
+
 /// A first run may have been so much slower than others by chance.
 constexpr double slack = 1.6;
 
@@ -75,11 +78,22 @@ Trial attempt(const Problem& problem, const Family& family, const Candidate& can
   return trial;
 }
 
+/// Whether another trial of the same code was as exact in a small part of the time.
+bool outdone(const Trial& trial, const std::vector<Trial>& trials) {
+  return !trial.measured.times.empty() && std::ranges::any_of(trials, [&](const Trial& other) {
+    return other.family->code == trial.family->code && !other.measured.times.empty() &&
+           other.measured.error <= trial.measured.error && hopeless * other.measured.times[0] < trial.measured.times[0];
+  });
+}
+
 void add_family(const Problem& problem, const Family& family, double cap, std::vector<Trial>& trials) {
+  int times_outdone = 0;
   for (const Candidate& candidate : family.candidates) {
     const auto begin = Clock::now();
-    const Trial& trial = trials.emplace_back(attempt(problem, family, candidate, cap));
-    if (seconds_since(begin) > 0.7 * cap || trial.measured.error < too_exact * problem.uncertainty) return;
+    const Trial trial = attempt(problem, family, candidate, cap);
+    times_outdone = outdone(trial, trials) ? times_outdone + 1 : 0;
+    trials.push_back(trial);
+    if (seconds_since(begin) > 0.7 * cap || trial.measured.error < too_exact * problem.uncertainty || times_outdone > 1) return;
   }
 }
 
