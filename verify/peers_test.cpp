@@ -79,6 +79,20 @@ TEST_P(Peer, UsesTheLinearSolverItIsToldTo) {
   EXPECT_GT(work->count(prefix + "/factorisations"), 0);
 }
 
+TEST_P(Peer, IsNotSlowedDownByAFactorThatIsNearlyExact) {
+  const auto& newton = reference::newton_solve(GetParam().newton);
+  if (newton.matrix == NewtonSolve::Matrix::constant && GetParam().family != "arkode-imex") return;
+  const model::Scene scene = sheet("hung-corners");
+  const auto evaluations = [&](const NewtonSolve& by) {
+    solver::Work* work = nullptr;
+    solve(scene, GetParam().family, {.rtol = 1e-6, .size = model::size(scene), .newton = &by}, &work);
+    const std::string prefix = GetParam().family.substr(0, GetParam().family.find('-'));
+    return work->count(prefix + "/steps") + work->count(prefix + "/factorisations");
+  };
+  EXPECT_LE(static_cast<double>(evaluations(newton)),
+            1.3 * static_cast<double>(evaluations(reference::newton_solves().front())));
+}
+
 TEST(Peers, TakeMoreStepsWithALowerOrder) {
   const model::Scene scene = sheet("hung-corners");
   const auto steps = [&](const std::string& family, int order) {
