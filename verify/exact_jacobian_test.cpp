@@ -21,7 +21,7 @@ Jacobians jacobians(const model::Cloth& cloth, const solver::State& y) {
 }
 
 TEST(ExactJacobian, KeepsItsPatternAndNothingElse) {
-  for (const char* name : {"pulled", "wind", "hung-corners"}) {
+  for (const char* name : {"pulled", "bending", "hung-corners"}) {
     const model::Scene scene = model::load_scene(name, std::vector<model::Override>{{"grid.n", "5"}});
     const model::Cloth cloth = model::compile(scene);
     solver::State moved = cloth.start;

@@ -136,10 +136,11 @@ void time_fronts(const Problem& problem, std::vector<Trial>& trials, const Effor
     for (const std::size_t k : results::near_front(measured, slack)) chosen.insert(contender.members[k]);
   }
   std::vector<Prepare> runs;
-  const std::vector<double> end{problem.times.back()};
   for (const std::size_t k : chosen)
-    runs.push_back([&problem, &end, &solve = trials[k].candidate->solve] {
-      return [&end, &solve, cloth = std::make_shared<model::Cloth>(model::compile(problem.scene))] { solve(*cloth, end); };
+    runs.push_back([&problem, &solve = trials[k].candidate->solve] {
+      return [&problem, &solve, cloth = std::make_shared<model::Cloth>(model::compile(problem.scene))] {
+        solve(*cloth, problem.times);
+      };
     });
   const auto times = time_runs(runs, effort.repetitions, [] {});
   for (std::size_t place = 0; const std::size_t k : chosen) {
