@@ -28,14 +28,19 @@ constexpr double slack = 1.6;
 
 double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
-/// Lets evaluations of the force fail when the time is up.
+/// Lets evaluations of the force and its derivatives fail when the time is up.
 void limit(solver::SplitOde& ode, double seconds) {
   const auto deadline = Clock::now() + std::chrono::duration<double>(seconds);
-  for (auto* force : {&ode.force, &ode.explicit_force})
-    *force = [=, inner = *force](double t, const solver::Vectors& x, const solver::Vectors& v, solver::Vectors& f) {
+  const auto limited = [=](auto inner) {
+    return [=](auto&&... arguments) {
       if (Clock::now() > deadline) throw std::runtime_error(fmt::format("longer than {:g} s", seconds));
-      inner(t, x, v, f);
+      inner(arguments...);
     };
+  };
+  ode.force = limited(ode.force);
+  ode.explicit_force = limited(ode.explicit_force);
+  ode.jacobian = limited(ode.jacobian);
+  ode.newton_matrix = limited(ode.newton_matrix);
 }
 
 double largest_error(const Problem& problem, const std::vector<solver::Vectors>& positions) {

@@ -32,7 +32,7 @@ struct Trial {
 
 /// How long a study may take.
 struct Effort {
-  double cap = 1.5;     ///< wall time of a run before it is given up [s]
+  double cap = 1;       ///< wall time of a run before it is given up [s]
   int repetitions = 5;  ///< of those near a front
 };
 
