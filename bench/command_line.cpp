@@ -161,7 +161,8 @@ void run_study(const Study& chosen, const Arguments& a) {
   const std::string name(chosen.name);
   if (chosen.groups) return sweep_and_print(chosen.groups(a.quick), a, name);
   const std::filesystem::path out = out_file(a, name);
-  print_tables(compute(chosen.tables(a.quick), out, a.command_line), a.format);
+  const auto tables = compute(chosen.tables(a.quick), out, a.command_line);
+  print_tables(tables, a.format);
   say_where(out, a.format);
   if (chosen.plot.empty()) return;
   const std::string said = plot(chosen.plot, out);

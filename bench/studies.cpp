@@ -29,6 +29,9 @@ std::span<const Study> studies() {
        nullptr, scaling},
       {"stability", "what becomes of every method over stiffness and damping, its largest usable step, and stress cases",
        nullptr, stability, "plot_stability.py"},
+      {"work-precision",
+       "time against error of all methods and solvers, and of SUNDIALS at its best: who wins, and by what ratio", nullptr,
+       work_precision, "plot_work_precision.py"},
   };
   return table;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <span>
 #include <string>
@@ -46,5 +47,6 @@ std::vector<TableJob> figure_3_3(bool quick);
 std::vector<TableJob> figure_4_3(bool quick);
 std::vector<TableJob> scaling(bool quick);
 std::vector<TableJob> stability(bool quick);
+std::vector<TableJob> work_precision(bool quick);
 
 }  // namespace drape::bench

@@ -2,7 +2,6 @@
 
 #include <benchmark/benchmark.h>
 
-#include <optional>
 #include <string>
 
 namespace drape::bench {
@@ -25,13 +24,13 @@ class Collector : public benchmark::BenchmarkReporter {
   std::vector<std::vector<double>>& times_;
 };
 
-void solve(benchmark::State& state, const Cell& cell) {
-  const model::Cloth cloth = model::compile(cell.scene);
-  std::optional<solver::Integrator> integrator;
-  for (auto _ : state) {
-    integrator.emplace(cloth.ode, *cell.method, cell.options, cloth.start);
-    integrate(*integrator, cell.scene.end, cell.step);
-  }
+Prepare prepared(const Cell& cell) {
+  return [&cell] {
+    return [&cell, cloth = model::compile(cell.scene)] {
+      solver::Integrator integrator(cloth.ode, *cell.method, cell.options, cloth.start);
+      integrate(integrator, cell.scene.end, cell.step);
+    };
+  };
 }
 
 void interleave_repetitions() {
@@ -47,14 +46,16 @@ void interleave_repetitions() {
 
 }  // namespace
 
-std::vector<std::vector<double>> time_group(const Group& group, int repetitions, const std::function<void()>& done) {
+std::vector<std::vector<double>> time_runs(const std::vector<Prepare>& runs, int repetitions,
+                                           const std::function<void()>& done) {
   interleave_repetitions();
-  std::vector<std::vector<double>> times(group.size());
+  std::vector<std::vector<double>> times(runs.size());
   benchmark::ClearRegisteredBenchmarks();
-  for (std::size_t k = 0; k < group.size(); ++k)
+  for (std::size_t k = 0; k < runs.size(); ++k)
     benchmark::RegisterBenchmark(std::to_string(k).c_str(),
-                                 [&cell = group[k], &done](benchmark::State& state) {
-                                   solve(state, cell);
+                                 [&prepare = runs[k], &done](benchmark::State& state) {
+                                   const std::function<void()> run = prepare();
+                                   for (auto _ : state) run();
                                    done();
                                  })
         ->Iterations(1)
@@ -63,6 +64,12 @@ std::vector<std::vector<double>> time_group(const Group& group, int repetitions,
   Collector collector(times);
   benchmark::RunSpecifiedBenchmarks(&collector);
   return times;
+}
+
+std::vector<std::vector<double>> time_group(const Group& group, int repetitions, const std::function<void()>& done) {
+  std::vector<Prepare> runs;
+  for (const Cell& cell : group) runs.push_back(prepared(cell));
+  return time_runs(runs, repetitions, done);
 }
 
 }  // namespace drape::bench

@@ -7,8 +7,15 @@
 
 namespace drape::bench {
 
-/// Wall times [ms] of the solver for every cell of a group: `repetitions` each, interleaved in random order by Google
-/// Benchmark. Compiling the scene is outside, building the matrix and all steps are inside. `done` is called after each.
+/// Prepares a run outside of what is timed, and returns what is timed.
+using Prepare = std::function<std::function<void()>()>;
+
+/// Wall times [ms] of runs: `repetitions` each, interleaved in random order by Google Benchmark. `done` is called after each.
+std::vector<std::vector<double>> time_runs(const std::vector<Prepare>& runs, int repetitions,
+                                           const std::function<void()>& done);
+
+/// Wall times [ms] of the solver for every cell of a group: as time_runs() has them. Compiling the scene is outside,
+/// building the matrix and all steps are inside.
 std::vector<std::vector<double>> time_group(const Group& group, int repetitions, const std::function<void()>& done);
 
 }  // namespace drape::bench

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "model/exact_jacobian.hpp"
 #include "model/grid_sweep.hpp"
 #include "model/newton_matrix.hpp"
 #include "model/normals.hpp"
@@ -23,7 +24,7 @@ class Forces {
 
   void force(double t, const Vectors& x, const Vectors& v, Vectors& f, bool whole);
   double energy(const Vectors& x) const;
-  void jacobian(double t, const Vectors& x, const Vectors& v, SparseMatrix& df_dx, SparseMatrix& df_dv);
+  void jacobian(double t, const Vectors& x, const Vectors& v, ExactJacobian& matrix, SparseMatrix& df_dx, SparseMatrix& df_dv);
   void newton_matrix(double t, const Vectors& x, const Vectors& v, double gamma, NewtonMatrix& matrix, SparseMatrix& J);
   SparseMatrix scalar_matrix(std::function<void(std::vector<Eigen::Triplet<double>>&)> Term::*part) const;
 
@@ -96,20 +97,11 @@ double Forces::energy(const Vectors& x) const {
   return energy;
 }
 
-void Forces::jacobian(double t, const Vectors& x, const Vectors& v, SparseMatrix& df_dx, SparseMatrix& df_dv) {
+void Forces::jacobian(double t, const Vectors& x, const Vectors& v, ExactJacobian& matrix, SparseMatrix& df_dx,
+                      SparseMatrix& df_dv) {
   ++jacobians_;
-  std::vector<Eigen::Triplet<double>> dx, dv;
-  const auto adder = [](std::vector<Eigen::Triplet<double>>& triplets) -> JacobianEntries::Add {
-    return [&triplets](int i, int j, const Eigen::Matrix3d& block) {
-      for (int a = 0; a < 3; ++a)
-        for (int b = 0; b < 3; ++b) triplets.emplace_back(3 * i + a, 3 * j + b, block(a, b));
-    };
-  };
-  visit(configuration(t, x, v), {Curvature::exact, adder(dx), adder(dv)});
-  for (const auto& [matrix, triplets] : {std::pair{&df_dx, &dx}, {&df_dv, &dv}}) {
-    matrix->resize(x.size(), x.size());
-    matrix->setFromTriplets(triplets->begin(), triplets->end());
-  }
+  const Configuration c = configuration(t, x, v);
+  matrix.assemble([&](const JacobianEntries& entries) { visit(c, entries); }, df_dx, df_dv);
 }
 
 void Forces::visit(const Configuration& c, const JacobianEntries& entries) const {
@@ -181,8 +173,9 @@ Cloth compile(const Scene& scene) {
   ode.force = [forces](double t, const Vectors& x, const Vectors& v, Vectors& f) { forces->force(t, x, v, f, true); };
   ode.explicit_force = [forces](double t, const Vectors& x, const Vectors& v, Vectors& f) { forces->force(t, x, v, f, false); };
   ode.potential_energy = [forces](double, const Vectors& x) { return forces->energy(x); };
-  ode.jacobian = [forces](double t, const Vectors& x, const Vectors& v, SparseMatrix& df_dx, SparseMatrix& df_dv) {
-    forces->jacobian(t, x, v, df_dx, df_dv);
+  ode.jacobian = [forces, exact = ExactJacobian(3 * ode.particles())](double t, const Vectors& x, const Vectors& v,
+                                                                      SparseMatrix& df_dx, SparseMatrix& df_dv) mutable {
+    forces->jacobian(t, x, v, exact, df_dx, df_dv);
   };
   ode.newton_matrix = [forces, lean = NewtonMatrix(Curvature::lean, ode.mass, ode.pins),
                        convex = NewtonMatrix(Curvature::convex, ode.mass, ode.pins)](

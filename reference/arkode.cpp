@@ -28,7 +28,7 @@ class Arkode {
   void count_work(solver::Work& work) const {
     add_counts({{ARKStepGetNumSteps, "arkode/steps", "steps of ARKODE"},
                 {ARKStepGetNumJacEvals, "arkode/jacobians", "Jacobians evaluated by ARKODE"},
-                {ARKStepGetNumLinSolvSetups, "arkode/factorisations", "factorisations of the sparse Newton matrix by KLU"}},
+                {ARKStepGetNumLinSolvSetups, "arkode/factorisations", "factorisations of the Newton matrix"}},
                memory_.get(), work);
   }
 
@@ -51,9 +51,9 @@ void* create(Split split, double t0, Session& session) {
 }
 
 Arkode::Arkode(const FirstOrderOde& ode, Split split, solver::Work& work, double t0, double end, const SolveOptions& options)
-    : session_("ARKODE", "arkode", ode.size(), work), problem_{ode, session_}, memory_(nullptr, [](void* memory) {
-        ARKStepFree(&memory);
-      }) {
+    : session_("ARKODE", "arkode", ode.size(), work, *options.newton),
+      problem_{ode, session_},
+      memory_(nullptr, [](void* memory) { ARKStepFree(&memory); }) {
   const auto atol = session_.new_vector();
   set_absolute_tolerances(atol.get(), end - t0, options);
   values(session_.y()) = ode.initial();
@@ -64,12 +64,18 @@ Arkode::Arkode(const FirstOrderOde& ode, Split split, solver::Work& work, double
   require(ARKStepSetUserData(arkode, &problem_));
   require(ARKStepSVtolerances(arkode, options.rtol, atol.get()));
   require(ARKStepSetMaxNumSteps(arkode, options.max_steps));
-  require(ARKStepSetOrder(arkode, 5));
+  require(ARKStepSetOrder(arkode, options.max_order));
   // Without a predictor, or with less iterations, a step needs up to thirty times as many factorisations.
   require(ARKStepSetPredictorMethod(arkode, 1));
   require(ARKStepSetMaxNonlinIters(arkode, 8));
-  require(ARKStepSetLinearSolver(arkode, session_.klu(), session_.matrix()), ARKStepGetLinReturnFlagName);
+  require(ARKStepSetLinearSolver(arkode, session_.linear_solver(), session_.matrix()), ARKStepGetLinReturnFlagName);
   if (split == Split::imex) require(ARKStepSetLinear(arkode, 0));
+  if (options.newton->reduced()) {
+    problem_.reduced.emplace(ode.ode(), options.newton->matrix);
+    require(ARKStepSetPreconditioner(arkode, FirstOrderProblem::prepare, FirstOrderProblem::precondition),
+            ARKStepGetLinReturnFlagName);
+    return;
+  }
   const auto jacobian =
       split == Split::imex ? FirstOrderProblem::jacobian<Part::linear> : FirstOrderProblem::jacobian<Part::whole>;
   require(ARKStepSetJacFn(arkode, jacobian), ARKStepGetLinReturnFlagName);

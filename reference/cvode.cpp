@@ -26,7 +26,7 @@ class Cvode {
     add_counts(
         {{CVodeGetNumSteps, "cvode/steps", "steps of CVODE"},
          {CVodeGetNumJacEvals, "cvode/jacobians", "Jacobians evaluated by CVODE"},
-         {CVodeGetNumLinSolvSetups, "cvode/factorisations", "factorisations of the sparse Newton matrix by KLU"},
+         {CVodeGetNumLinSolvSetups, "cvode/factorisations", "factorisations of the Newton matrix"},
          {CVodeGetNumStabLimOrderReds, "cvode/order_reductions", "reductions of the order by stability limit detection"}},
         memory_.get(), work);
   }
@@ -44,7 +44,7 @@ class Cvode {
 };
 
 Cvode::Cvode(const FirstOrderOde& ode, solver::Work& work, double t0, double end, const SolveOptions& options)
-    : session_("CVODE", "cvode", ode.size(), work),
+    : session_("CVODE", "cvode", ode.size(), work, *options.newton),
       problem_{ode, session_},
       memory_(require_created(CVodeCreate(CV_BDF, session_.context())), [](void* memory) { CVodeFree(&memory); }) {
   const auto atol = session_.new_vector();
@@ -59,8 +59,15 @@ Cvode::Cvode(const FirstOrderOde& ode, solver::Work& work, double t0, double end
   require(CVodeSetMaxNumSteps(cvode, options.max_steps));
   require(CVodeSetStabLimDet(cvode, SUNTRUE));  // orders 3 to 5 are not A-stable
   require(CVodeSetStopTime(cvode, end));
-  require(CVodeSetLinearSolver(cvode, session_.klu(), session_.matrix()), CVodeGetLinReturnFlagName);
-  require(CVodeSetJacFn(cvode, FirstOrderProblem::jacobian<Part::whole>), CVodeGetLinReturnFlagName);
+  require(CVodeSetMaxOrd(cvode, options.max_order));
+  require(CVodeSetLinearSolver(cvode, session_.linear_solver(), session_.matrix()), CVodeGetLinReturnFlagName);
+  if (options.newton->reduced()) {
+    problem_.reduced.emplace(ode.ode(), options.newton->matrix);
+    require(CVodeSetPreconditioner(cvode, FirstOrderProblem::prepare, FirstOrderProblem::precondition),
+            CVodeGetLinReturnFlagName);
+  } else {
+    require(CVodeSetJacFn(cvode, FirstOrderProblem::jacobian<Part::whole>), CVodeGetLinReturnFlagName);
+  }
 }
 
 }  // namespace

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <stdexcept>
+
+#include "reference/sparse_rows.hpp"
 
 namespace drape::reference {
 
@@ -26,7 +29,12 @@ SparseMatrix threefold(const SparseMatrix& scalar) {
 }  // namespace
 
 FirstOrderOde::FirstOrderOde(const solver::SplitOde& ode, const State& start, double t0)
-    : ode_(ode), coordinates_(ode), start_(prescribed_start(ode, start)), t0_(t0), inverse_mass_(size() / 2) {
+    : ode_(ode),
+      coordinates_(ode),
+      start_(prescribed_start(ode, start)),
+      t0_(t0),
+      inverse_mass_(size() / 2),
+      scratch_{.state = start_, .force = Vectors::Zero(ode.particles(), 3)} {
   for (Eigen::Index r = 0; r < inverse_mass_.size(); ++r) inverse_mass_[r] = 1 / ode.mass[coordinates_.free[r] / 3];
 }
 
@@ -40,10 +48,12 @@ Eigen::VectorXd FirstOrderOde::initial() const {
   return y;
 }
 
-State FirstOrderOde::state(double t, const Eigen::Ref<const Eigen::VectorXd>& y) const {
+State FirstOrderOde::state(double t, const Eigen::Ref<const Eigen::VectorXd>& y) const { return put_in(t, y); }
+
+const State& FirstOrderOde::put_in(double t, const Eigen::Ref<const Eigen::VectorXd>& y) const {
   const int n = size() / 2;
-  State s = start_;
-  for (int i : coordinates_.pinned) s.x.data()[i] += start_.v.data()[i] * (t - t0_);
+  State& s = scratch_.state;
+  for (int i : coordinates_.pinned) s.x.data()[i] = start_.x.data()[i] + start_.v.data()[i] * (t - t0_);
   for (int r = 0; r < n; ++r) {
     s.x.data()[coordinates_.free[r]] = y[r];
     s.v.data()[coordinates_.free[r]] = y[n + r];
@@ -51,61 +61,71 @@ State FirstOrderOde::state(double t, const Eigen::Ref<const Eigen::VectorXd>& y)
   return s;
 }
 
-Vectors FirstOrderOde::force(double t, const State& s, Part part) const {
-  if (part == Part::linear) return ode_.stiffness * s.x + ode_.damping * s.v;
-  Vectors f(ode_.particles(), 3);
-  (part == Part::whole ? ode_.force : ode_.explicit_force)(t, s.x, s.v, f);
-  return f;
+Vectors FirstOrderOde::spread(const Eigen::Ref<const Eigen::VectorXd>& free) const {
+  Vectors all = Vectors::Zero(ode_.particles(), 3);
+  for (Eigen::Index r = 0; r < free.size(); ++r) all.data()[coordinates_.free[r]] = free[r];
+  return all;
+}
+
+void FirstOrderOde::gather(const Vectors& all, Eigen::Ref<Eigen::VectorXd> free) const {
+  for (Eigen::Index r = 0; r < free.size(); ++r) free[r] = all.data()[coordinates_.free[r]];
+}
+
+void FirstOrderOde::evaluate(double t, const State& s, Part part, Vectors& f) const {
+  if (part != Part::linear) return (part == Part::whole ? ode_.force : ode_.explicit_force)(t, s.x, s.v, f);
+  f.noalias() = ode_.stiffness * s.x;
+  if (ode_.damping.nonZeros() > 0) f += ode_.damping * s.v;
 }
 
 void FirstOrderOde::derivative(double t, const Eigen::Ref<const Eigen::VectorXd>& y, Eigen::Ref<Eigen::VectorXd> dy,
                                Part part) const {
   const int n = size() / 2;
-  const Vectors f = force(t, state(t, y), part);
+  evaluate(t, put_in(t, y), part, scratch_.force);
   if (part == Part::remainder)
     dy.head(n).setZero();
   else
     dy.head(n) = y.tail(n);
-  for (int r = 0; r < n; ++r) {
-    dy[n + r] = inverse_mass_[r] * f.data()[coordinates_.free[r]];
+  gather(scratch_.force, dy.tail(n));
+  dy.tail(n).array() *= inverse_mass_.array();
+  if (std::isfinite(dy.sum())) return;
+  for (int r = 0; r < n; ++r)
     if (!std::isfinite(dy[n + r]))
       throw std::runtime_error(fmt::format("the force on particle {} is not finite at t = {} s", coordinates_.free[r] / 3, t));
+}
+
+void FirstOrderOde::update_derivatives(double t, const Eigen::Ref<const Eigen::VectorXd>& y, Part part) const {
+  if (part == Part::whole) {
+    const State& s = put_in(t, y);
+    ode_.jacobian(t, s.x, s.v, scratch_.df_dx, scratch_.df_dv);
+  } else {
+    scratch_.df_dx = threefold(ode_.stiffness);
+    scratch_.df_dv = threefold(ode_.damping);
   }
 }
 
-WideSparseMatrix FirstOrderOde::jacobian(double t, const Eigen::Ref<const Eigen::VectorXd>& y, Part part) const {
+template <class Add>
+void FirstOrderOde::for_entries(const Add& add) const {
   const int n = size() / 2;
-  SparseMatrix df_dx, df_dv, identity(3 * ode_.particles(), 3 * ode_.particles());
-  if (part == Part::whole) {
-    const State s = state(t, y);
-    ode_.jacobian(t, s.x, s.v, df_dx, df_dv);
-  } else {
-    df_dx = threefold(ode_.stiffness);
-    df_dv = threefold(ode_.damping);
+  for (int r = 0; r < n; ++r) {
+    add(r, r, 0.0);
+    add(r, n + r, 1.0);
   }
-  identity.setIdentity();
-  df_dv += 0 * identity;  // the diagonal becomes part of the pattern
+  for (int r = 0; r < n; ++r) {
+    const int i = coordinates_.free[r];
+    for (SparseMatrix::InnerIterator entry(scratch_.df_dx, i); entry; ++entry)
+      if (const int c = coordinates_.unknown[entry.col()]; c >= 0) add(n + r, c, inverse_mass_[r] * entry.value());
+    for_row_with_diagonal(scratch_.df_dv, i, [&](int column, double value) {
+      if (const int c = coordinates_.unknown[column]; c >= 0) add(n + r, n + c, inverse_mass_[r] * value);
+    });
+  }
+}
 
-  WideSparseMatrix J(2 * n, 2 * n);
-  J.reserve(2 * n + df_dx.nonZeros() + df_dv.nonZeros());
-  for (int r = 0; r < n; ++r) {
-    J.startVec(r);
-    J.insertBack(r, r) = 0;
-    J.insertBack(r, n + r) = 1;
-  }
-  const auto append_row = [&](int r, const SparseMatrix& block, int first_column) {
-    for (SparseMatrix::InnerIterator entry(block, coordinates_.free[r]); entry; ++entry)
-      if (const int c = coordinates_.unknown[entry.col()]; c >= 0)
-        J.insertBack(n + r, first_column + c) = inverse_mass_[r] * entry.value();
-  };
-  for (int r = 0; r < n; ++r) {
-    J.startVec(n + r);
-    append_row(r, df_dx, 0);
-    append_row(r, df_dv, n);
-  }
-  J.finalize();
-  if (!J.coeffs().allFinite()) throw std::runtime_error(fmt::format("the Jacobian is not finite at t = {} s", t));
-  return J;
+const WideSparseMatrix& FirstOrderOde::jacobian(double t, const Eigen::Ref<const Eigen::VectorXd>& y, Part part) const {
+  update_derivatives(t, y, part);
+  fill(scratch_.jacobian, size(), [&](const auto& add) { for_entries(add); });
+  if (!std::isfinite(scratch_.jacobian.coeffs().sum()))
+    throw std::runtime_error(fmt::format("the Jacobian is not finite at t = {} s", t));
+  return scratch_.jacobian;
 }
 
 }  // namespace drape::reference

@@ -33,16 +33,40 @@ class FirstOrderOde {
 
   /// ∂g/∂y = [0 I; M⁻¹ ∂f/∂x  M⁻¹ ∂f/∂v], 2n × 2n, of the whole or of the linear part. Every diagonal entry is stored, so
   /// that I - γ ∂g/∂y has the same pattern.
-  WideSparseMatrix jacobian(double t, const Eigen::Ref<const Eigen::VectorXd>& y, Part part = Part::whole) const;
+  /// Valid until the next call.
+  const WideSparseMatrix& jacobian(double t, const Eigen::Ref<const Eigen::VectorXd>& y, Part part = Part::whole) const;
+
+  const solver::SplitOde& ode() const { return ode_; }
+
+  /// n numbers as N × 3, zero in the pinned coordinates.
+  solver::Vectors spread(const Eigen::Ref<const Eigen::VectorXd>& free) const;
+
+  /// The free ones of N × 3.
+  void gather(const solver::Vectors& all, Eigen::Ref<Eigen::VectorXd> free) const;
 
  private:
-  solver::Vectors force(double t, const solver::State& s, Part part) const;
+  /// What evaluations would otherwise allocate; it makes them unfit for several threads.
+  struct Scratch {
+    solver::State state;
+    solver::Vectors force;
+    solver::SparseMatrix df_dx = {}, df_dv = {};
+    WideSparseMatrix jacobian = {};
+  };
+
+  const solver::State& put_in(double t, const Eigen::Ref<const Eigen::VectorXd>& y) const;
+  void evaluate(double t, const solver::State& s, Part part, solver::Vectors& f) const;
+  void update_derivatives(double t, const Eigen::Ref<const Eigen::VectorXd>& y, Part part) const;
+
+  /// Hands all entries of ∂g/∂y to add(row, column, value), in the order in which they are stored.
+  template <class Add>
+  void for_entries(const Add& add) const;
 
   const solver::SplitOde& ode_;
   Coordinates coordinates_;
   solver::State start_;  ///< with the prescribed velocities
   double t0_;
   Eigen::VectorXd inverse_mass_;  ///< n, [1/kg]
+  mutable Scratch scratch_;
 };
 
 }  // namespace drape::reference

@@ -3,6 +3,10 @@
 #include <fmt/format.h>
 #include <ida/ida.h>
 
+#include <cmath>
+
+#include "reference/reduced_newton.hpp"
+#include "reference/sparse_rows.hpp"
 #include "reference/sundials.hpp"
 
 namespace drape::reference {
@@ -44,17 +48,27 @@ class ResidualForm {
 
   void residual(double t, const ConstVector& y, const ConstVector& dy, Eigen::Ref<Eigen::VectorXd> r) const;
 
-  /// ∂F/∂y + c ∂F/∂y'.
-  WideSparseMatrix jacobian(double t, double c, const ConstVector& y) const;
+  /// ∂F/∂y + c ∂F/∂y', valid until the next call.
+  const WideSparseMatrix& jacobian(double t, double c, const ConstVector& y);
+
+  /// z with (∂F/∂y + c ∂F/∂y') z ≈ r, where 1/c is what the reduced matrix was prepared for.
+  void solve_reduced(ReducedNewton& newton, double t, const ConstVector& y, const ConstVector& r,
+                     Eigen::Ref<Eigen::VectorXd> z) const;
 
  private:
   Vectors force(double t, const State& s) const;
+
+  /// Hands all entries of the Jacobian to add(row, column, value), in the order in which they are stored.
+  template <class Add>
+  void for_entries(double c, const Add& add) const;
 
   const solver::SplitOde& ode_;
   Coordinates coordinates_;
   State start_;
   double t0_;
   int n_;
+  SparseMatrix df_dx_, df_dv_;  // kept for their memory
+  WideSparseMatrix jacobian_;
 };
 
 Vectors ResidualForm::force(double t, const State& s) const {
@@ -94,49 +108,64 @@ void ResidualForm::residual(double t, const ConstVector& y, const ConstVector& d
   }
 }
 
-WideSparseMatrix ResidualForm::jacobian(double t, double c, const ConstVector& y) const {
-  const State s = state(y);
-  SparseMatrix df_dx, df_dv, identity(n_, n_);
-  ode_.jacobian(t, s.x, s.v, df_dx, df_dv);
-  identity.setIdentity();
-  df_dv += 0 * identity;  // the diagonal becomes part of the pattern
-
-  WideSparseMatrix J(size(), size());
-  J.reserve(3 * size() + df_dx.nonZeros() + df_dv.nonZeros());
-  const auto append_force_row = [&](int row, int i, double sign) {
-    for (SparseMatrix::InnerIterator entry(df_dx, i); entry; ++entry) J.insertBack(row, entry.col()) = sign * entry.value();
-    for (SparseMatrix::InnerIterator entry(df_dv, i); entry; ++entry) {
-      const double inertia = sign < 0 && entry.col() == i ? c * ode_.mass[i / 3] : 0;
-      J.insertBack(row, n_ + entry.col()) = sign * entry.value() + inertia;
-    }
+template <class Add>
+void ResidualForm::for_entries(double c, const Add& add) const {
+  const auto add_force_row = [&](int row, int i, double sign, double inertia) {
+    for (SparseMatrix::InnerIterator entry(df_dx_, i); entry; ++entry)
+      add(row, static_cast<int>(entry.col()), sign * entry.value());
+    for_row_with_diagonal(df_dv_, i, [&](int j, double value) { add(row, n_ + j, sign * value + (j == i ? inertia : 0)); });
   };
   for (int i = 0; i < n_; ++i) {
-    J.startVec(i);
     const bool is_free = coordinates_.unknown[i] >= 0;
-    J.insertBack(i, i) = is_free ? c : 1;
-    if (is_free) J.insertBack(i, n_ + i) = -1;
+    add(i, i, is_free ? c : 1.0);
+    if (is_free) add(i, n_ + i, -1.0);
   }
   for (int i = 0; i < n_; ++i) {
-    J.startVec(n_ + i);
     if (coordinates_.unknown[i] >= 0)
-      append_force_row(n_ + i, i, -1);
+      add_force_row(n_ + i, i, -1, c * ode_.mass[i / 3]);
     else
-      J.insertBack(n_ + i, n_ + i) = 1;
+      add(n_ + i, n_ + i, 1.0);
   }
   for (int row = 2 * n_; row < size(); ++row) {
-    J.startVec(row);
-    append_force_row(row, coordinates_.pinned[static_cast<std::size_t>(row - 2 * n_)], 1);
-    J.insertBack(row, row) = 1;
+    add_force_row(row, coordinates_.pinned[static_cast<std::size_t>(row - 2 * n_)], 1, 0);
+    add(row, row, 1.0);
   }
-  J.finalize();
-  if (!J.coeffs().allFinite()) throw std::runtime_error(fmt::format("the Jacobian is not finite at t = {} s", t));
-  return J;
+}
+
+const WideSparseMatrix& ResidualForm::jacobian(double t, double c, const ConstVector& y) {
+  const State s = state(y);
+  ode_.jacobian(t, s.x, s.v, df_dx_, df_dv_);
+  fill(jacobian_, size(), [&](const auto& add) { for_entries(c, add); });
+  if (!std::isfinite(jacobian_.coeffs().sum()))
+    throw std::runtime_error(fmt::format("the Jacobian is not finite at t = {} s", t));
+  return jacobian_;
+}
+
+void ResidualForm::solve_reduced(ReducedNewton& newton, double t, const ConstVector& y, const ConstVector& r,
+                                 Eigen::Ref<Eigen::VectorXd> z) const {
+  const double gamma = newton.gamma();
+  const State at = state(y);
+  State d = state(r);  // c dx - dv = r_x, c M dv - df = r_v in the free coordinates, dx = r_x, dv = r_v in the pinned ones
+  const Vectors rv = d.v;
+  for (int i : coordinates_.free) {
+    d.x.data()[i] *= gamma;
+    d.v.data()[i] = 0;
+  }
+  const Vectors dv = newton.solve(gamma * (rv + newton.derivative(t, at, d)));
+  d.x += gamma * dv;
+  d.v += dv;
+  z.head(n_) = d.x.reshaped<Eigen::RowMajor>();
+  z.segment(n_, n_) = d.v.reshaped<Eigen::RowMajor>();
+  if (coordinates_.pinned.empty()) return;
+  const Vectors df = newton.derivative(t, at, d);
+  for (std::size_t k = 0; k < coordinates_.pinned.size(); ++k)
+    z[2 * n_ + Eigen::Index(k)] = r[2 * n_ + Eigen::Index(k)] - df.data()[coordinates_.pinned[k]];
 }
 
 /// One integration from t0 to the end. IDA keeps the address of this object.
 class Ida {
  public:
-  Ida(const ResidualForm& form, solver::Work& work, double t0, double end, const SolveOptions& options);
+  Ida(ResidualForm& form, const solver::SplitOde& ode, double t0, double end, const SolveOptions& options);
 
   /// y at time t, which must not be before the last one asked for.
   Eigen::VectorXd advance(double t) {
@@ -150,7 +179,7 @@ class Ida {
   void count_work(solver::Work& work) const {
     add_counts({{IDAGetNumSteps, "ida/steps", "steps of IDA"},
                 {IDAGetNumJacEvals, "ida/jacobians", "Jacobians evaluated by IDA"},
-                {IDAGetNumLinSolvSetups, "ida/factorisations", "factorisations of the sparse Newton matrix by KLU"}},
+                {IDAGetNumLinSolvSetups, "ida/factorisations", "factorisations of the Newton matrix"}},
                memory_.get(), work);
   }
 
@@ -170,16 +199,25 @@ class Ida {
     auto& ida = *static_cast<Ida*>(self);
     return ida.session_.guarded([&] { ida.session_.copy(ida.form_.jacobian(t, c, values(y)), J); });
   }
+  static int prepare(realtype t, N_Vector y, N_Vector, N_Vector, realtype c, void* self) {
+    auto& ida = *static_cast<Ida*>(self);
+    return ida.session_.guarded([&] { return ida.reduced_->prepare(t, ida.form_.state(values(y)), 1 / c); });
+  }
+  static int precondition(realtype t, N_Vector y, N_Vector, N_Vector, N_Vector r, N_Vector z, realtype, realtype, void* self) {
+    auto& ida = *static_cast<Ida*>(self);
+    return ida.session_.guarded([&] { ida.form_.solve_reduced(*ida.reduced_, t, values(y), values(r), values(z)); });
+  }
 
-  const ResidualForm& form_;
+  ResidualForm& form_;
+  std::optional<ReducedNewton> reduced_;
   Session session_;
   Owned<N_Vector> dy_;
   Memory memory_;
 };
 
-Ida::Ida(const ResidualForm& form, solver::Work& work, double t0, double end, const SolveOptions& options)
+Ida::Ida(ResidualForm& form, const solver::SplitOde& ode, double t0, double end, const SolveOptions& options)
     : form_(form),
-      session_("IDA", "ida", form.size(), work),
+      session_("IDA", "ida", form.size(), *ode.work, *options.newton),
       dy_(session_.new_vector()),
       memory_(require_created(IDACreate(session_.context())), [](void* memory) { IDAFree(&memory); }) {
   const int n = form.coordinates();
@@ -200,8 +238,14 @@ Ida::Ida(const ResidualForm& form, solver::Work& work, double t0, double end, co
   require(IDASetId(ida, differential.get()));
   require(IDASetSuppressAlg(ida, SUNTRUE));
   require(IDASetStopTime(ida, end));
-  require(IDASetLinearSolver(ida, session_.klu(), session_.matrix()), IDAGetLinReturnFlagName);
-  require(IDASetJacFn(ida, jacobian), IDAGetLinReturnFlagName);
+  require(IDASetMaxOrd(ida, options.max_order));
+  require(IDASetLinearSolver(ida, session_.linear_solver(), session_.matrix()), IDAGetLinReturnFlagName);
+  if (options.newton->reduced()) {
+    reduced_.emplace(ode, options.newton->matrix);
+    require(IDASetPreconditioner(ida, prepare, precondition), IDAGetLinReturnFlagName);
+  } else {
+    require(IDASetJacFn(ida, jacobian), IDAGetLinReturnFlagName);
+  }
 }
 
 }  // namespace
@@ -209,8 +253,8 @@ Ida::Ida(const ResidualForm& form, solver::Work& work, double t0, double end, co
 ConstrainedTrajectory ida(const solver::SplitOde& ode, const State& y0, double t0, std::span<const double> times,
                           const SolveOptions& options) {
   check(times, t0, options);
-  const ResidualForm form(ode, y0, t0);
-  Ida solver(form, *ode.work, t0, times.back(), options);
+  ResidualForm form(ode, y0, t0);
+  Ida solver(form, ode, t0, times.back(), options);
   ConstrainedTrajectory result{{{times.begin(), times.end()}, {}}, {}};
   for (double t : times) {
     const Eigen::VectorXd y = t == t0 ? solver.initial() : solver.advance(t);

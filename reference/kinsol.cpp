@@ -77,7 +77,7 @@ Kinsol::Kinsol(const solver::SplitOde& ode, const Vectors& guess, const Equilibr
   require(KINSetScaledStepTol(kinsol, options.step));
   require(KINSetNumMaxIters(kinsol, options.max_iterations));
   require(KINSetMaxSetupCalls(kinsol, 1));  // Newton, not a chord method
-  require(KINSetLinearSolver(kinsol, session_.klu(), session_.matrix()), KINGetLinReturnFlagName);
+  require(KINSetLinearSolver(kinsol, session_.linear_solver(), session_.matrix()), KINGetLinReturnFlagName);
   require(KINSetJacFn(kinsol, jacobian), KINGetLinReturnFlagName);
 }
 

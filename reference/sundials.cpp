@@ -5,16 +5,29 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "reference/preconditioner_only.hpp"
 #include "reference/trajectory.hpp"
 
 namespace drape::reference::sundials_tools {
+namespace {
 
-Session::Session(std::string_view solver, std::string_view prefix, std::int64_t size, solver::Work& work)
+constexpr int krylov_dimension = 10;  ///< of GMRES
+
+SUNLinearSolver make_linear_solver(const NewtonSolve& newton, N_Vector y, SUNMatrix matrix, SUNContext context) {
+  if (newton.gmres) return SUNLinSol_SPGMR(y, SUN_PREC_LEFT, krylov_dimension, context);
+  if (newton.reduced()) return make_preconditioner_only(context);
+  return SUNLinSol_KLU(y, matrix, context);
+}
+
+}  // namespace
+
+Session::Session(std::string_view solver, std::string_view prefix, std::int64_t size, solver::Work& work,
+                 const NewtonSolve& newton)
     : solver_(solver),
       analyses_(work.counter(fmt::format("{}/analyses", prefix), "symbolic analyses of the sparse Newton matrix by KLU")),
       y_(require_created(N_VNew_Serial(size, context_))),
-      matrix_(require_created(SUNSparseMatrix(size, size, size, CSR_MAT, context_))),
-      klu_(require_created(SUNLinSol_KLU(y_.get(), matrix_.get(), context_))) {}
+      matrix_(newton.reduced() ? nullptr : require_created(SUNSparseMatrix(size, size, size, CSR_MAT, context_))),
+      linear_solver_(require_created(make_linear_solver(newton, y_.get(), matrix_.get(), context_))) {}
 
 void Session::copy(const WideSparseMatrix& from, SUNMatrix to) {
   const auto n = from.rows(), entries = from.nonZeros();
@@ -23,7 +36,7 @@ void Session::copy(const WideSparseMatrix& from, SUNMatrix to) {
                      std::equal(from.innerIndexPtr(), from.innerIndexPtr() + entries, pattern_.innerIndexPtr());
   if (!known) {
     if (SUNSparseMatrix_Reallocate(to, entries) != 0) throw std::bad_alloc();
-    SUNLinSol_KLUReInit(klu_.get(), to, entries, SUNKLU_REINIT_PARTIAL);
+    SUNLinSol_KLUReInit(linear_solver_.get(), to, entries, SUNKLU_REINIT_PARTIAL);
     ++analyses_;
     pattern_ = from;
   }

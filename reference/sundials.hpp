@@ -4,6 +4,7 @@
 #include <nvector/nvector_serial.h>
 #include <sundials/sundials_context.h>
 #include <sunlinsol/sunlinsol_klu.h>
+#include <sunlinsol/sunlinsol_spgmr.h>
 #include <sunmatrix/sunmatrix_sparse.h>
 
 #include <memory>
@@ -13,6 +14,7 @@
 #include <type_traits>
 
 #include "reference/coordinates.hpp"
+#include "reference/newton_solves.hpp"
 
 /// What the solvers of SUNDIALS have in common; for the files of this folder that call them  [Hindmarsh et al. 2005].
 namespace drape::reference::sundials_tools {
@@ -39,25 +41,30 @@ inline auto values(N_Vector vector) { return Eigen::Map<Eigen::VectorXd>(N_VGetA
 /// The function of a solver that names its return flags; the name is on the heap.
 using FlagName = char* (*)(long);
 
-/// One use of a solver: a vector, a sparse matrix with KLU, and the reason of the first failure. Solvers keep its address.
+/// One use of a solver: a vector, a linear solver, and the reason of the first failure. Solvers keep its address.
 class Session {
  public:
   /// `solver` is for messages, for example "CVODE". Counts the analyses of KLU in `work` under `prefix`/analyses.
-  Session(std::string_view solver, std::string_view prefix, std::int64_t size, solver::Work& work);
+  Session(std::string_view solver, std::string_view prefix, std::int64_t size, solver::Work& work,
+          const NewtonSolve& newton = newton_solves().front());
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
   SUNContext context() { return context_; }
   N_Vector y() { return y_.get(); }
-  SUNMatrix matrix() { return matrix_.get(); }
-  SUNLinearSolver klu() { return klu_.get(); }
+  SUNMatrix matrix() { return matrix_.get(); }  ///< null unless KLU factors one
+  SUNLinearSolver linear_solver() { return linear_solver_.get(); }
   Owned<N_Vector> new_vector() { return Owned<N_Vector>(require_created(N_VClone(y_.get()))); }
 
-  /// Runs a callback: exceptions must not pass through C code, they become its "unrecoverable" and the reason to report.
+  /// Runs a callback: exceptions must not pass through C code, they become its "unrecoverable" and the reason to report. One
+  /// that returns false becomes "recoverable": it may be called again after a smaller step.
   template <class Function>
   int guarded(Function&& function) noexcept {
     try {
-      function();
+      if constexpr (std::is_same_v<decltype(function()), bool>)
+        return function() ? 0 : 1;
+      else
+        function();
       return 0;
     } catch (const std::exception& error) {
       reason_ = error.what();
@@ -85,7 +92,7 @@ class Session {
   sundials::Context context_;  // before all that is made in it
   Owned<N_Vector> y_;
   Owned<SUNMatrix> matrix_;
-  Owned<SUNLinearSolver> klu_;
+  Owned<SUNLinearSolver> linear_solver_;
 };
 
 /// A counter of a solver's own, added to ours.

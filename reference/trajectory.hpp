@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "reference/newton_solves.hpp"
 #include "solver/split_ode.hpp"
 
 namespace drape::reference {
@@ -16,6 +17,8 @@ struct SolveOptions {
   double rtol = 1e-10;
   double size = 1;              ///< [m], of the scene
   long max_steps = 10'000'000;  ///< between two output times
+  int max_order = 5;            ///< of a multistep method; the order of a Runge-Kutta method, 2 to 5, with the split 3 to 5
+  const NewtonSolve* newton = &newton_solves().front();
 };
 
 /// States at given times.

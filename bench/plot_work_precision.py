@@ -1,0 +1,86 @@
+#!/usr/bin/python3
+"""Time against error from the study `work-precision`: plot_work_precision.py FILE.h5 writes FILE-<scene>.png and .svg beside it.
+
+Dots are all runs of ours; lines join what nobody of the same kind beats in both time and error. Left of the grey band errors are
+beyond what the reference can tell.
+"""
+import pathlib
+import re
+import sys
+
+import h5py
+import matplotlib
+
+matplotlib.use("Agg")
+matplotlib.rcParams.update({"font.size": 8, "svg.fonttype": "none", "svg.hashsalt": "drape"})
+import matplotlib.pyplot as plt
+import numpy as np
+
+OURS = ("drape", "explicit", "thesis")
+# Okabe and Ito's colours, which the colour-blind tell apart; the marks tell them apart in black and white.
+STYLES = {
+    "our best": ("#000000", "o"),
+    "automatic": ("#0072B2", "s"),
+    "explicit": ("#009E73", "^"),
+    "thesis": ("#D55E00", "v"),
+    "cvode-bdf": ("#CC79A7", "D"),
+    "arkode-esdirk": ("#E69F00", "P"),
+    "arkode-imex": ("#56B4E9", "X"),
+    "ida-bdf": ("#888888", "*"),
+}
+
+
+def read_trials(file, name):
+    table = file["tables"][name]
+    text = lambda column: table[column].asstr()[:]
+    trials = {key: text(key) if h5py.check_string_dtype(table[key].dtype) else table[key][:] for key in table}
+    measured = trials["error"] > 0
+    return {key: column[measured] for key, column in trials.items()}
+
+
+def front(error, time):
+    """Indices of what is beaten in neither, from the smallest time on."""
+    order = np.lexsort((error, time))
+    best = np.minimum.accumulate(error[order])
+    return order[np.r_[True, best[1:] < best[:-1]]] if len(order) else order
+
+
+def draw(path, scene, trials):
+    error, time, code = trials["error"], trials["time"], trials["code"]
+    ours = np.isin(code, OURS)
+    kinds = {"our best": ours, "automatic": trials["method"] != ""}
+    kinds |= {name: code == name for name in STYLES if name in code}
+    figure, axes = plt.subplots(figsize=(7.5, 4.8), layout="constrained")
+    axes.loglog(error[ours], time[ours], ".", color="0.7", markersize=3, label="all of ours")
+    for name, belongs in kinds.items():
+        chosen = np.flatnonzero(belongs)
+        chosen = chosen[front(error[chosen], time[chosen])]
+        colour, mark = STYLES[name]
+        axes.loglog(error[chosen], time[chosen], color=colour, marker=mark, markersize=5, label=name)
+    uncertainty = trials["uncertainty"].max()
+    low, high = error.min() / 2, error.max() * 2
+    axes.axvspan(low, max(low, 10 * uncertainty), color="0.9")
+    axes.set_xlim(high, low)  # better is to the right
+    axes.grid(alpha=0.3, which="both")
+    axes.set_title(scene)
+    axes.set_xlabel(f"error: largest RMS distance at three times, over the scene's size (reference uncertain by {uncertainty:.0e})")
+    axes.set_ylabel("solver time [ms]")
+    axes.legend(loc="upper left", bbox_to_anchor=(1, 1))
+    for suffix in ("png", "svg"):
+        name = path.with_name(f"{path.stem}-{re.sub('[ =]', '-', scene)}.{suffix}")
+        figure.savefig(name, dpi=120, metadata={"Date": None} if suffix == "svg" else None)
+        print(name)
+    plt.close(figure)
+
+
+def main():
+    path = pathlib.Path(sys.argv[1])
+    prefix = "trials: "
+    with h5py.File(path) as file:
+        for name in file["tables"]:
+            if name.startswith(prefix):
+                draw(path, name.removeprefix(prefix), read_trials(file, name))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,125 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+
+#include "bench/errors.hpp"
+#include "bench/studies.hpp"
+#include "bench/studies/work_precision_tables.hpp"
+#include "model/scene_file.hpp"
+#include "reference/reference.hpp"
+
+namespace drape::bench {
+namespace {
+
+/// Tenths of the end at which errors are measured: at a single time one may be small by chance.
+constexpr int held_out[] = {7, 9, 10};
+
+struct Entry {
+  std::string name, scene;
+  std::vector<model::Override> overrides;
+  Search search = Search::usual;
+};
+
+std::vector<Entry> entries(bool quick) {
+  std::vector<Entry> all;
+  const std::string hardest = "hung-corners";
+  for (const std::string scene : {"hung-corners", "hung-edge"})
+    for (const char* d : {"50", "5", "0.5"})
+      all.push_back({fmt::format("{} d={}", scene, d),
+                     scene,
+                     {{"material.damping", d}},
+                     scene == hardest ? Search::full : Search::usual});
+  all.push_back(
+      {"projected", "hung-corners", {{"material.damping_form", "projected"}, {"material.bend", "0.01"}, {"end.time", "0.3"}}});
+  all.push_back({"pulled", "pulled", {{"material.damping_form", "projected"}}});
+  all.push_back({"wind", "wind", {{"end.time", "0.5"}}});
+  all.push_back({"tablecloth", "tablecloth", {{"end.time", "0.3"}}});
+  for (const char* n : {"20", "100"}) all.push_back({fmt::format("peer-edge n={}", n), "peer-edge", {{"grid.n", n}}});
+  if (!quick) return all;
+  std::vector<Entry> few{all[1], all[10]};
+  few[0].overrides.insert(few[0].overrides.end(), {{"grid.n", "6"}, {"end.time", "0.2"}});
+  few[1].overrides = {{"grid.n", "8"}, {"end.time", "0.1"}};
+  for (Entry& entry : few) entry.search = Search::quick;
+  return few;
+}
+
+Problem problem(const Entry& entry) {
+  const model::Scene scene = model::load_scene(entry.scene, entry.overrides);
+  Problem result{entry.name, scene, model::size(scene)};
+  for (const int tenth : held_out) result.times.push_back(scene.end * tenth / 10);
+  return result;
+}
+
+/// From the two families that certify a reference.
+void find_truth(Problem& problem) {
+  References references(1e-6);
+  const auto reference = references(problem.scene, model::compile(problem.scene));
+  for (const int tenth : held_out) {
+    const auto k = static_cast<std::size_t>(tenth - 1);
+    problem.truth.push_back(reference.trajectory.states[k].x);
+    problem.uncertainty = std::max(problem.uncertainty, reference.error[k] / problem.length);
+    problem.growth = std::max(problem.growth, reference.growth[k]);
+  }
+}
+
+std::vector<solver::Vectors> leapfrog(const Problem& problem, double fraction) {
+  solver::Options options;
+  options.verlet_fraction = fraction;
+  const model::Cloth cloth = model::compile(problem.scene);
+  solver::Integrator integrator(cloth.ode, solver::method("verlet"), options, cloth.start);
+  std::vector<solver::Vectors> positions;
+  for (const double t : problem.times) {
+    if (integrate(integrator, t, t).outcome != solver::Outcome::success) throw std::runtime_error("verlet failed");
+    positions.push_back(integrator.state().x);
+  }
+  return positions;
+}
+
+/// Large undamped sheets are beyond the families' factorisations, but not stiff: velocity Verlet far below its stability
+/// limit, extrapolated.
+void find_explicit_truth(Problem& problem) {
+  constexpr double fine = 0.05;
+  const auto coarse = leapfrog(problem, 2 * fine);
+  problem.truth = leapfrog(problem, fine);
+  for (std::size_t k = 0; k < coarse.size(); ++k) {
+    const solver::Vectors correction = (problem.truth[k] - coarse[k]) / 3;
+    problem.truth[k] += correction;
+    const double moved = std::sqrt(correction.squaredNorm() / static_cast<double>(correction.rows()));
+    problem.uncertainty = std::max(problem.uncertainty, moved);
+  }
+  problem.length = 1;  // errors in metres, as those of the other codes
+}
+
+/// What the tables of all scenes are made from.
+using All = std::vector<SceneTrials>;
+
+results::Table try_scene(const Entry& entry, bool quick, All& all, Progress& progress) {
+  const Effort effort = quick ? Effort{.cap = 0.3, .repetitions = 3} : Effort();
+  progress.show("reference of " + entry.name);
+  SceneTrials& scene = all.emplace_back(SceneTrials{problem(entry), {}, {}});
+  Problem& problem = scene.problem;
+  entry.scene == "peer-edge" ? find_explicit_truth(problem) : find_truth(problem);
+  scene.families = families(problem.scene, entry.search);
+  scene.trials = try_all(problem, scene.families, effort, progress);
+  progress.show("timing " + entry.name);
+  time_fronts(problem, scene.trials, effort);
+  return trials_table(scene);
+}
+
+}  // namespace
+
+std::vector<TableJob> work_precision(bool quick) {
+  const auto all = std::make_shared<All>();
+  std::vector<TableJob> jobs;
+  const auto list = entries(quick);
+  all->reserve(list.size());  // trials point into what is in it
+  for (const Entry& entry : list)
+    jobs.push_back({static_cast<int>(families(problem(entry).scene, entry.search).size()),
+                    [=](Progress& progress) { return try_scene(entry, quick, *all, progress); }});
+  for (auto* table : {winners_table, defaults_table, bars_table, peers_table})
+    jobs.push_back({0, [=](Progress&) { return table(*all); }});
+  return jobs;
+}
+
+}  // namespace drape::bench

@@ -1,0 +1,89 @@
+#include <fmt/format.h>
+
+#include <optional>
+
+#include "bench/studies/work_precision_winners.hpp"
+#include "results/table_builder.hpp"
+
+namespace drape::bench {
+namespace {
+
+using results::TableBuilder;
+
+/// A bar asks for a ratio of at least, or at most, so much.
+struct Bar {
+  std::string name;
+  double wanted;
+  bool at_least;
+};
+
+void add_bar(TableBuilder& table, const SceneTrials& scene, const Bar& bar, double error, std::optional<double> value,
+             const std::string& detail) {
+  table.row();
+  table.text("scene", "scene", "its name", scene.problem.name);
+  table.text("bar", "bar", "what is compared", bar.name);
+  table.number("error", "error", "1", "at most", error);
+  table.text("wanted", "wanted", "what is asked for", fmt::format("{} {:g}", bar.at_least ? ">=" : "<=", bar.wanted));
+  table.text("detail", "", "what was compared", detail);
+  if (!value) {
+    table.text("verdict", "verdict", "whether the bar is met",
+               bar.at_least ? "met: only we reach this error" : "NOT met: not reached");
+    return;
+  }
+  table.number("value", "value", "1", "what was measured", *value);
+  const double by = bar.at_least ? bar.wanted / *value : *value / bar.wanted;
+  table.text("verdict", "verdict", "whether the bar is met", by <= 1 ? "met" : fmt::format("NOT met by {:.2f}", by));
+}
+
+double wanted_of_peers(double error) { return error > 3e-4 ? 5 : error > 3e-7 ? 3 : 1; }
+
+void add_bars(TableBuilder& table, const SceneTrials& scene, const std::string& usual) {
+  const Winners winners(scene);
+  for (const double error : levels(scene.problem)) {
+    const Winner best = winners.of("ours", error);
+    const auto ratio = [&](const Winner& a) { return a ? std::optional(a.time / best.time) : std::nullopt; };
+    const auto names = [&](const Winner& a) { return fmt::format("{} / {}", a.name(), best.name()); };
+    if (!best) {
+      add_bar(table, scene, {"our best", 1, false}, error, std::nullopt, "none");
+      continue;
+    }
+    if (const Winner peer = winners.of_peers(error); scene.problem.scene.name == "hung-corners")
+      add_bar(table, scene, {"SUNDIALS' best / our best", wanted_of_peers(error), true}, error, ratio(peer), names(peer));
+    if (const Winner thesis = winners.of("thesis", error))
+      add_bar(table, scene, {"thesis' loop / our best", 3, true}, error, ratio(thesis), names(thesis));
+    for (const std::string contender : {"defaults", usual.c_str()}) {
+      const Winner winner = winners.of(contender, error);
+      add_bar(table, scene, {(contender == usual ? usual : "any method, auto") + " / our best", default_bar, false}, error,
+              ratio(winner), names(winner));
+    }
+  }
+}
+
+/// On peer-edge times are per simulated second and errors in metres.
+void add_peer_bars(TableBuilder& table, const SceneTrials& scene) {
+  const Winners winners(scene);
+  const double end = scene.problem.times.back();
+  const auto seconds = [&](const Winner& winner) { return winner ? std::optional(1e-3 * winner.time / end) : std::nullopt; };
+  const Winner implicit = winners.of("implicit", 5e-2);
+  add_bar(table, scene, {"implicit [s per simulated second]", 0.4, false}, 5e-2, seconds(implicit), implicit.name());
+  for (const auto& [error, bar] : {std::pair(5e-3, 0.7), {3e-4, 0.5}}) {
+    const Winner best = winners.of("ours", error);
+    add_bar(table, scene, {"any [s per simulated second]", bar, false}, error, seconds(best), best.name());
+  }
+}
+
+}  // namespace
+
+results::Table bars_table(const std::vector<SceneTrials>& scenes) {
+  TableBuilder table("bars", "What was asked for");
+  const std::string usual = usual_choice(scenes);
+  for (const SceneTrials& scene : scenes) {
+    if (!is_peer_edge(scene))
+      add_bars(table, scene, usual);
+    else if (scene.problem.scene.sheet.grid.nu == 100)
+      add_peer_bars(table, scene);
+  }
+  return table.finish();
+}
+
+}  // namespace drape::bench

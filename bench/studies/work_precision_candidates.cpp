@@ -1,0 +1,209 @@
+#include "bench/studies/work_precision_candidates.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "bench/cell.hpp"
+#include "reference/families.hpp"
+
+namespace drape::bench {
+namespace {
+
+using solver::Vectors;
+
+/// Cubic through positions and velocities at both ends of a step: of the order of the methods it is used with.
+Vectors between(double t, double t0, const solver::State& a, double t1, const solver::State& b) {
+  const double h = t1 - t0, s = (t - t0) / h, r = 1 - s;
+  return r * r * (1 + 2 * s) * a.x + s * s * (1 + 2 * r) * b.x + h * s * r * (r * a.v - s * b.v);
+}
+
+/// Takes positions at given times out of a run.
+class Sampler {
+ public:
+  Sampler(std::span<const double> times, solver::State start) : times_(times), before_(std::move(start)) {}
+
+  void see(double t, const solver::State& y) {
+    constexpr double same = 1e-9;  // of a step
+    for (; taken.size() < times_.size() && times_[taken.size()] <= t + same * (t - t_);) {
+      const double at = times_[taken.size()];
+      taken.push_back(at >= t - same * (t - t_) ? y.x : between(at, t_, before_, t, y));
+    }
+    t_ = t;
+    before_ = y;
+  }
+
+  std::vector<Vectors> taken;
+
+ private:
+  std::span<const double> times_;
+  double t_ = 0;
+  solver::State before_;
+};
+
+std::vector<Vectors> solve_ours(const Cell& cell, const model::Cloth& cloth, std::span<const double> times) {
+  solver::Integrator integrator(cloth.ode, *cell.method, cell.options, cloth.start);
+  Sampler sampler(times, integrator.state());
+  solver::Observer observer;
+  if (times.size() > 1) observer = [&](const solver::StepReport& step) { sampler.see(step.t, step.y); };
+  const solver::RunResult run = integrate(integrator, times.back(), cell.step, observer);
+  if (run.outcome != solver::Outcome::success) throw std::runtime_error(run.message);
+  if (!observer) sampler.taken.push_back(integrator.state().x);
+  return std::move(sampler.taken);
+}
+
+std::vector<Vectors> solve_by_peer(const reference::Family& family, const reference::SolveOptions& options,
+                                   const model::Cloth& cloth, std::span<const double> times) {
+  std::vector<Vectors> positions;
+  for (solver::State& state : family.solve(cloth.ode, cloth.start, 0, times, options).states)
+    positions.push_back(std::move(state.x));
+  return positions;
+}
+
+std::vector<double> tolerances(int finest) {
+  std::vector<double> all;
+  for (int k = 2; k <= 2 * finest; ++k) all.push_back(std::pow(10.0, -0.5 * k));
+  return all;
+}
+
+/// Into how many parts a tenth of the end is divided at most.
+int finest_parts(Search search) { return search == Search::quick ? 16 : 512; }
+
+Candidate ours(const Cell& cell, double value) {
+  return {value, [cell](const model::Cloth& cloth, std::span<const double> times) { return solve_ours(cell, cloth, times); }};
+}
+
+Cell cell(const model::Scene& scene, const std::string& name, const solver::Options& options = {}) {
+  Cell result{scene, "", nullptr, scene.end / 10, options};
+  choose_method(result, name);
+  return result;
+}
+
+bool by_default(const Cell& cell) {
+  return cell.options.stage == solver::Options().stage && cell.options.linear_solver == solver::Options().linear_solver;
+}
+
+Family by_steps(Cell cell, const std::string& code, int parts) {
+  Family family{cell.method_name() + " by steps", code, "step", by_default(cell) ? std::string(cell.method->name) : "", {}};
+  for (const double h : divided_steps(cell.scene.end, parts)) {
+    cell.step = h;
+    family.candidates.push_back(ours(cell, h));
+  }
+  return family;
+}
+
+Family by_tolerance(Cell cell) {
+  Family family{cell.method_name() + " by tolerance", "drape", "tolerance", std::string(cell.method->name), {}};
+  for (const double tolerance : tolerances(9)) {
+    cell.options.error_control = {tolerance, model::size(cell.scene), cell.scene.end};
+    family.candidates.push_back(ours(cell, tolerance));
+  }
+  return family;
+}
+
+/// Explicit sub-steps follow the stability limit, however long the step.
+Family by_fraction(Cell cell, int halvings) {
+  Family family{cell.method_name() + " by fraction", "explicit", "fraction", "", {}};
+  for (int k = 0; k <= 2 * halvings; ++k) {
+    cell.options.verlet_fraction = 0.9 * std::pow(2.0, -0.5 * k);
+    family.candidates.push_back(ours(cell, cell.options.verlet_fraction));
+  }
+  return family;
+}
+
+void add_ours(std::vector<Family>& all, const model::Scene& scene, Search search) {
+  const int parts = finest_parts(search);
+  for (const solver::Method& method : solver::methods()) {
+    const std::string name(method.name);
+    if (!method.implicit()) {
+      all.push_back(by_fraction(cell(scene, name), search == Search::quick ? 3 : 10));
+      continue;
+    }
+    if (search == Search::quick && name != "bdf2" && name != "midpoint" && name != "sbdf2") continue;
+    all.push_back(by_steps(cell(scene, name), "drape", parts));
+    all.push_back(by_tolerance(cell(scene, name)));
+    if (search != Search::full) continue;
+    if (method.nonlinear())
+      for (const solver::StageKind& stage : solver::stage_kinds().subspan(1))
+        all.push_back(by_steps(cell(scene, fmt::format("{}/{}", name, stage.name)), "drape", parts));
+    if (name == "bdf2" || name == "sbdf2")
+      for (const solver::LinearSolver& linear : solver::linear_solvers().subspan(1))
+        all.push_back(by_steps(cell(scene, fmt::format("{}/{}", name, linear.name)), "drape", parts));
+  }
+}
+
+std::vector<int> loop_digits(Search search) {
+  if (search == Search::quick) return {3};
+  if (search == Search::usual) return {2, 4};
+  return {1, 2, 3, 4, 5, 6};
+}
+
+/// The fixed-point loop with IC(0)   [Etzmuß 2002, 3.4].
+void add_thesis(std::vector<Family>& all, const model::Scene& scene, Search search) {
+  for (const char* method : {"implicit-euler", "bdf2", "midpoint"})
+    for (const int digits : loop_digits(search)) {
+      solver::Options options = solver::thesis_options();
+      options.loop_tolerance = std::pow(10.0, -digits);
+      Family family = by_steps(cell(scene, fmt::format("{}/fixed-point/ic0", method), options), "thesis", finest_parts(search));
+      family.name += fmt::format(" to {:.0e}", options.loop_tolerance);
+      all.push_back(std::move(family));
+    }
+}
+
+/// A package with one configuration.
+Family peer(const std::string& package, const reference::NewtonSolve& newton, int order, const model::Scene& scene,
+            int finest) {
+  Family family{fmt::format("{}/{} order {}", package, newton.name, order), package, "tolerance", "", {}};
+  for (const double rtol : tolerances(finest)) {
+    const reference::SolveOptions options{.rtol = rtol, .size = model::size(scene), .max_order = order, .newton = &newton};
+    family.candidates.push_back({rtol, [&by = reference::family(package), options](const model::Cloth& cloth, auto times) {
+                                   return solve_by_peer(by, options, cloth, times);
+                                 }});
+  }
+  return family;
+}
+
+/// Orders worth a try: of the multistep methods the A-stable one and all, of the Runge-Kutta methods a low and the highest.
+std::vector<int> orders(const std::string& package) {
+  if (package == "arkode-esdirk") return {3, 5};
+  if (package == "arkode-imex") return {3, 5};
+  return {2, 5};
+}
+
+void add_peers(std::vector<Family>& all, const model::Scene& scene, Search search) {
+  if (!scene.obstacles.empty()) return;  // they have no contacts
+  for (const reference::Family& package : reference::families()) {
+    const std::string name(package.name);
+    for (const reference::NewtonSolve& newton : reference::newton_solves()) {
+      const bool constant = newton.matrix == reference::NewtonSolve::Matrix::constant && !newton.gmres;
+      if (name == "arkode-imex" && newton.reduced() && !constant) continue;  // that one is exact
+      if (search == Search::quick && newton.reduced()) continue;
+      for (const int order : orders(name))
+        if (search == Search::full || order == 5)
+          all.push_back(peer(name, newton, order, scene, search == Search::quick ? 4 : 9));
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<double> divided_steps(double end, int parts) {
+  std::vector<double> steps;
+  for (int k = 0, last = 0;; ++k) {
+    const int m = static_cast<int>(std::lround(std::pow(2.0, 0.5 * k)));
+    if (m > parts) return steps;
+    if (m != last) steps.push_back(end / 10 / m);
+    last = m;
+  }
+}
+
+std::vector<Family> families(const model::Scene& scene, Search search) {
+  std::vector<Family> all;
+  add_ours(all, scene, search);
+  add_thesis(all, scene, search);
+  add_peers(all, scene, search);
+  return all;
+}
+
+}  // namespace drape::bench

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "model/cloth.hpp"
+#include "solver/methods.hpp"
+
+namespace drape::bench {
+
+/// Solves a compiled scene and returns its positions at some times, the last of which is the end. Throws std::exception with
+/// the reason if it cannot.
+using Solve = std::function<std::vector<solver::Vectors>(const model::Cloth& cloth, std::span<const double> times)>;
+
+/// One way to solve a scene, with one value of what controls its accuracy.
+struct Candidate {
+  double value;  ///< step [s], tolerance, or fraction of the stability limit
+  Solve solve;
+};
+
+/// Ways that differ in one number only, from coarse to fine.
+struct Family {
+  std::string name;     ///< "bdf2/newton/mic0 by steps", "cvode-bdf/klu order 2"
+  std::string code;     ///< whose it is: "drape", "explicit", "thesis", or the package of SUNDIALS
+  std::string control;  ///< "step", "tolerance" or "fraction"
+  std::string method;   ///< ours with the program's choice of stage and linear solvers: the method; else empty
+  std::vector<Candidate> candidates;
+};
+
+/// How much is tried.
+enum class Search {
+  quick,  ///< a few methods and configurations, for tests
+  usual,  ///< all methods with automatic stages and linear solvers, SUNDIALS' packages with all linear solvers
+  full,   ///< also all stage and linear solvers, and all orders of SUNDIALS' methods
+};
+
+/// Everything that is compared on a scene.
+std::vector<Family> families(const model::Scene& scene, Search search);
+
+/// Steps that divide a tenth of the end into 1 to so many parts, each about √2 times the next.
+std::vector<double> divided_steps(double end, int parts);
+
+}  // namespace drape::bench

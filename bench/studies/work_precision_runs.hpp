@@ -1,0 +1,59 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bench/progress.hpp"
+#include "bench/studies/work_precision_candidates.hpp"
+#include "results/work_precision.hpp"
+
+namespace drape::bench {
+
+/// A scene of the study with the positions at the times at which errors are measured.
+struct Problem {
+  std::string name;
+  model::Scene scene;
+  double length = 1;               ///< by which errors are divided [m]
+  std::vector<double> times = {};  ///< the last is the end [s]
+  std::vector<solver::Vectors> truth = {};
+  double uncertainty = 0;  ///< of the truth, over `length`
+  double growth = 0;       ///< of a small perturbation of the start; 0 if not known
+};
+
+/// What became of a candidate.
+struct Trial {
+  const Family* family;
+  const Candidate* candidate;
+  std::string outcome;         ///< "success", or why it failed
+  results::Measured measured;  ///< the largest error at all times; the one time of the first run, or those of repetitions
+  bool timed = false;          ///< repeatedly
+  std::int64_t forces = 0, factorisations = 0, steps = 0;
+};
+
+/// How long a study may take.
+struct Effort {
+  double cap = 1;       ///< wall time of a run before it is given up [s]
+  int repetitions = 5;  ///< of those near a front
+};
+
+/// Runs every candidate once, from coarse to fine until it takes too long or is more exact than the truth.
+std::vector<Trial> try_all(const Problem& problem, const std::vector<Family>& families, const Effort& effort,
+                           Progress& progress);
+
+/// Whose results are compared: a name and the trials that belong to it.
+struct Contender {
+  std::string name;
+  std::vector<std::size_t> members;
+};
+
+/// "ours": all that the program offers; of that "implicit", "explicit", "thesis", "defaults" (automatic stages and linear
+/// solvers) and of these each method, "default bdf2 by steps"; and each package of SUNDIALS.
+std::vector<Contender> contenders(const std::vector<Trial>& trials);
+
+/// Times what is near the front of any contender, all interleaved.
+void time_fronts(const Problem& problem, std::vector<Trial>& trials, const Effort& effort);
+
+/// The trials of a contender as they were measured repeatedly; the others count as failed.
+std::vector<results::Measured> timed(const Contender& contender, const std::vector<Trial>& trials);
+
+}  // namespace drape::bench

@@ -1,0 +1,136 @@
+#include "bench/studies/work_precision_tables.hpp"
+
+#include <fmt/format.h>
+
+#include "bench/studies/work_precision_winners.hpp"
+#include "results/table_builder.hpp"
+
+namespace drape::bench {
+namespace {
+
+using results::TableBuilder;
+
+void add_winner(TableBuilder& table, const std::string& key, const std::string& title, const Winner& winner,
+                const Winner& best) {
+  const auto column = [&](const char* suffix) { return key + suffix; };
+  if (!winner) return;
+  const auto q = results::quartiles(winner.trial->measured.times);
+  table.text(column("").c_str(), "", "the quickest", winner.name());
+  table.number(column("_ms").c_str(), title.c_str(), "ms", "its median time", q.median);
+  table.number(column("_lower").c_str(), "", "ms", "lower quartile of its times", q.lower);
+  table.number(column("_upper").c_str(), "", "ms", "upper quartile of its times", q.upper);
+  if (!best) return;
+  table.number(column("_ratio").c_str(), "ratio", "1", "over our best", winner.time / best.time);
+  if (tie(winner, best)) table.text(column("_tie").c_str(), "", "whether the gap is below the noise", "tie");
+}
+
+}  // namespace
+
+results::Table trials_table(const SceneTrials& scene) {
+  TableBuilder table("trials: " + scene.problem.name, "All that was tried on " + scene.problem.name);
+  for (const Trial& trial : scene.trials) {
+    table.row();
+    table.text("code", "", "whose it is", trial.family->code);
+    table.text("family", "", "ways that differ in one number", trial.family->name);
+    table.text("method", "", "ours with the program's defaults: the method", trial.family->method);
+    table.text("control", "", "the number: step [s], tolerance, or fraction of the stability limit", trial.family->control);
+    table.number("value", "", "1", "its value", trial.candidate->value);
+    table.text("outcome", "", "success, or why there is none", trial.outcome);
+    table.number("uncertainty", "", "1", "of the reference, as the error", scene.problem.uncertainty);
+    table.count("steps", "", "steps", trial.steps);
+    table.count("forces", "", "evaluations of forces", trial.forces);
+    table.count("factorisations", "", "matrices factored", trial.factorisations);
+    if (trial.measured.times.empty()) continue;
+    const auto q = results::quartiles(trial.measured.times);
+    table.number("error", "", "1", "largest distance from the reference at three times, over the scene's size",
+                 trial.measured.error);
+    table.number("time", "", "ms", "median wall time", q.median);
+    table.number("lower", "", "ms", "lower quartile", q.lower);
+    table.number("upper", "", "ms", "upper quartile", q.upper);
+    table.count("repetitions", "", "times it was run for this", std::ssize(trial.measured.times));
+  }
+  return table.finish();
+}
+
+results::Table winners_table(const std::vector<SceneTrials>& scenes) {
+  const std::string usual = usual_choice(scenes);
+  TableBuilder table("winners", fmt::format("The quickest with an error of at most so much, and ratios to our best; usual: {}; "
+                                            "auto: the best method with automatic stages and linear solvers",
+                                            usual));
+  for (const SceneTrials& scene : scenes) {
+    const Winners winners(scene);
+    for (const double error : levels(scene.problem)) {
+      const Winner best = winners.of("ours", error);
+      table.row();
+      table.text("scene", "scene", "its name", scene.problem.name);
+      table.number("error", "error", "1", "at most, over the scene's size", error);
+      if (best) table.text("best", "our best", "the quickest of all that the program offers", best.name());
+      add_winner(table, "ours", "ours", best, {});
+      add_winner(table, "defaults", "auto", winners.of("defaults", error), best);
+      add_winner(table, "usual", "usual", winners.of(usual, error), best);
+      add_winner(table, "explicit", "explicit", winners.of("explicit", error), best);
+      add_winner(table, "thesis", "thesis", winners.of("thesis", error), best);
+      for (const std::string& package : packages()) add_winner(table, package, package, winners.of(package, error), best);
+    }
+  }
+  return table.finish();
+}
+
+results::Table defaults_table(const std::vector<SceneTrials>& scenes) {
+  TableBuilder table("defaults",
+                     "Methods with automatic stages and linear solvers against our best choice, over all scenes and errors");
+  for (const Score& score : scores(scenes)) {
+    table.row();
+    table.text("choice", "choice", "a method and what controls its accuracy", score.contender.substr(8));
+    table.count("cells", "cells", "scenes and errors", score.cells);
+    table.count("missed", "missed", "of these not reached", score.missed);
+    table.count("within", "within 1.5", "of these at most 1.5 times our best, or tied with it", score.within);
+    table.number("mean", "mean", "1", "geometric mean of the ratios to our best", score.mean());
+    table.number("worst", "worst", "1", "the largest", score.worst);
+  }
+  return table.finish();
+}
+
+results::Table peers_table(const std::vector<SceneTrials>& scenes) {
+  struct Figure {
+    const char* code;
+    double error, seconds;
+  };
+  constexpr Figure figures[] = {{"Bullet, softbody", 0.53, 0.76},
+                                {"Bullet, deformable cloth, implicit", 0.053, 21.7},
+                                {"Bullet, deformable cloth, explicit", 2e-4, 29},
+                                {"XPBD, 20 sub-steps", 0.049, 2.1},
+                                {"XPBD, 100 sub-steps", 4e-3, 10.4},
+                                {"projective dynamics, 10 iterations", 0.098, 2.9},
+                                {"STARK (Newton, implicit Euler)", 0.051, 18.3},
+                                {"ARCSim", 0.072, 29},
+                                {"a plain vectorised leapfrog", 1.2e-4, 0.59}};
+  TableBuilder table(
+      "peer-edge", "Other codes on their own machine, and what is the quickest of ours with errors at most theirs on this one");
+  for (const SceneTrials& scene : scenes) {
+    if (!is_peer_edge(scene)) continue;
+    const Winners winners(scene);
+    const int n = scene.problem.scene.sheet.grid.nu;
+    for (const Figure& figure : figures) {
+      table.row();
+      table.count("n", "n", "particles a side", n);
+      table.text("code", "other code, 100 x 100", "measured elsewhere", figure.code);
+      table.number("their_error", "error", "m", "RMS at 0.5 s", figure.error);
+      if (n == 100) table.number("their_seconds", "time", "s/s", "CPU seconds per simulated second", figure.seconds);
+      const auto show = [&](const char* contender, const char* title, const char* description) {
+        const Winner winner = winners.of(contender, figure.error);
+        if (!winner) return;
+        const double time = 1e-3 * winner.time / scene.problem.times.back();
+        table.text(contender, title, description, winner.name());
+        table.number(fmt::format("{}_error", contender).c_str(), "error", "m", "RMS, the largest at three times",
+                     winner.trial->measured.error);
+        table.number(fmt::format("{}_seconds", contender).c_str(), "time", "s/s", "wall seconds per simulated second", time);
+      };
+      show("ours", "ours", "the quickest at most as far off");
+      show("implicit", "implicit", "the quickest implicit method at most as far off");
+    }
+  }
+  return table.finish();
+}
+
+}  // namespace drape::bench

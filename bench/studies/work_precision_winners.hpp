@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cmath>
+
+#include "bench/studies/work_precision_tables.hpp"
+
+namespace drape::bench {
+
+/// The quickest trial of a contender at an error.
+struct Winner {
+  const Trial* trial = nullptr;
+  double time = NAN;  ///< median [ms]
+
+  explicit operator bool() const { return trial != nullptr; }
+
+  /// The family and the value of what controls it; "none" if nothing reaches the error.
+  std::string name() const;
+};
+
+/// Whether the gap between two is below the noise.
+bool tie(const Winner& a, const Winner& b);
+
+/// All winners of a scene.
+class Winners {
+ public:
+  explicit Winners(const SceneTrials& scene) : scene_(scene), contenders_(contenders(scene.trials)) {}
+
+  Winner of(const std::string& contender, double error) const;
+
+  /// Of all packages of SUNDIALS.
+  Winner of_peers(double error) const;
+
+ private:
+  const SceneTrials& scene_;
+  std::vector<Contender> contenders_;
+};
+
+/// Of 1e-1 to 1e-7 the errors that the truth of a scene resolves.
+std::vector<double> levels(const Problem& problem);
+
+/// The packages of SUNDIALS.
+std::vector<std::string> packages();
+
+/// Where errors are in metres and times are compared with other codes'.
+bool is_peer_edge(const SceneTrials& scene);
+
+/// Ratios of one method, with automatic stages and linear solvers, to our best choice.
+struct Score {
+  std::string contender;
+  int cells = 0;   ///< scenes and errors
+  int missed = 0;  ///< of these not reached
+  int within = 0;  ///< of these at most `default_bar`, or tied with the best
+  double log_sum = 0, worst = 1;
+
+  double mean() const { return std::exp(log_sum / std::max(1, cells - missed)); }
+};
+
+constexpr double default_bar = 1.5;
+
+/// Best first: by how often it misses, then by the mean ratio.
+std::vector<Score> scores(const std::vector<SceneTrials>& scenes);
+
+/// The contender that scores best; empty if there is none.
+std::string usual_choice(const std::vector<SceneTrials>& scenes);
+
+}  // namespace drape::bench

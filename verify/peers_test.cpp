@@ -1,0 +1,109 @@
+// The general solvers in all their configurations: the same solution whatever solves their linear systems.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "model/cloth.hpp"
+#include "model/scene_file.hpp"
+#include "reference/families.hpp"
+#include "reference/reference.hpp"
+
+namespace drape::verify {
+namespace {
+
+using reference::NewtonSolve;
+
+/// A small sheet that swings: pinned wholly or in some directions.
+model::Scene sheet(const std::string& name) {
+  std::vector<model::Override> overrides{{"end.time", "0.1"}};
+  if (name == "hung-corners") overrides.insert(overrides.end(), {{"grid.n", "6"}, {"material.damping", "0.5"}});
+  if (name == "pulled") overrides.push_back({"grid.n", "[6, 5]"});
+  return model::load_scene(name, overrides);
+}
+
+struct Case {
+  std::string family, newton;
+};
+
+std::vector<Case> cases() {
+  std::vector<Case> all;
+  for (const reference::Family& family : reference::families())
+    for (const NewtonSolve& newton : reference::newton_solves()) {
+      const bool constant = newton.matrix == NewtonSolve::Matrix::constant;
+      if (family.name == "arkode-imex" && newton.reduced() && !(constant && !newton.gmres)) continue;
+      all.push_back({std::string(family.name), std::string(newton.name)});
+    }
+  return all;
+}
+
+class Peer : public testing::TestWithParam<Case> {
+ protected:
+  static reference::Trajectory solve(const model::Scene& scene, const std::string& family,
+                                     const reference::SolveOptions& options, solver::Work** work = nullptr) {
+    static model::Cloth cloth;
+    cloth = model::compile(scene);
+    if (work != nullptr) *work = cloth.ode.work.get();
+    return reference::family(family).solve(cloth.ode, cloth.start, 0, std::vector{scene.end}, options);
+  }
+};
+INSTANTIATE_TEST_SUITE_P(, Peer, testing::ValuesIn(cases()), [](const auto& test) {
+  std::string name = test.param.family + "_" + test.param.newton;
+  std::ranges::replace(name, '-', '_');
+  return name;
+});
+
+TEST_P(Peer, ReproducesTheReference) {
+  for (const char* name : {"hung-corners", "pulled"}) {
+    const model::Scene scene = sheet(name);
+    const double size = model::size(scene);
+    const auto truth = solve(scene, "cvode-bdf", {.rtol = 1e-11, .size = size});
+    const auto& newton = reference::newton_solve(GetParam().newton);
+    const auto found = solve(scene, GetParam().family, {.rtol = 1e-9, .size = size, .newton = &newton});
+    EXPECT_LE(reference::rms_distance(found.states[0].x, truth.states[0].x), 1e-7 * size) << name;
+    const auto loose = solve(scene, GetParam().family, {.rtol = 1e-3, .size = size, .newton = &newton});
+    EXPECT_GE(reference::rms_distance(loose.states[0].x, truth.states[0].x), 1e-12 * size) << name << ": it is another run";
+  }
+}
+
+TEST_P(Peer, UsesTheLinearSolverItIsToldTo) {
+  const auto& newton = reference::newton_solve(GetParam().newton);
+  solver::Work* work = nullptr;
+  const model::Scene scene = sheet("hung-corners");
+  solve(scene, GetParam().family, {.rtol = 1e-4, .size = model::size(scene), .newton = &newton}, &work);
+  const std::string prefix = GetParam().family.substr(0, GetParam().family.find('-'));
+  EXPECT_EQ(work->count(prefix + "/analyses") > 0, !newton.reduced());
+  EXPECT_EQ(work->count("newton_matrices") > 0, newton.matrix == NewtonSolve::Matrix::newton);
+  EXPECT_GT(work->count(prefix + "/factorisations"), 0);
+}
+
+TEST_P(Peer, IsNotSlowedDownByAFactorThatIsNearlyExact) {
+  const auto& newton = reference::newton_solve(GetParam().newton);
+  if (newton.matrix == NewtonSolve::Matrix::constant && GetParam().family != "arkode-imex") return;
+  const model::Scene scene = sheet("hung-corners");
+  const auto evaluations = [&](const NewtonSolve& by) {
+    solver::Work* work = nullptr;
+    solve(scene, GetParam().family, {.rtol = 1e-6, .size = model::size(scene), .newton = &by}, &work);
+    const std::string prefix = GetParam().family.substr(0, GetParam().family.find('-'));
+    return work->count(prefix + "/steps") + work->count(prefix + "/factorisations");
+  };
+  EXPECT_LE(static_cast<double>(evaluations(newton)),
+            1.3 * static_cast<double>(evaluations(reference::newton_solves().front())));
+}
+
+TEST(Peers, TakeMoreStepsWithALowerOrder) {
+  const model::Scene scene = sheet("hung-corners");
+  const auto steps = [&](const std::string& family, int order) {
+    const model::Cloth cloth = model::compile(scene);
+    reference::family(family).solve(cloth.ode, cloth.start, 0, std::vector{scene.end},
+                                    {.rtol = 1e-9, .size = model::size(scene), .max_order = order});
+    return cloth.ode.work->count(family.substr(0, family.find('-')) + "/steps");
+  };
+  for (const char* family : {"cvode-bdf", "ida-bdf"}) EXPECT_GT(steps(family, 2), 1.5 * steps(family, 5)) << family;
+  EXPECT_GT(steps("arkode-esdirk", 3), 1.5 * steps("arkode-esdirk", 5));
+}
+
+}  // namespace
+}  // namespace drape::verify
