@@ -105,7 +105,7 @@ TEST(EnergyGuard, LetsAHealthyRunPass) {
 TEST(EnergyGuard, EndsAnExplicitRunBeyondItsLimit) {
   const auto result = explicit_run(1.1, 3);
   EXPECT_EQ(result.outcome, Outcome::unstable);
-  EXPECT_THAT(result.message, testing::HasSubstr("J, the scene can have"));
+  EXPECT_THAT(result.message, testing::HasSubstr("J where the scene can have"));
   EXPECT_LT(result.last_good_time, 0.2) << "long before its numbers overflow";
   EXPECT_NEAR(result.last_good_time, 0.01 * result.steps, 1e-12) << "the step before";
 }

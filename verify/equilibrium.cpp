@@ -23,7 +23,7 @@ solver::Vectors equilibrium(const model::Scene& scene, solver::Vectors x) {
     const Eigen::VectorXd solved = inverse((f.array() * free.array()).matrix().reshaped<Eigen::RowMajor>().eval());
     return solver::Vectors(-solved.reshaped<Eigen::RowMajor>(x.rows(), 3));
   };
-  for (int iteration = 0; iteration < 100; ++iteration) {
+  for (int iteration = 0; iteration < 300; ++iteration) {
     ode.jacobian(0, x, at_rest, df_dx, df_dv);
     std::vector<Eigen::Triplet<double>> entries;
     for (int i = 0; i < df_dx.rows(); ++i) {

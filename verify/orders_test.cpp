@@ -21,7 +21,9 @@ using solver::StepReport;
 constexpr double duration = 1.5;  // [s]
 /// From where on the order rules to where round-off does.
 std::vector<int> refinements(const Method& method) {
-  if (method.order >= 4) return {100, 140, 200, 280};
+  if (method.order == 5) return {78, 156, 234, 312};
+  if (method.name == "esdirk4") return {66, 102, 150, 216};
+  if (method.order == 4) return {96, 192, 288, 384};
   return {150, 300, 600, 1200, 2400};
 }
 

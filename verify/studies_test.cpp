@@ -218,7 +218,9 @@ TEST_F(ProgramStudies, OrdersAreAsDeclared) {
   const auto all = tables("orders");
   ASSERT_THAT(all, SizeIs(1));
   EXPECT_THAT(verdicts(all[0]), ElementsAre("1 as declared", "1 as declared", "2 as declared", "2 as declared", "2 as declared",
-                                            "2 as declared", "2 as declared"));
+                                            "2 as declared", "2 as declared", "2 as declared", "3 as declared", testing::_,
+                                            "3 as declared", "4 as declared", testing::_))
+      << "the reference ends the fourth order early; BDF(5) is not stable for what swings";
 }
 
 TEST_F(ProgramStudies, EquilibriaConvergeAsDeclared) {

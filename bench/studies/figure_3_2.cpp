@@ -135,7 +135,7 @@ results::Table swings(const Runs& runs) {
   for (std::size_t k = 0; k < runs.size(); ++k)
     for (const Flutter& seen : runs[k]) {
       add_damping(table, k);
-      table.text("method", "method", "time integrator", seen.run.method);
+      table.text("method", "method", "time integrator", seen.run.method.substr(0, seen.run.method.find('/')));
       table.number("peak_to_peak", "swing", "m", "of the free edge's mean, from peak to peak", seen.peak_to_peak());
       table.number("rms", "rms", "m", "of the same", seen.rms());
       table.number("wrinkles", "wrinkles", "m", "root mean square distance of the free edge from its mean", seen.wrinkles);

@@ -29,6 +29,9 @@ Cell cell(const model::Scene& scene, std::string_view method) {
   return {scene, "", &solver::method(method), h, solver::thesis_options()};
 }
 
+/// The method alone: all runs have the thesis' solvers.
+std::string method_of(const results::RunRecord& run) { return run.method.substr(0, run.method.find('/')); }
+
 using results::RunRecord;
 using results::StepRecord;
 using Steps = std::span<const StepRecord>;
@@ -63,8 +66,8 @@ results::Table over_time(const char* name, const char* title, const std::vector<
     for (const RunRecord& run : runs) {
       if (first + length > run.steps.size()) continue;
       for (const auto& [curve, description, value] : curves)
-        table.number(fmt::format("{}_{}", run.method, curve).c_str(),
-                     seen ? fmt::format("{}: {}", run.method, curve).c_str() : "", "1", description,
+        table.number(fmt::format("{}_{}", method_of(run), curve).c_str(),
+                     seen ? fmt::format("{}: {}", method_of(run), curve).c_str() : "", "1", description,
                      mean(Steps(run.steps).subspan(first, length), value));
     }
   }
@@ -74,7 +77,7 @@ results::Table over_time(const char* name, const char* title, const std::vector<
 /// A measured ratio beside what it may be at most.
 void add_bar(results::TableBuilder& table, const RunRecord& run, const char* what, double value, double bar) {
   table.row();
-  table.text("method", "method", "time integrator", run.method);
+  table.text("method", "method", "time integrator", method_of(run));
   table.text("ratio", "ratio", "of what", what);
   table.number("value", "value", "1", "measured", value);
   table.number("bar", "bar", "1", "what it may be at most", bar);

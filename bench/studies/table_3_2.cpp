@@ -56,7 +56,7 @@ void add_row(results::TableBuilder& table, const Block& block, const Cell& cell,
   table.number("loop_tolerance", "loop tol.", "1", "of the fixed-point loop, over |b|", cell.options.loop_tolerance);
   table.number("cg_tolerance", "CG tol.", "1", "of a linear solve, over |b|; in the loop at most half of its",
                cell.options.cg_tolerance);
-  table.text("method", "method", "time integrator", run.method);
+  table.text("method", "method", "time integrator", std::string(cell.method->name));
   const auto printed = thesis.find(cell.method->name);
   const bool known = block.of_thesis && printed != thesis.end();
   add_draping(table, cell.scene, run, known ? std::optional(printed->second) : std::nullopt);
