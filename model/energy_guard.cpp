@@ -38,7 +38,8 @@ struct Exceeded {
 };
 
 std::string describe(const Exceeded& e, const EnergyGuard& guard) {
-  return fmt::format("at t = {:.4g} s its energy was {:.3g} J where the scene can have {:.3g} J", e.t, e.energy, guard.limit(e.t));
+  return fmt::format("at t = {:.4g} s its energy was {:.3g} J where the scene can have {:.3g} J", e.t, e.energy,
+                     guard.limit(e.t));
 }
 
 }  // namespace

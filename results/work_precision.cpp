@@ -4,6 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "results/runs_table.hpp"
+
 namespace drape::results {
 namespace {
 
@@ -15,14 +17,7 @@ double median(const Measured& candidate) { return quartiles(candidate.times).med
 
 Quartiles quartiles(std::vector<double> times) {
   if (times.empty()) throw std::invalid_argument("no times, no quartiles");
-  std::ranges::sort(times);
-  const auto at = [&](double part) {
-    const double place = part * static_cast<double>(times.size() - 1);
-    const auto below = static_cast<std::size_t>(place);
-    const std::size_t above = std::min(below + 1, times.size() - 1);
-    return std::lerp(times[below], times[above], place - static_cast<double>(below));
-  };
-  return {at(0.25), at(0.5), at(0.75)};
+  return {quantile(times, 0.25), quantile(times, 0.5), quantile(times, 0.75)};
 }
 
 bool tied(const Measured& a, const Measured& b) {

@@ -98,18 +98,21 @@ double direct(const FivePoint& A, const Vectors& z, double beta, Vectors& p, Vec
         return Lanes(Lanes::Zero());
       },
       [&](int b) {
-        Lanes sum = Lanes::Zero();
-        with_line(A, b, [&](const auto& line) {
-          double* const to = q.data() + line.begin;
-          const auto product = [&](int a) -> Lanes {
-            const Lanes x = line.at(p.data(), a), y = line.nodes[a].diagonal * x - line.around(p.data(), a);
-            sum += x * y;
-            return y;
-          };
-          for (int a = 0; a < A.nu - 1; ++a) Eigen::Map<Lanes>(to + 3 * a) = product(a);  // the next overwrites the fourth lane
-          store(to + 3 * (A.nu - 1), product(A.nu - 1));
+        return with_line(A, b, [&](const auto& line) {
+          const double* const x = p.data();
+          double* const y = q.data() + line.begin;
+          Lanes sum = Lanes::Zero();
+          const auto product = [&](int a) -> Lanes { return line.nodes[a].diagonal * line.at(x, a) - line.around(x, a); };
+          const int last = line.nu - 1;
+          for (int a = 0; a < last; ++a) {
+            const Lanes value = product(a);
+            sum += line.at(x, a) * value;
+            Eigen::Map<Lanes>(y + 3 * a) = value;  // the next overwrites the fourth lane
+          }
+          const Lanes value = product(last);
+          store(y + 3 * last, value);
+          return Lanes(sum + line.at(x, last) * value);
         });
-        return sum;
       });
   return sum(pq);
 }

@@ -74,13 +74,11 @@ struct GridLine {
   }
 };
 
-/// Calls f(line) with the GridLine of line b.
+/// f(line) for the GridLine of line b.
 template <class F>
-void with_line(const FivePoint& A, int b, const F& f) {
-  if (b == 0 || b >= A.nv - 2)
-    f(GridLine<true>(A, b));
-  else
-    f(GridLine<false>(A, b));
+auto with_line(const FivePoint& A, int b, const F& f) {
+  if (b == 0 || b >= A.nv - 2) return f(GridLine<true>(A, b));
+  return f(GridLine<false>(A, b));
 }
 
 /// p = z + β p and q = A p in one pass. Returns <p, q>.

@@ -52,15 +52,21 @@ void smooth_down(Level& level, const Vectors& r, Vectors& z) {
   const Eigen::Index next = 3 * static_cast<Eigen::Index>(level.u.coarse());
   const auto restricted = [&](int b) {
     with_line(A, b, [&](const auto& line) {
+      Lanes carried = Lanes::Zero();  // to the next coarse particle, which would wait if it were stored and loaded again
+      double* pending = nullptr;
+      const auto add = [&](auto in_v, double* to, const Lanes& part) {
+        store(to, load(to) + part);
+        if (in_v) store(to + next, load(to + next) + part);
+      };
       each_red(level, b, [&](int a, Eigen::Index coarse, auto in_u, auto in_v) {
         double* const to = level.r.data() + coarse;
         const Lanes part = (in_u ? 0.5 : 1) * (in_v ? 0.5 : 1) * line.around(z.data(), a);
-        const auto add = [&](double* place) { store(place, load(place) + part); };
-        add(to);
-        if (in_u) add(to + 3);
-        if (in_v) add(to + next);
-        if (in_u && in_v) add(to + next + 3);
+        add(in_v, to, in_u ? Lanes(part + carried) : part);
+        if (!in_u) return;
+        carried = part;
+        pending = to + 3;
       });
+      if (pending != nullptr) add(level.v.between(b), pending, carried);
     });
     return Lanes(Lanes::Zero());
   };
