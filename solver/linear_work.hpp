@@ -22,8 +22,8 @@ struct LinearWork {
         entries(work.counter("matrix_entries", "entries of A")),
         bytes(work.counter("linear_bytes", "bytes that the linear algebra moved, every array counted once a pass")) {
     for (const LinearSolver& solver : linear_solvers())
-      kinds.push_back({solver.name, &work.counter("linear_solver/" + std::string(solver.name),
-                                                  "factorizations for: " + std::string(solver.description))});
+      kinds.emplace_back(solver.name, &work.counter("linear_solver/" + std::string(solver.name),
+                                                    "factorizations for: " + std::string(solver.description)));
   }
 
   std::int64_t& factorizations_of(std::string_view solver) const {
