@@ -2,7 +2,6 @@
 # All that it says goes to standard error: standard output belongs to the program that is run afterwards.
 set -euo pipefail
 root=$(dirname "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")")
-export CCACHE_BASEDIR=$root  # paths inside count as relative: the copy that verify/mutants builds shares what is built here
 
 # install_packages <command>...: installs the packages in .ci/packages that these commands need and that are not there.
 install_packages() {

@@ -21,20 +21,20 @@ std::string title(const Cell& cell) {
 }
 
 /// What the runs of a group are measured by: their common scene, compiled once, and its reference or why there is none.
-struct Yardstick {
+struct Truth {
   model::Cloth cloth;
   std::optional<reference::Reference> reference;
   std::string remark;
 };
 
-Yardstick find_reference(const model::Scene& scene, References& references) {
-  Yardstick yardstick{model::compile(scene), std::nullopt, ""};
+Truth find_reference(const model::Scene& scene, References& references) {
+  Truth truth{model::compile(scene), std::nullopt, ""};
   try {
-    yardstick.reference = references(scene, yardstick.cloth);
+    truth.reference = references(scene, truth.cloth);
   } catch (const reference::ReferenceError& error) {
-    yardstick.remark = fmt::format("no reference: {}", error.what());
+    truth.remark = fmt::format("no reference: {}", error.what());
   }
-  return yardstick;
+  return truth;
 }
 
 void compare(results::RunRecord& run, const reference::Reference& reference, const model::Scene& scene,
@@ -44,11 +44,11 @@ void compare(results::RunRecord& run, const reference::Reference& reference, con
   if (run.contact) run.contact->reference_area = contact_area(scene, cloth, truth.times.back(), truth.states.back().x);
 }
 
-void measure_error(const Cell& cell, results::RunRecord& run, const Yardstick& yardstick) {
-  if (!yardstick.reference)
-    run.message += (run.message.empty() ? "" : "; ") + yardstick.remark;
+void measure_error(const Cell& cell, results::RunRecord& run, const Truth& truth) {
+  if (!truth.reference)
+    run.message += (run.message.empty() ? "" : "; ") + truth.remark;
   else if (run.outcome == to_string(solver::Outcome::success))
-    compare(run, *yardstick.reference, cell.scene, yardstick.cloth);
+    compare(run, *truth.reference, cell.scene, truth.cloth);
 }
 
 }  // namespace
@@ -63,17 +63,17 @@ std::vector<results::RunRecord> sweep(const std::vector<Group>& groups, const Sw
 
   std::vector<results::RunRecord> all;
   for (const Group& group : groups) {
-    Yardstick yardstick;
+    Truth truth;
     if (options.reference) {
       progress.show("reference of " + group.front().scene.name);
-      yardstick = find_reference(group.front().scene, references);
+      truth = find_reference(group.front().scene, references);
       progress.advance();
     }
     std::vector<results::RunRecord> runs;
     for (const Cell& cell : group) {
       progress.show(title(cell));
       runs.push_back(record(cell, options.look ? options.look(cell) : solver::Observer()));
-      if (options.reference) measure_error(cell, runs.back(), yardstick);
+      if (options.reference) measure_error(cell, runs.back(), truth);
       progress.advance();
     }
     progress.show("timing " + group.front().scene.name);

@@ -69,7 +69,7 @@ std::string written_frame(const KeyFrame& frame) {
 }
 
 constexpr unsigned only(ShapeKind kind) { return 1u << static_cast<unsigned>(kind); }
-constexpr unsigned all = ~0u;
+constexpr unsigned any_shape = ~0u;
 
 /// A key of obstacles: the shapes that have it, how it is read and how it is written, if it is.
 struct ObstacleKey {
@@ -81,8 +81,8 @@ struct ObstacleKey {
 };
 
 /// In the order of reading and writing: the shape comes first, a file before its checksum.
-constexpr ObstacleKey table[] = {
-    {"shape", all, true, [](const Value& v, ObstacleRule& o) { o.kind = static_cast<ShapeKind>(v.one_of(shapes)); },
+constexpr ObstacleKey obstacle_keys[] = {
+    {"shape", any_shape, true, [](const Value& v, ObstacleRule& o) { o.kind = static_cast<ShapeKind>(v.one_of(shapes)); },
      [](const ObstacleRule& o) { return written(shapes, o.kind); }},
     {"size", only(ShapeKind::box), true,
      [](const Value& v, ObstacleRule& o) {
@@ -100,16 +100,17 @@ constexpr ObstacleKey table[] = {
      [](const ObstacleRule& o) { return in_quotes(checksum(o.file)); }},
     {"scale", only(ShapeKind::mesh), false, [](const Value& v, ObstacleRule& o) { o.scale = v.positive(); },
      [](const ObstacleRule& o) { return fmt::format("{}", o.scale); }},
-    {"friction", all, false, [](const Value& v, ObstacleRule& o) { o.friction = v.non_negative(); },
+    {"friction", any_shape, false, [](const Value& v, ObstacleRule& o) { o.friction = v.non_negative(); },
      [](const ObstacleRule& o) { return fmt::format("{}", o.friction); }},
-    {"position", all, false, [](const Value& v, ObstacleRule& o) { o.motion.front().position = v.vector(); }, nullptr},
-    {"rotation", all, false, [](const Value& v, ObstacleRule& o) { o.motion.front().rotation = v.vector(); }, nullptr},
-    {"motion", all, false, read_motion, [](const ObstacleRule& o) { return written_list(o.motion, written_frame); }},
+    {"position", any_shape, false, [](const Value& v, ObstacleRule& o) { o.motion.front().position = v.vector(); }, nullptr},
+    {"rotation", any_shape, false, [](const Value& v, ObstacleRule& o) { o.motion.front().rotation = v.vector(); }, nullptr},
+    {"motion", any_shape, false, read_motion, [](const ObstacleRule& o) { return written_list(o.motion, written_frame); }},
 };
 
 std::vector<ObstacleKey> keys_of(ShapeKind kind) {
   std::vector<ObstacleKey> keys;
-  std::ranges::copy_if(table, std::back_inserter(keys), [&](const ObstacleKey& key) { return (key.shapes & only(kind)) != 0; });
+  std::ranges::copy_if(obstacle_keys, std::back_inserter(keys),
+                       [&](const ObstacleKey& key) { return (key.shapes & only(kind)) != 0; });
   return keys;
 }
 
@@ -135,7 +136,7 @@ ObstacleRule read_obstacle(const Value& value) {
   if (shape == nullptr) value.fail("'shape' in every obstacle");
   ObstacleRule rule;
   check_keys(value, static_cast<ShapeKind>(value.child("shape", *shape).one_of(shapes)));
-  for (const ObstacleKey& key : table)
+  for (const ObstacleKey& key : obstacle_keys)
     if (const toml::node* node = value.table().get(key.name)) key.read(value.child(key.name, *node), rule);
   return rule;
 }

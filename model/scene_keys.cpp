@@ -101,7 +101,7 @@ void read_relaxation(const Value& value, Scene& scene) {
   if (scene.contact.relaxation > 1) value.fail("a number above 0 and at most 1");
 }
 
-constexpr SceneKey table[] = {
+constexpr SceneKey all_keys[] = {
     {"name", "what tables and files call the scene", [](const Value& v, Scene& s) { s.name = v.text(); },
      [](const Scene& s) { return in_quotes(s.name); }},
     {"description", "one sentence", [](const Value& v, Scene& s) { s.description = v.text(); },
@@ -226,6 +226,6 @@ constexpr SceneKey table[] = {
 
 }  // namespace
 
-std::span<const SceneKey> scene_key_table() { return table; }
+std::span<const SceneKey> scene_key_table() { return all_keys; }
 
 }  // namespace drape::model

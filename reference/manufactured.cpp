@@ -95,7 +95,7 @@ double Function::operator()(double x, int n) const {
 }
 
 SurfacePoint::SurfacePoint(const Surface& surface, double u, double v) {
-  for (const Mode& mode : surface) {
+  for (const SurfaceMode& mode : surface) {
     Jet& jet = jets_.emplace_back();
     for (const Product& p : mode.products) {
       const std::array of_v{p.v(v), p.v(v, 1), p.v(v, 2), p.v(v, 3), p.v(v, 4)};

@@ -36,13 +36,13 @@ struct Product {
 };
 
 /// A sum of products that moves as one: T(t) Σ a U(u) V(v).
-struct Mode {
+struct SurfaceMode {
   std::vector<Product> products;
   Function time;
 };
 
 /// s(u, v, t) [m] of the parameters u, v [m] and the time [s]: a sum of modes.
-using Surface = std::vector<Mode>;
+using Surface = std::vector<SurfaceMode>;
 
 /// What the equation of motion asks of a surface at one point and time.
 struct MovingJet {

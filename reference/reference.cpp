@@ -39,7 +39,7 @@ State noise(const SplitOde& ode, double duration) {
   return {std::move(x), draw(1 / duration)};
 }
 
-State difference(const State& a, const State& b) { return {a.x - b.x, a.v - b.v}; }
+State change(const State& a, const State& b) { return {a.x - b.x, a.v - b.v}; }
 
 /// The state moved along a direction so that its positions move by `distance` [m, rms].
 State moved(const State& y, const State& direction, double distance) {
@@ -67,7 +67,7 @@ Reference compare(const SplitOde& ode, const State& y0, double duration, double 
     result.perturbed = a(moved(y0, direction, distance), false);
     const std::vector<double> grown = distances(result.perturbed, result.trajectory);
     for (std::size_t k = 0; k < grown.size(); ++k) result.growth[k] = std::max(result.growth[k], grown[k] / distance);
-    direction = difference(result.perturbed.states.back(), result.trajectory.states.back());
+    direction = change(result.perturbed.states.back(), result.trajectory.states.back());
   }
   return result;
 }

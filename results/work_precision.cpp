@@ -15,7 +15,7 @@ double median(const Measured& candidate) { return quartiles(candidate.times).med
 
 }  // namespace
 
-Quartiles quartiles(std::vector<double> times) {
+Quartiles quartiles(const std::vector<double>& times) {
   if (times.empty()) throw std::invalid_argument("no times, no quartiles");
   return {quantile(times, 0.25), quantile(times, 0.5), quantile(times, 0.75)};
 }

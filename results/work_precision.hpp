@@ -19,7 +19,7 @@ struct Quartiles {
 };
 
 /// Throws std::invalid_argument if there are no times.
-Quartiles quartiles(std::vector<double> times);
+Quartiles quartiles(const std::vector<double>& times);
 
 /// Whether the difference of two medians is no more than noise: the middle halves of their times overlap.
 bool tied(const Measured& a, const Measured& b);

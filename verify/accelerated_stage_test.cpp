@@ -9,7 +9,7 @@
 #include "model/scene_file.hpp"
 #include "verify/small_problems.hpp"
 
-namespace drape::verify {
+namespace drape::verify::accelerated_stage_test {
 namespace {
 
 using namespace small_problems;
@@ -200,4 +200,4 @@ TEST(ErrorControl, RejectsSteps) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::accelerated_stage_test

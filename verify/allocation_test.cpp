@@ -45,7 +45,7 @@ int posix_memalign(void** result, std::size_t alignment, std::size_t size) noexc
 }
 #endif
 
-namespace drape::verify {
+namespace drape::verify::allocation_test {
 namespace {
 
 using namespace small_problems;
@@ -126,4 +126,4 @@ TEST_P(Allocations, AreSeenIfTheForceAllocates) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::allocation_test

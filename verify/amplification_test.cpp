@@ -11,7 +11,7 @@
 #include "verify/convergence.hpp"
 #include "verify/small_problems.hpp"
 
-namespace drape::verify {
+namespace drape::verify::amplification_test {
 namespace {
 
 using namespace small_problems;
@@ -228,4 +228,4 @@ TEST(ArtificialDamping, OfImexEulerIsTheStepTimesKappa) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::amplification_test

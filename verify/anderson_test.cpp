@@ -5,7 +5,7 @@
 #include "solver/history.hpp"
 #include "verify/small_problems.hpp"
 
-namespace drape::verify {
+namespace drape::verify::anderson_test {
 namespace {
 
 using solver::Anderson;
@@ -102,4 +102,4 @@ TEST(History, KeepsTheNewestOnlyAfterARestart) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::anderson_test

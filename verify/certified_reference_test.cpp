@@ -10,7 +10,7 @@
 #include "reference/reference.hpp"
 #include "verify/small_problems.hpp"
 
-namespace drape::verify {
+namespace drape::verify::certified_reference_test {
 namespace {
 
 using namespace small_problems;
@@ -159,4 +159,4 @@ TEST(Growth, TellsAFoldingSheetFromADampedOne) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::certified_reference_test

@@ -8,7 +8,7 @@
 #include "model/scene_file.hpp"
 #include "verify/model_fixtures.hpp"
 
-namespace drape::verify {
+namespace drape::verify::compile_test {
 namespace {
 
 using namespace sheets;
@@ -164,4 +164,4 @@ TEST(Compile, LeavesTwoClothsOfOneSceneIndependent) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::compile_test

@@ -9,7 +9,7 @@
 #include "verify/small_matrices.hpp"
 #include "verify/small_problems.hpp"
 
-namespace drape::verify {
+namespace drape::verify::conjugate_gradients_test {
 namespace {
 
 using namespace small_matrices;
@@ -167,4 +167,4 @@ TEST_P(ConjugateGradientsWith, DoNothingWhereThereIsNothingToSolve) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::conjugate_gradients_test

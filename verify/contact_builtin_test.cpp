@@ -12,7 +12,7 @@
 
 #include "verify/contact_scenes.hpp"
 
-namespace drape::verify {
+namespace drape::verify::contact_builtin_test {
 namespace {
 
 using namespace contact_scenes;
@@ -73,4 +73,4 @@ TEST_P(BuiltinWithoutObstacles, HasNoWorkForContacts) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::contact_builtin_test

@@ -14,7 +14,7 @@
 #include "verify/small_matrices.hpp"
 #include "verify/small_problems.hpp"
 
-namespace drape::verify {
+namespace drape::verify::contact_sheet_test {
 namespace {
 
 using namespace contact_scenes;
@@ -194,4 +194,4 @@ TEST(ReactionConstraints, BrakeASlidingParticle) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::contact_sheet_test

@@ -10,7 +10,7 @@
 
 #include "verify/contact_scenes.hpp"
 
-namespace drape::verify {
+namespace drape::verify::contact_test {
 namespace {
 
 using namespace contact_scenes;
@@ -300,4 +300,4 @@ TEST_P(Contact, EndsTenThousandRandomDropsOutsideAndAtLessEnergy) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::contact_test

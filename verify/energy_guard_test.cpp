@@ -12,7 +12,7 @@
 
 #include "model/scene_file.hpp"
 
-namespace drape::verify {
+namespace drape::verify::energy_guard_test {
 namespace {
 
 using model::Cloth;
@@ -119,4 +119,4 @@ TEST(EnergyGuard, IsExceededByWhatIsNoNumber) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::energy_guard_test

@@ -10,7 +10,7 @@
 #include "verify/pinned_sheet.hpp"
 #include "verify/small_problems.hpp"
 
-namespace drape::verify {
+namespace drape::verify::energy_test {
 namespace {
 
 using solver::Method;
@@ -114,4 +114,4 @@ TEST_P(EnergyOfEveryMethod, IsLostAsMuchAsIsDissipatedToTheOrderOfTheMethod) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::energy_test

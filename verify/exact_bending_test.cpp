@@ -12,7 +12,7 @@
 #include "verify/convergence.hpp"
 #include "verify/equilibrium.hpp"
 
-namespace drape::verify {
+namespace drape::verify::exact_bending_test {
 namespace {
 
 using reference::BendingForce;
@@ -161,4 +161,4 @@ TEST_P(Bending, MassesAndSpringsComeToLargeDeflectionsWithSecondOrder) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::exact_bending_test

@@ -10,7 +10,7 @@
 #include "reference/exact/tension.hpp"
 #include "verify/convergence.hpp"
 
-namespace drape::verify {
+namespace drape::verify::exact_chain_test {
 namespace {
 
 using reference::ChainWave;
@@ -123,4 +123,4 @@ TEST(ChainWave, ContinuumFulfilsTheWaveEquation) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::exact_chain_test

@@ -5,7 +5,7 @@
 #include "model/cloth.hpp"
 #include "model/scene_file.hpp"
 
-namespace drape::verify {
+namespace drape::verify::exact_jacobian_test {
 namespace {
 
 using solver::SparseMatrix;
@@ -49,4 +49,4 @@ TEST(ExactJacobian, OverwritesWhatItIsGiven) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::exact_jacobian_test

@@ -10,7 +10,7 @@
 #include "reference/exact/polynomials.hpp"
 #include "verify/convergence.hpp"
 
-namespace drape::verify {
+namespace drape::verify::exact_polynomials_test {
 namespace {
 
 using namespace reference;
@@ -79,4 +79,4 @@ TEST(Collocation, SaysWhenThereIsNoSolution) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::exact_polynomials_test

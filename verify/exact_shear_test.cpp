@@ -13,7 +13,7 @@
 #include "verify/convergence.hpp"
 #include "verify/equilibrium.hpp"
 
-namespace drape::verify {
+namespace drape::verify::exact_shear_test {
 namespace {
 
 using Eigen::Vector2d;
@@ -137,4 +137,4 @@ TEST(ShearedSheet, IsWhatMassesAndSpringsComeToWithSecondOrder) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::exact_shear_test

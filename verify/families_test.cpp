@@ -17,7 +17,7 @@
 #include "reference/reference.hpp"
 #include "verify/small_problems.hpp"
 
-namespace drape::verify {
+namespace drape::verify::families_test {
 namespace {
 
 using namespace small_problems;
@@ -197,4 +197,4 @@ TEST(Kinsol, SaysThatASheetWithoutPinsHasNoEquilibrium) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::families_test

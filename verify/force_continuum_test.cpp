@@ -9,7 +9,7 @@
 
 #include "verify/model_fixtures.hpp"
 
-namespace drape::verify {
+namespace drape::verify::force_continuum_test {
 namespace {
 
 using namespace sheets;
@@ -260,4 +260,4 @@ TEST(Continuum, PrintedShearIsNotConsistentOnBorders) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::force_continuum_test

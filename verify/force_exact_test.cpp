@@ -9,7 +9,7 @@
 #include "reference/exact/tension.hpp"
 #include "verify/model_fixtures.hpp"
 
-namespace drape::verify {
+namespace drape::verify::force_exact_test {
 namespace {
 
 using namespace sheets;
@@ -142,4 +142,4 @@ TEST_P(PulledFrom, HasItsExactSolutionAtTheNodes) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::force_exact_test

@@ -9,7 +9,7 @@
 #include "solver/decompositions.hpp"
 #include "verify/model_fixtures.hpp"
 
-namespace drape::verify {
+namespace drape::verify::force_symmetry_test {
 namespace {
 
 using namespace sheets;
@@ -177,4 +177,4 @@ TEST(Normals, PointOutOfTheSheetAndTurnWithIt) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::force_symmetry_test

@@ -10,7 +10,7 @@
 #include "solver/decompositions.hpp"
 #include "verify/model_fixtures.hpp"
 
-namespace drape::verify {
+namespace drape::verify::forces_test {
 namespace {
 
 using namespace sheets;
@@ -179,4 +179,4 @@ TEST_P(CheckerOf, RejectsAJacobianWithOneWrongEntry) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::forces_test

@@ -9,7 +9,7 @@
 #include "model/scene_file.hpp"
 #include "verify/bench_integrators.hpp"
 
-namespace drape::verify {
+namespace drape::verify::frames_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -158,4 +158,4 @@ TEST(Frames, ShowTheSurfacesOfObstaclesWhereTheyAreFromOutside) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::frames_test

@@ -8,7 +8,7 @@
 
 #include "verify/model_fixtures.hpp"
 
-namespace drape::verify {
+namespace drape::verify::grid_sweep_test {
 namespace {
 
 using namespace sheets;
@@ -113,4 +113,4 @@ TEST(GridSweep, ReadsVelocitiesOnlyIfTheLawAsks) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::grid_sweep_test

@@ -9,7 +9,7 @@
 #include "verify/convergence.hpp"
 #include "verify/small_problems.hpp"
 
-namespace drape::verify {
+namespace drape::verify::hung_sheet_test {
 namespace {
 
 using namespace small_problems;
@@ -88,4 +88,4 @@ TEST(HungSheet, HasMovedFarBeyondTheErrors) { EXPECT_GE(rms_distance(hung_sheet(
 TEST(HungSheet, IsNotThatOfAnotherMaterial) { EXPECT_GE(rms_distance(hung_sheet().end.x, HungSheet("5.001").end.x), 1e-6); }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::hung_sheet_test

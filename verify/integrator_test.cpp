@@ -9,7 +9,7 @@
 
 #include "verify/small_problems.hpp"
 
-namespace drape::verify {
+namespace drape::verify::integrator_test {
 namespace {
 
 using namespace small_problems;
@@ -186,4 +186,4 @@ TEST(Integrate, IsTheSameInOneRunAndInTwo) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::integrator_test

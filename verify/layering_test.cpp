@@ -16,7 +16,7 @@
 #include <string_view>
 #include <vector>
 
-namespace drape::verify {
+namespace drape::verify::layering_test {
 namespace {
 
 using testing::ElementsAre;
@@ -195,4 +195,4 @@ TEST(LayeringChecker, IgnoresCommentsButNotWhatFollowsThem) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::layering_test

@@ -9,7 +9,7 @@
 #include "verify/small_matrices.hpp"
 #include "verify/small_problems.hpp"
 
-namespace drape::verify {
+namespace drape::verify::linear_algebra_test {
 namespace {
 
 using namespace small_matrices;
@@ -191,4 +191,4 @@ TEST(Factor, SeesNumbersThatAreNotFinite) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::linear_algebra_test

@@ -6,7 +6,7 @@
 
 #include <limits>
 
-namespace drape::verify {
+namespace drape::verify::linear_prediction_test {
 namespace {
 
 using reference::predict;
@@ -37,4 +37,4 @@ TEST(LinearPrediction, SeesTheThesisLoopSlowDownWithStiffnessOverDamping) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::linear_prediction_test

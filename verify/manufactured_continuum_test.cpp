@@ -9,7 +9,7 @@
 
 #include "verify/manufactured_sheets.hpp"
 
-namespace drape::verify {
+namespace drape::verify::manufactured_continuum_test {
 namespace {
 
 using namespace manufactured;
@@ -119,4 +119,4 @@ TEST(ManufacturedLoad, IsAlongTheNormalForWhatBendsAlongIt) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::manufactured_continuum_test

@@ -11,8 +11,8 @@ namespace {
 /// Amplitudes [p][q] of the product of basis p along u and q along v [m].
 using Amplitudes = std::array<std::array<Vector3d, 3>, 3>;
 
-reference::Mode mode(const Amplitudes& amplitudes, const Motion& motion, const Function& time) {
-  reference::Mode all{{}, time};
+reference::SurfaceMode mode(const Amplitudes& amplitudes, const Motion& motion, const Function& time) {
+  reference::SurfaceMode all{{}, time};
   for (int p = 0; p < 3; ++p)
     for (int q = 0; q < 3; ++q) {
       const Vector3d& a = amplitudes[p][q];
@@ -22,7 +22,7 @@ reference::Mode mode(const Amplitudes& amplitudes, const Motion& motion, const F
 }
 
 /// Swings as a whole if its borders are free, inside of them if not, because pins move with constant velocity.
-reference::Mode swing(const Motion& motion) {
+reference::SurfaceMode swing(const Motion& motion) {
   Amplitudes amplitudes{{{{{0.03, 0.02, 0.05}, {0.03, -0.02, 0.02}, {0.02, -0.01, 0.02}}},
                          {{{0.02, 0.03, -0.03}, {-0.03, 0.02, 0.04}, {0.01, 0.01, -0.01}}},
                          {{{-0.02, 0.01, 0.02}, {0.01, -0.02, 0.03}, {0.04, 0.03, 0.05}}}}};

@@ -14,7 +14,7 @@
 #include "verify/manufactured_materials.hpp"
 #include "verify/manufactured_sheets.hpp"
 
-namespace drape::verify {
+namespace drape::verify::manufactured_space_test {
 namespace {
 
 using namespace manufactured;
@@ -109,4 +109,4 @@ TEST(ManufacturedMotionCheck, RejectsWholeMassesOnBorders) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::manufactured_space_test

@@ -14,7 +14,7 @@
 #include "verify/manufactured_sheets.hpp"
 #include "verify/small_problems.hpp"
 
-namespace drape::verify {
+namespace drape::verify::manufactured_space_time_test {
 namespace {
 
 using namespace manufactured;
@@ -85,4 +85,4 @@ TEST(ManufacturedSpaceTimeCheck, RejectsAMethodThatIsWorseThanDeclared) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::manufactured_space_time_test

@@ -15,7 +15,7 @@
 #include "verify/manufactured_sheets.hpp"
 #include "verify/small_problems.hpp"
 
-namespace drape::verify {
+namespace drape::verify::manufactured_time_test {
 namespace {
 
 using namespace manufactured;
@@ -132,4 +132,4 @@ TEST(ManufacturedTimeCheck, RejectsALoadThatIsALittleOff) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::manufactured_time_test

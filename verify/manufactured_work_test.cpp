@@ -12,7 +12,7 @@
 #include "verify/convergence.hpp"
 #include "verify/manufactured_sheets.hpp"
 
-namespace drape::verify {
+namespace drape::verify::manufactured_work_test {
 namespace {
 
 using namespace manufactured;
@@ -144,4 +144,4 @@ TEST(ManufacturedWorkCheck, RejectsWholeCellsOnBorders) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::manufactured_work_test

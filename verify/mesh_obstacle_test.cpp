@@ -19,7 +19,7 @@
 #include "verify/mesh_files.hpp"
 #include "verify/temporary_folder.hpp"
 
-namespace drape::verify {
+namespace drape::verify::mesh_obstacle_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -240,4 +240,4 @@ TEST(RefusedMesh, EnclosesNothing) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::mesh_obstacle_test

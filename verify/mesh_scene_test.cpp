@@ -12,7 +12,7 @@
 #include "verify/mesh_files.hpp"
 #include "verify/temporary_folder.hpp"
 
-namespace drape::verify {
+namespace drape::verify::mesh_scene_test {
 namespace {
 
 using model::Scene;
@@ -98,4 +98,4 @@ TEST_F(MeshScene, IsRefusedWithoutAScaleOrWithAFolderForAMesh) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::mesh_scene_test

@@ -10,7 +10,7 @@
 
 #include "verify/small_problems.hpp"
 
-namespace drape::verify {
+namespace drape::verify::methods_test {
 namespace {
 
 using namespace small_problems;
@@ -280,4 +280,4 @@ TEST(MethodsOfSecondOrder, FollowALinearAccelerationExactlyInTheVelocity) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::methods_test

@@ -12,7 +12,7 @@
 #include "model/cloth.hpp"
 #include "verify/pinned_sheet.hpp"
 
-namespace drape::verify {
+namespace drape::verify::modes_test {
 namespace {
 
 using reference::LinearMode;
@@ -129,4 +129,4 @@ TEST(Modes, ThatDoNotExistAreRefused) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::modes_test

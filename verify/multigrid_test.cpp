@@ -10,7 +10,7 @@
 #include "verify/small_matrices.hpp"
 #include "verify/small_problems.hpp"
 
-namespace drape::verify {
+namespace drape::verify::multigrid_test {
 namespace {
 
 using namespace small_matrices;
@@ -225,4 +225,4 @@ TEST(AutomaticChoice, IsCountedAndMadeAnewForNewValues) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::multigrid_test

@@ -6,7 +6,7 @@
 #include "model/scene_file.hpp"
 #include "verify/small_problems.hpp"
 
-namespace drape::verify {
+namespace drape::verify::newton_matrix_test {
 namespace {
 
 using namespace small_problems;
@@ -120,4 +120,4 @@ TEST(NewtonMatrixOfExactJacobian, WouldNotBePositiveDefinite) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::newton_matrix_test

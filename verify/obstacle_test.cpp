@@ -12,7 +12,7 @@
 
 #include "verify/distance_field.hpp"
 
-namespace drape::verify {
+namespace drape::verify::obstacle_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -181,4 +181,4 @@ TEST(Pose, ToBodyUndoesToWorld) {
 TEST(Obstacle, HasItsFriction) { EXPECT_EQ(Obstacle({.kind = ShapeKind::plane, .friction = 0.25}).friction(), 0.25); }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::obstacle_test

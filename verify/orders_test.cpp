@@ -8,7 +8,7 @@
 #include "verify/convergence.hpp"
 #include "verify/small_problems.hpp"
 
-namespace drape::verify {
+namespace drape::verify::orders_test {
 namespace {
 
 using namespace small_problems;
@@ -208,4 +208,4 @@ TEST(OrderCheck, AllowsATenthBetweenNeighbours) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::orders_test

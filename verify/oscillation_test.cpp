@@ -16,7 +16,7 @@
 #include "verify/pinned_sheet.hpp"
 #include "verify/small_problems.hpp"
 
-namespace drape::verify {
+namespace drape::verify::oscillation_test {
 namespace {
 
 using reference::LinearMode;
@@ -140,4 +140,4 @@ TEST_P(OscillationBy, DriftsWithoutDampingAsTheAmplificationSays) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::oscillation_test

@@ -11,7 +11,7 @@
 #include "reference/families.hpp"
 #include "reference/reference.hpp"
 
-namespace drape::verify {
+namespace drape::verify::peers_test {
 namespace {
 
 using reference::NewtonSolve;
@@ -106,4 +106,4 @@ TEST(Peers, TakeMoreStepsWithALowerOrder) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::peers_test

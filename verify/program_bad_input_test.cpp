@@ -8,7 +8,7 @@
 
 #include "verify/bench_integrators.hpp"
 
-namespace drape::verify {
+namespace drape::verify::program_bad_input_test {
 namespace {
 
 using testing::AllOf;
@@ -190,4 +190,4 @@ TEST(GoodInput, FromWhichTheBadOnesDifferIsAccepted) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::program_bad_input_test

@@ -6,7 +6,7 @@
 
 #include "verify/bench_integrators.hpp"
 
-namespace drape::verify {
+namespace drape::verify::program_run_test {
 namespace {
 
 using testing::AllOf;
@@ -312,4 +312,4 @@ TEST(ProgramRun, OffersStatisticsWherePerturbationsGrow) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::program_run_test

@@ -7,7 +7,7 @@
 
 #include "verify/bench_integrators.hpp"
 
-namespace drape::verify {
+namespace drape::verify::program_test {
 namespace {
 
 using testing::AllOf;
@@ -138,4 +138,4 @@ TEST(ProgramStudy, HungSheetsComparesAllMethodsOnFourSheets) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::program_test

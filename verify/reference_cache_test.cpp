@@ -12,7 +12,7 @@
 #include "reference/cache.hpp"
 #include "verify/temporary_folder.hpp"
 
-namespace drape::verify {
+namespace drape::verify::reference_cache_test {
 namespace {
 
 using reference::Cache;
@@ -209,4 +209,4 @@ TEST(CacheFolder, IsTheFirstThatTheEnvironmentNames) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::reference_cache_test

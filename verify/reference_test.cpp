@@ -11,7 +11,7 @@
 #include "reference/first_order.hpp"
 #include "verify/known_motions.hpp"
 
-namespace drape::verify {
+namespace drape::verify::reference_test {
 namespace {
 
 using namespace known_motions;
@@ -233,4 +233,4 @@ TEST(PulledSheet, HoldsEveryNodeOfAGridInEquilibrium) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::reference_test

@@ -7,7 +7,7 @@
 #include "reference/exact/tension.hpp"
 #include "verify/small_problems.hpp"
 
-namespace drape::verify {
+namespace drape::verify::rest_test {
 namespace {
 
 using namespace small_problems;
@@ -61,4 +61,4 @@ TEST_P(Rest, NeedsNoWork) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::rest_test

@@ -13,7 +13,7 @@
 #include "results/provenance.hpp"
 #include "verify/temporary_folder.hpp"
 
-namespace drape::verify {
+namespace drape::verify::results_provenance_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -131,4 +131,4 @@ TEST_F(GitCommit, DoesNotCauseARebuildWithoutChange) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::results_provenance_test

@@ -12,7 +12,7 @@
 
 #include "results/runs_table.hpp"
 
-namespace drape::verify {
+namespace drape::verify::results_table_test {
 namespace {
 
 using namespace results;
@@ -205,4 +205,4 @@ TEST(WorkCount, IsZeroForAKindTheRunDoesNotKnow) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::results_table_test

@@ -22,7 +22,7 @@
 #include "results/run_file.hpp"
 #include "verify/temporary_folder.hpp"
 
-namespace drape::verify {
+namespace drape::verify::results_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -390,4 +390,4 @@ TEST(ReadRuns, RefusesForeignHdf5AndOtherVersions) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::results_test

@@ -8,7 +8,7 @@
 #include "model/scene_file.hpp"
 #include "verify/temporary_folder.hpp"
 
-namespace drape::verify {
+namespace drape::verify::scene_error_test {
 namespace {
 
 using model::load_scene;
@@ -218,4 +218,4 @@ TEST(SceneError, OfAnOverrideWithoutKeyOrValue) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::scene_error_test

@@ -12,7 +12,7 @@
 #include "model/cloth.hpp"
 #include "verify/temporary_folder.hpp"
 
-namespace drape::verify {
+namespace drape::verify::scene_file_test {
 namespace {
 
 using model::Scene;
@@ -283,4 +283,4 @@ TEST(Override, AppliesToBuiltinScenesToo) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::scene_file_test

@@ -10,7 +10,7 @@
 #include "model/cloth.hpp"
 #include "model/edges.hpp"
 
-namespace drape::verify {
+namespace drape::verify::scene_test {
 namespace {
 
 using model::compile;
@@ -180,4 +180,4 @@ TEST(SceneNumbers, KnowSheetsWithoutDampingOrTension) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::scene_test

@@ -9,7 +9,7 @@
 #include "solver/decompositions.hpp"
 #include "verify/small_problems.hpp"
 
-namespace drape::verify {
+namespace drape::verify::stability_test {
 namespace {
 
 using namespace small_problems;
@@ -109,4 +109,4 @@ TEST(Spectrum, IsNearThatOfADenseSolverOnSheets) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::stability_test

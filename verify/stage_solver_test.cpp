@@ -6,7 +6,7 @@
 
 #include "verify/small_problems.hpp"
 
-namespace drape::verify {
+namespace drape::verify::stage_solver_test {
 namespace {
 
 using namespace small_problems;
@@ -67,7 +67,7 @@ TEST_P(StageOf, IsSolvedByTheLoop) {
     c.options.linear_solver = &kind;
     ASSERT_EQ(c.solve().outcome, Outcome::success);
     EXPECT_LE(c.residual(), 1e-12) << kind.name;
-    EXPECT_EQ(c.y.x, c.ax + gamma * c.y.v) << kind.name;
+    EXPECT_LE(largest(c.y.x - c.ax - gamma * c.y.v), 1e-15) << kind.name;
   }
 }
 
@@ -80,7 +80,7 @@ TEST_P(StageOf, IsSolvedByOneLinearSystemIfTheExplicitPartIsGiven) {
     ASSERT_EQ(result.outcome, Outcome::success);
     EXPECT_EQ(result.updates, 1);
     EXPECT_LE(c.residual_with(f), 1e-12) << kind.name;
-    EXPECT_EQ(c.y.x, c.ax + gamma * c.y.v) << kind.name;
+    EXPECT_LE(largest(c.y.x - c.ax - gamma * c.y.v), 1e-15) << kind.name;
   }
 }
 
@@ -236,4 +236,4 @@ TEST(StageSolver, TakesAMotionThatDiedOutForNoBreakdown) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::stage_solver_test

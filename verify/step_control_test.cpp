@@ -6,7 +6,7 @@
 
 #include "verify/small_problems.hpp"
 
-namespace drape::verify {
+namespace drape::verify::step_control_test {
 namespace {
 
 using namespace small_problems;
@@ -108,4 +108,4 @@ TEST(Verlet, DoesNotHangWhereItsLimitIsUnknown) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::step_control_test

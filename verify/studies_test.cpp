@@ -14,7 +14,7 @@
 #include "verify/bench_integrators.hpp"
 #include "verify/temporary_folder.hpp"
 
-namespace drape::verify {
+namespace drape::verify::studies_test {
 namespace {
 
 using results::Cell;
@@ -311,4 +311,4 @@ TEST_F(ProgramStudies, ScalingTellsWhatWasChosenAndWhatAnIterationMoves) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::studies_test

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace drape::verify {
+namespace drape::verify::verdict_test {
 namespace {
 
 using results::judge;
@@ -34,4 +34,4 @@ TEST(VerdictOnARun, OfARunThatFailedIsItsReasonWhateverItsError) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::verdict_test

@@ -10,7 +10,7 @@
 #include "verify/model_fixtures.hpp"
 #include "verify/small_problems.hpp"
 
-namespace drape::verify {
+namespace drape::verify::wind_test {
 namespace {
 
 using namespace sheets;
@@ -224,4 +224,4 @@ TEST(WindAndAir, MoveAHeldSheetAtTheOrderOfBdf2) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::wind_test

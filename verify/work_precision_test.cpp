@@ -14,7 +14,7 @@
 #include "results/run_file.hpp"
 #include "verify/bench_integrators.hpp"
 
-namespace drape::verify {
+namespace drape::verify::work_precision_test {
 namespace {
 
 using results::Measured;
@@ -121,4 +121,4 @@ TEST_F(WorkPrecision, NamesWinnersJudgesTheBarsAndDrawsEveryScene) {
 }
 
 }  // namespace
-}  // namespace drape::verify
+}  // namespace drape::verify::work_precision_test

@@ -15,8 +15,8 @@ namespace {
 using solver::SparseMatrix;
 using solver::Vectors;
 
-constexpr double step = 0.01;  ///< [s]
-constexpr double longest = 1;  ///< [s]
+constexpr double lag_step = 0.01;  ///< [s]
+constexpr double longest = 1;      ///< [s]
 constexpr double agreement = 0.1;
 
 /// How far the centre of mass has sunk [m], step by step from t = 0 on.
@@ -24,14 +24,14 @@ struct Fall {
   std::vector<double> sunk;
   solver::Outcome outcome;
 
-  double end() const { return step * static_cast<double>(sunk.size() - 1); }
+  double end() const { return lag_step * static_cast<double>(sunk.size() - 1); }
 
   /// When it had sunk so far for the first time, linear between steps [s]; the end if it never had.
   double time_of(double depth) const {
     const auto after = std::ranges::find_if(sunk, [depth](double s) { return s >= depth; });
     if (after == sunk.begin()) return 0;
     if (after == sunk.end()) return end();
-    return step * (static_cast<double>(after - sunk.begin()) - (*after - depth) / (*after - *(after - 1)));
+    return lag_step * (static_cast<double>(after - sunk.begin()) - (*after - depth) / (*after - *(after - 1)));
   }
 };
 
@@ -49,7 +49,7 @@ Fall fall(const model::Cloth& cloth, const char* method, double end, int substep
   const auto look = [&](const solver::StepReport& s) {
     if (++count % substeps == 0) seen.sunk.push_back(start - height(s.y));
   };
-  seen.outcome = integrate(integrator, end, step / substeps, look).outcome;
+  seen.outcome = integrate(integrator, end, lag_step / substeps, look).outcome;
   return seen;
 }
 
@@ -77,7 +77,7 @@ Eigen::SparseMatrix<double> slow_inertia(const solver::SplitOde& ode) {
   for (int i = 0; i < ode.particles(); ++i) {
     entries.emplace_back(i, i, ode.mass[i]);
     for (SparseMatrix::InnerIterator b(ode.stiffness, i); b; ++b)
-      if (!pinned[b.row()] && !pinned[b.col()]) entries.emplace_back(b.row(), b.col(), -step * step * b.value());
+      if (!pinned[b.row()] && !pinned[b.col()]) entries.emplace_back(b.row(), b.col(), -lag_step * lag_step * b.value());
   }
   Eigen::SparseMatrix<double> inertia(ode.particles(), ode.particles());
   inertia.setFromTriplets(entries.begin(), entries.end());
@@ -96,8 +96,8 @@ model::Cloth predicted_sbdf2(model::Cloth cloth) {
   };
 
   solver::Integrator first(ode, solver::method("sbdf2"), {}, cloth.start);
-  first.step(step);
-  Vectors momentum = -step * (ode.stiffness * (first.state().x - cloth.start.x));
+  first.step(lag_step);
+  Vectors momentum = -lag_step * (ode.stiffness * (first.state().x - cloth.start.x));
   reduce(momentum);
   cloth.start.v += ode.mass.cwiseInverse().asDiagonal() * momentum;
 
@@ -132,7 +132,7 @@ void add_lags(results::TableBuilder& table, const char* method, double measured,
 void add_row(results::TableBuilder& table, double nu, double ratio) {
   const model::Sheet sheet = model::load_scene("hung-edge").sheet;
   const model::Grid& grid = sheet.grid;
-  const double rho = sheet.material.density, l = grid.spacing_v(), L = grid.size_v, h = step;
+  const double rho = sheet.material.density, l = grid.spacing_v(), L = grid.size_v, h = lag_step;
   const double k = nu * rho * l * l / (h * h), d = h * k / ratio;
   const model::Cloth cloth = strip(grid, k, d);
   Fall bdf2 = fall(cloth, "bdf2", longest);

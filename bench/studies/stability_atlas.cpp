@@ -28,15 +28,15 @@ struct Sheet {
   bool spot_check = false;  ///< only what the bar is about
 };
 
-std::vector<double> decades(int from, int to, int step = 1) {
+std::vector<double> decades(int from, int to, int stride = 1) {
   std::vector<double> all;
-  for (int k = from; k <= to; k += step) all.push_back(std::pow(10, k));
+  for (int k = from; k <= to; k += stride) all.push_back(std::pow(10, k));
   return all;
 }
 
 /// h k/d, without damping at the end.
-std::vector<double> ratios(int from, int to, int step = 1) {
-  std::vector<double> all = decades(from, to, step);
+std::vector<double> ratios(int from, int to, int stride = 1) {
+  std::vector<double> all = decades(from, to, stride);
   all.push_back(infinity);
   return all;
 }
@@ -228,9 +228,9 @@ results::Table list_surprises(const Atlas& atlas) {
 
 std::vector<TableJob> stability_atlas(bool quick) {
   const auto atlas = std::make_shared<Atlas>(Atlas{sheets(quick), rows(), {}});
-  int scenes = 0;
-  for (const Sheet& sheet : atlas->sheets) scenes += static_cast<int>(sheet.stiffnesses.size() * sheet.ratios.size());
-  std::vector<TableJob> jobs{{scenes, [=](Progress& progress) { return explore(*atlas, progress); }}};
+  int cells = 0;
+  for (const Sheet& sheet : atlas->sheets) cells += static_cast<int>(sheet.stiffnesses.size() * sheet.ratios.size());
+  std::vector<TableJob> jobs{{cells, [=](Progress& progress) { return explore(*atlas, progress); }}};
   for (auto* summarise : {count_verdicts, check_bar, list_surprises})
     jobs.push_back({0, [=](Progress&) { return summarise(*atlas); }});
   return jobs;

@@ -14,7 +14,7 @@ constexpr int particles = 10;       ///< a side
 constexpr int finest = 1024;        ///< steps
 constexpr double resolution = 0.1;  ///< of h*, relative
 
-struct Sheet {
+struct Softness {
   double k, d;
 };
 
@@ -68,8 +68,8 @@ void add_step(results::TableBuilder& table, const char* name, const char* title,
 }  // namespace
 
 TableJob largest_steps(bool quick) {
-  const std::vector<Sheet> sheets =
-      quick ? std::vector<Sheet>{{1e4, 50}} : std::vector<Sheet>{{1e4, 50}, {1e4, 5}, {1e4, 0.5}, {1e6, 5}};
+  const std::vector<Softness> sheets =
+      quick ? std::vector<Softness>{{1e4, 50}} : std::vector<Softness>{{1e4, 50}, {1e4, 5}, {1e4, 0.5}, {1e6, 5}};
   return {static_cast<int>(sheets.size()), [=](Progress& progress) {
             results::TableBuilder table(
                 "stability-steps",

@@ -8,8 +8,8 @@
 namespace drape::bench {
 namespace {
 
-constexpr double step = 0.01;    ///< [s]
-constexpr double modulus = 1e4;  ///< k [N/m]
+constexpr double stress_step = 0.01;  ///< [s]
+constexpr double modulus = 1e4;       ///< k [N/m]
 
 /// Something that no scene should do to a solver. `then` is what the sheet turns into half way, if it does.
 struct Stress {
@@ -99,26 +99,27 @@ Trial endure(const Stress& stress, int n, Conditions conditions) {
 
 TableJob stress_cases(bool quick) {
   const int n = quick ? 6 : 10;
-  std::vector<const solver::Method*> methods;
+  std::vector<const solver::Method*> chosen;
   for (const solver::Method& method : solver::methods())
-    if (!quick || method.name == "bdf2" || method.name == "verlet") methods.push_back(&method);
-  return {
-      static_cast<int>(std::size(stresses)), [=](Progress& progress) {
-        results::TableBuilder table("stability-stress", "What no scene should do to a solver, h = 0.01 s");
-        for (const Stress& stress : stresses) {
-          progress.show(stress.name);
-          const auto run = [&](const Conditions& conditions) { return endure(stress, n, conditions); };
-          const Yardstick yardstick(stress.make(n), horizon, run);
-          for (const solver::Method* method : methods) {
-            table.row();
-            table.text("case", "case", "what is done to the sheet", stress.name);
-            table.text("method", "method", "time integrator", std::string(method->name));
-            add_verdict(table, judged(run({method, {}, step, horizon, method->implicit() ? 4'000 : 100'000}), yardstick), true);
-          }
-          progress.advance();
-        }
-        return table.finish();
-      }};
+    if (!quick || method.name == "bdf2" || method.name == "verlet") chosen.push_back(&method);
+  return {static_cast<int>(std::size(stresses)), [=](Progress& progress) {
+            results::TableBuilder table("stability-stress", "What no scene should do to a solver, h = 0.01 s");
+            for (const Stress& stress : stresses) {
+              progress.show(stress.name);
+              const auto run = [&](const Conditions& conditions) { return endure(stress, n, conditions); };
+              const Yardstick yardstick(stress.make(n), horizon, run);
+              for (const solver::Method* method : chosen) {
+                table.row();
+                table.text("case", "case", "what is done to the sheet", stress.name);
+                table.text("method", "method", "time integrator", std::string(method->name));
+                add_verdict(table,
+                            judged(run({method, {}, stress_step, horizon, method->implicit() ? 4'000 : 100'000}), yardstick),
+                            true);
+              }
+              progress.advance();
+            }
+            return table.finish();
+          }};
 }
 
 }  // namespace drape::bench

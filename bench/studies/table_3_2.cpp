@@ -10,14 +10,14 @@
 namespace drape::bench {
 namespace {
 
-const std::map<std::string_view, Printed> thesis{{"imex-euler", {100, 745, 1.69}},
-                                                 {"implicit-euler", {206, 1038, 3.06}},
-                                                 {"sbdf2", {100, 304, 1.57}},
-                                                 {"bdf2", {122, 857, 2.57}},
-                                                 {"midpoint", {494, 813, 4.39}}};
+const std::map<std::string_view, Printed> thesis_counts{{"imex-euler", {100, 745, 1.69}},
+                                                        {"implicit-euler", {206, 1038, 3.06}},
+                                                        {"sbdf2", {100, 304, 1.57}},
+                                                        {"bdf2", {122, 857, 2.57}},
+                                                        {"midpoint", {494, 813, 4.39}}};
 
 /// All methods with the same cloth and the same tolerances.
-struct Block {
+struct TableclothBlock {
   std::string name;
   bool of_thesis;  ///< k and d as printed
   double loop_tolerance = solver::Options().loop_tolerance;
@@ -27,11 +27,11 @@ struct Block {
 };
 
 /// Loose: so that BDF(2) takes 138 updates, near the thesis' 122. Its 857 CG iterations, against 362, tell of tighter solves.
-std::vector<Block> blocks() {
+std::vector<TableclothBlock> tablecloth_blocks() {
   return {{"thesis' d", true}, {"thesis' d, loose", true, 1e-1, 1e-2}, {"drapes", false}, {"drapes, loose", false, 1e-1, 1e-2}};
 }
 
-Group cells(const Block& block, bool quick) {
+Group cells(const TableclothBlock& block, bool quick) {
   std::vector<model::Override> overrides;
   if (block.of_thesis) overrides = {{"material.tension", "1e4"}, {"material.damping", "50"}};
   if (quick) overrides.insert(overrides.end(), {{"grid.n", "8"}, {"end.time", "0.1"}});
@@ -49,7 +49,7 @@ Group cells(const Block& block, bool quick) {
 
 int repetitions(bool quick) { return quick ? 1 : 3; }
 
-void add_row(results::TableBuilder& table, const Block& block, const Cell& cell, const results::RunRecord& run) {
+void add_row(results::TableBuilder& table, const TableclothBlock& block, const Cell& cell, const results::RunRecord& run) {
   table.row();
   table.text("cloth", "cloth", "k and d as in the thesis, or those of the scene", block.name);
   table.number("damping", "d", "N s/m", "linear damping", cell.scene.sheet.material.damping.weft);
@@ -57,15 +57,15 @@ void add_row(results::TableBuilder& table, const Block& block, const Cell& cell,
   table.number("cg_tolerance", "CG tol.", "1", "of a linear solve, over |b|; in the loop at most half of its",
                cell.options.cg_tolerance);
   table.text("method", "method", "time integrator", std::string(cell.method->name));
-  const auto printed = thesis.find(cell.method->name);
-  const bool known = block.of_thesis && printed != thesis.end();
+  const auto printed = thesis_counts.find(cell.method->name);
+  const bool known = block.of_thesis && printed != thesis_counts.end();
   add_draping(table, cell.scene, run, known ? std::optional(printed->second) : std::nullopt);
 }
 
-results::Table compute(bool quick, Progress& progress) {
+results::Table compute_tablecloth(bool quick, Progress& progress) {
   results::TableBuilder table("table-3.2",
                               "Table 3.2: the methods on the tablecloth; the thesis' figures are from a Pentium III");
-  for (const Block& block : blocks()) {
+  for (const TableclothBlock& block : tablecloth_blocks()) {
     progress.show("tablecloth, " + block.name);
     const Group group = cells(block, quick);
     const auto times = time_group(group, repetitions(quick), [&] { progress.advance(); });
@@ -82,8 +82,9 @@ results::Table compute(bool quick, Progress& progress) {
 
 std::vector<TableJob> table_3_2(bool quick) {
   int parts = 0;
-  for (const Block& block : blocks()) parts += repetitions(quick) * static_cast<int>(cells(block, quick).size());
-  return {{parts, [quick](Progress& progress) { return compute(quick, progress); }}};
+  for (const TableclothBlock& block : tablecloth_blocks())
+    parts += repetitions(quick) * static_cast<int>(cells(block, quick).size());
+  return {{parts, [quick](Progress& progress) { return compute_tablecloth(quick, progress); }}};
 }
 
 }  // namespace drape::bench

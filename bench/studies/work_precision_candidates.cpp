@@ -46,7 +46,7 @@ std::vector<Vectors> solve_ours(const Cell& cell, const model::Cloth& cloth, std
   solver::Integrator integrator(cloth.ode, *cell.method, cell.options, cloth.start);
   Sampler sampler(times, integrator.state());
   solver::Observer observer;
-  if (times.size() > 1) observer = [&](const solver::StepReport& step) { sampler.see(step.t, step.y); };
+  if (times.size() > 1) observer = [&](const solver::StepReport& report) { sampler.see(report.t, report.y); };
   const solver::RunResult run = integrate(integrator, times.back(), cell.step, observer);
   if (run.outcome != solver::Outcome::success) throw std::runtime_error(run.message);
   if (!observer) sampler.taken.push_back(integrator.state().x);

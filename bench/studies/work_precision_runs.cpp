@@ -142,7 +142,7 @@ void time_fronts(const Problem& problem, std::vector<Trial>& trials, const Effor
   }
   std::vector<Prepare> runs;
   for (const std::size_t k : chosen)
-    runs.push_back([&problem, &solve = trials[k].candidate->solve] {
+    runs.emplace_back([&problem, &solve = trials[k].candidate->solve] {
       return [&problem, &solve, cloth = std::make_shared<model::Cloth>(model::compile(problem.scene))] {
         solve(*cloth, problem.times);
       };

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "model/cells.hpp"
 #include "model/edges.hpp"
 
 namespace drape::model {
@@ -19,8 +20,6 @@ std::vector<Star> stars(const Grid& grid) {
                      {grid.index(a, std::max(b - 1, 0)), grid.index(a, std::min(b + 1, grid.nv - 1))}});
   return all;
 }
-
-Eigen::Vector3d difference(const Vectors& x, EdgeEnds edge) { return x.row(edge.end) - x.row(edge.begin); }
 
 /// What all particles share: stress κ <U, V> + κ_d (<U̇, V> + <U, V̇>), spread with the factors 1/2l.
 struct Printed {
