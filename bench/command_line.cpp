@@ -83,6 +83,14 @@ solver::StepControl step_control(const std::vector<int>& bounds) {
   return {.min_updates = low, .max_updates = high};
 }
 
+/// The studies that can be made of any scene.
+std::string of_any_scene() {
+  std::vector<std::string_view> names;
+  for (const Study& study : studies())
+    if (study.of_scene != nullptr) names.push_back(study.name);
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
 std::string for_obstacles() {
   std::vector<std::string_view> names;
   for (const solver::Method& method : solver::methods())
@@ -90,10 +98,14 @@ std::string for_obstacles() {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-std::vector<Group> run_groups(const Arguments& a) {
+model::Scene chosen_scene(const Arguments& a) {
   std::vector<model::Override> overrides;
   for (const std::string& text : a.sets) overrides.push_back(model::parse_override(text));
-  model::Scene scene = model::load_scene(a.scene, overrides);
+  return model::load_scene(a.scene, overrides);
+}
+
+std::vector<Group> run_groups(const Arguments& a) {
+  model::Scene scene = chosen_scene(a);
   scene.end = a.until.value_or(scene.end);
   check_steps(a, scene.end);
   Cell cell{scene, fmt::format("{}", fmt::join(a.sets, " ")), nullptr, 0, a.options};
@@ -157,11 +169,24 @@ void sweep_and_print(const std::vector<Group>& groups, const Arguments& a, const
   say_where(options.out, a.format);
 }
 
+std::vector<TableJob> table_jobs(const Study& chosen, const Arguments& a) {
+  if (a.scene.empty()) return chosen.tables(a.quick);
+  return chosen.of_scene(chosen_scene(a));
+}
+
+void check_scene(const Study& chosen, const Arguments& a) {
+  if (!a.scene.empty() && chosen.of_scene == nullptr)
+    throw std::invalid_argument(
+        fmt::format("--scene: the study {} has scenes of its own; it is for {}", chosen.name, of_any_scene()));
+  if (a.scene.empty() && !a.sets.empty()) throw std::invalid_argument("--set: expected --scene beside it");
+}
+
 void run_study(const Study& chosen, const Arguments& a) {
+  check_scene(chosen, a);
   const std::string name(chosen.name);
   if (chosen.groups) return sweep_and_print(chosen.groups(a.quick), a, name);
   const std::filesystem::path out = out_file(a, name);
-  const auto tables = compute(chosen.tables(a.quick), out, a.command_line);
+  const auto tables = compute(table_jobs(chosen, a), out, a.command_line);
   print_tables(tables, a.format);
   say_where(out, a.format);
   if (chosen.plot.empty()) return;
@@ -266,7 +291,14 @@ void add_run(CLI::App& app, Arguments& a) {
 void add_study(CLI::App& app, Arguments& a) {
   CLI::App& command = *app.add_subcommand("study", "run one of the studies");
   command.add_option("NAME", a.study, "its name")->required()->type_name("");
-  command.add_flag("--quick", a.quick, "a short form, for tests");
+  CLI::Option* quick = command.add_flag("--quick", a.quick, "a short form, for tests");
+  command.add_option("--scene", a.scene, fmt::format("this scene, by name or TOML file, and all solvers ({})", of_any_scene()))
+      ->type_name("SCENE")
+      ->check(not_empty())
+      ->excludes(quick);
+  command.add_option("--set", a.sets, "override a key of that scene (repeatable)")
+      ->type_name("key=value")
+      ->allow_extra_args(false);
   add_output_options(command, a);
   command.footer(paragraph("Studies", study_choices()));
   command.callback([&a] { run_study(study(a.study), a); });

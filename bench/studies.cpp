@@ -31,7 +31,7 @@ std::span<const Study> studies() {
        nullptr, stability, "plot_stability.py"},
       {"work-precision",
        "time against error of all methods and solvers, and of SUNDIALS at its best: who wins, and by what ratio", nullptr,
-       work_precision, "plot_work_precision.py"},
+       work_precision, "plot_work_precision.py", work_precision_of},
   };
   return table;
 }

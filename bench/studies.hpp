@@ -27,6 +27,7 @@ struct Study {
   std::vector<Group> (*groups)(bool quick) = nullptr;     ///< runs, compared with references
   std::vector<TableJob> (*tables)(bool quick) = nullptr;  ///< or tables
   std::string_view plot = {};                             ///< script that draws them; empty: none
+  std::vector<TableJob> (*of_scene)(const model::Scene& scene) = nullptr;  ///< the same question about another scene
 };
 
 /// All studies; the first is the main job.
@@ -48,5 +49,6 @@ std::vector<TableJob> figure_4_3(bool quick);
 std::vector<TableJob> scaling(bool quick);
 std::vector<TableJob> stability(bool quick);
 std::vector<TableJob> work_precision(bool quick);
+std::vector<TableJob> work_precision_of(const model::Scene& scene);
 
 }  // namespace drape::bench

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <stdexcept>
 
 #include "results/runs_table.hpp"
@@ -25,29 +26,22 @@ bool tied(const Measured& a, const Measured& b) {
   return p.lower <= q.upper && q.lower <= p.upper;
 }
 
-std::vector<std::size_t> near_front(std::span<const Measured> candidates, double slack) {
-  std::vector<std::size_t> order;
-  for (std::size_t k = 0; k < candidates.size(); ++k)
-    if (solved(candidates[k])) order.push_back(k);
-  std::ranges::sort(order, {}, [&](std::size_t k) { return candidates[k].error; });
-
-  std::vector<std::size_t> near;
-  double least = INFINITY;  // time of all with a smaller or equal error
-  for (const std::size_t k : order) {
-    const double time = median(candidates[k]);
-    if (time <= slack * least) near.push_back(k);
-    least = std::min(least, time);
-  }
-  std::ranges::sort(near);
-  return near;
-}
-
 std::optional<std::size_t> quickest(std::span<const Measured> candidates, double error) {
   std::optional<std::size_t> best;
   for (std::size_t k = 0; k < candidates.size(); ++k)
     if (solved(candidates[k]) && candidates[k].error <= error && (!best || median(candidates[k]) < median(candidates[*best])))
       best = k;
   return best;
+}
+
+std::vector<std::size_t> near_quickest(std::span<const Measured> candidates, std::span<const double> errors, double slack) {
+  std::set<std::size_t> near;
+  for (const double error : errors)
+    if (const auto best = quickest(candidates, error))
+      for (std::size_t k = 0; k < candidates.size(); ++k)
+        if (solved(candidates[k]) && candidates[k].error <= error && median(candidates[k]) <= slack * median(candidates[*best]))
+          near.insert(k);
+  return {near.begin(), near.end()};
 }
 
 }  // namespace drape::results

@@ -24,11 +24,11 @@ Quartiles quartiles(const std::vector<double>& times);
 /// Whether the difference of two medians is no more than noise: the middle halves of their times overlap.
 bool tied(const Measured& a, const Measured& b);
 
-/// The candidates that are on the Pareto front of error and median time, or would be with a time `slack` times shorter; in
-/// the order given.
-std::vector<std::size_t> near_front(std::span<const Measured> candidates, double slack);
-
 /// The one with the least median time among those with an error of at most `error`; nothing is interpolated.
 std::optional<std::size_t> quickest(std::span<const Measured> candidates, double error);
+
+/// Those that are the quickest with an error of at most one of the `errors`, or would be with a time `slack` times shorter; in
+/// the order given.
+std::vector<std::size_t> near_quickest(std::span<const Measured> candidates, std::span<const double> errors, double slack);
 
 }  // namespace drape::results

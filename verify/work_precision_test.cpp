@@ -18,7 +18,7 @@ namespace drape::verify::work_precision_test {
 namespace {
 
 using results::Measured;
-using results::near_front;
+using results::near_quickest;
 using results::quickest;
 using results::Table;
 using testing::AllOf;
@@ -60,15 +60,18 @@ TEST(Quickest, GoesByTheMedian) {
   EXPECT_THAT(quickest(all, 1), Optional(1u));
 }
 
-TEST(Front, HasWhatNothingElseBeatsInBoth) {
+TEST(NearQuickest, IsTheQuickestAtEveryError) {
   const std::vector<Measured> all{{1e-2, {1}}, {1e-3, {4}}, {1e-4, {3}}, {failed, {}}, {1e-5, {9}}, {1e-5, {10}}, {0.5, {2}}};
-  EXPECT_THAT(near_front(all, 1), ElementsAre(0, 2, 4));
+  EXPECT_THAT(near_quickest(all, std::vector{1.0, 1e-2, 1e-3, 1e-5, 1e-6}, 1), ElementsAre(0, 2, 4));
+  EXPECT_THAT(near_quickest(all, std::vector{1e-5}, 1), ElementsAre(4));
+  EXPECT_THAT(near_quickest(all, std::vector<double>{}, 1), ElementsAre());
 }
 
-TEST(Front, IsMetByWhatIsALittleSlower) {
+TEST(NearQuickest, IsWhatIsALittleSlower) {
   const std::vector<Measured> all{{1e-2, {1}}, {1e-3, {4}}, {1e-4, {3}}, {1e-5, {9}}, {1e-5, {14}}, {0.5, {2}}};
-  EXPECT_THAT(near_front(all, 1.5), ElementsAre(0, 1, 2, 3));
-  EXPECT_THAT(near_front(all, 2), ElementsAre(0, 1, 2, 3, 4, 5));
+  const std::vector errors{1.0, 1e-3, 1e-5};
+  EXPECT_THAT(near_quickest(all, errors, 1.5), ElementsAre(0, 1, 2, 3));
+  EXPECT_THAT(near_quickest(all, errors, 2), ElementsAre(0, 1, 2, 3, 4, 5));
 }
 
 TEST(Tie, IsAGapBelowTheNoise) {

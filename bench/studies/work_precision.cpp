@@ -16,38 +16,40 @@ namespace {
 constexpr int held_out[] = {7, 9, 10};
 
 struct Entry {
-  std::string name, scene;
-  std::vector<model::Override> overrides;
+  std::string name;
+  model::Scene scene;
   Search search = Search::usual;
 };
 
-std::vector<Entry> entries(bool quick) {
+Entry entry(const std::string& name, const std::string& scene, const std::vector<model::Override>& overrides,
+            Search search = Search::usual) {
+  return {name, model::load_scene(scene, overrides), search};
+}
+
+std::vector<Entry> quick_entries() {
+  return {entry("hung-corners d=5", "hung-corners", {{"material.damping", "5"}, {"grid.n", "6"}, {"end.time", "0.2"}},
+                Search::quick),
+          entry("peer-edge n=8", "peer-edge", {{"grid.n", "8"}, {"end.time", "0.1"}}, Search::quick)};
+}
+
+std::vector<Entry> entries() {
   std::vector<Entry> all;
-  const std::string hardest = "hung-corners";
-  for (const std::string scene : {"hung-corners", "hung-edge"})
-    for (const char* d : {"50", "5", "0.5"})
-      all.push_back({fmt::format("{} d={}", scene, d),
-                     scene,
-                     {{"material.damping", d}},
-                     scene == hardest ? Search::full : Search::usual});
-  all.push_back(
-      {"projected", "hung-corners", {{"material.damping_form", "projected"}, {"material.bend", "0.01"}, {"end.time", "0.3"}}});
-  all.push_back({"pulled", "pulled", {{"material.damping_form", "projected"}}});
-  all.push_back({"wind", "wind", {{"end.time", "0.5"}}});
-  all.push_back({"tablecloth", "tablecloth", {{"end.time", "0.3"}}});
-  for (const char* n : {"20", "100"}) all.push_back({fmt::format("peer-edge n={}", n), "peer-edge", {{"grid.n", n}}});
-  if (!quick) return all;
-  std::vector<Entry> few{all[1], all[10]};
-  few[0].overrides.insert(few[0].overrides.end(), {{"grid.n", "6"}, {"end.time", "0.2"}});
-  few[1].overrides = {{"grid.n", "8"}, {"end.time", "0.1"}};
-  for (Entry& entry : few) entry.search = Search::quick;
-  return few;
+  for (const char* d : {"50", "5", "0.5"})
+    all.push_back(entry(fmt::format("hung-corners d={}", d), "hung-corners", {{"material.damping", d}}, Search::full));
+  for (const char* d : {"50", "5", "0.5"})
+    all.push_back(entry(fmt::format("hung-edge d={}", d), "hung-edge", {{"material.damping", d}}));
+  all.push_back(entry("projected", "hung-corners",
+                      {{"material.damping_form", "projected"}, {"material.bend", "0.01"}, {"end.time", "0.3"}}));
+  all.push_back(entry("pulled", "pulled", {{"material.damping_form", "projected"}}));
+  all.push_back(entry("wind", "wind", {{"end.time", "0.5"}}));
+  all.push_back(entry("tablecloth", "tablecloth", {{"end.time", "0.3"}}));
+  for (const char* n : {"20", "100"}) all.push_back(entry(fmt::format("peer-edge n={}", n), "peer-edge", {{"grid.n", n}}));
+  return all;
 }
 
 Problem problem(const Entry& entry) {
-  const model::Scene scene = model::load_scene(entry.scene, entry.overrides);
-  Problem result{entry.name, scene, model::size(scene)};
-  for (const int tenth : held_out) result.times.push_back(scene.end * tenth / 10);
+  Problem result{entry.name, entry.scene, model::size(entry.scene)};
+  for (const int tenth : held_out) result.times.push_back(entry.scene.end * tenth / 10);
   return result;
 }
 
@@ -99,7 +101,7 @@ results::Table try_scene(const Entry& entry, bool quick, All& all, Progress& pro
   progress.show("reference of " + entry.name);
   SceneTrials& scene = all.emplace_back(SceneTrials{problem(entry), {}, {}});
   Problem& problem = scene.problem;
-  entry.scene == "peer-edge" ? find_explicit_truth(problem) : find_truth(problem);
+  entry.scene.name == "peer-edge" ? find_explicit_truth(problem) : find_truth(problem);
   scene.families = families(problem.scene, entry.search);
   scene.trials = try_all(problem, scene.families, effort, progress);
   progress.show("timing " + entry.name);
@@ -107,19 +109,22 @@ results::Table try_scene(const Entry& entry, bool quick, All& all, Progress& pro
   return trials_table(scene);
 }
 
-}  // namespace
-
-std::vector<TableJob> work_precision(bool quick) {
+std::vector<TableJob> jobs(const std::vector<Entry>& list, bool quick) {
   const auto all = std::make_shared<All>();
   std::vector<TableJob> jobs;
-  const auto list = entries(quick);
   all->reserve(list.size());  // trials point into what is in it
   for (const Entry& entry : list)
-    jobs.push_back({static_cast<int>(families(problem(entry).scene, entry.search).size()),
+    jobs.push_back({static_cast<int>(families(entry.scene, entry.search).size()),
                     [=](Progress& progress) { return try_scene(entry, quick, *all, progress); }});
   for (auto* table : {winners_table, defaults_table, bars_table, peers_table})
     jobs.push_back({0, [=](Progress&) { return table(*all); }});
   return jobs;
 }
+
+}  // namespace
+
+std::vector<TableJob> work_precision(bool quick) { return jobs(quick ? quick_entries() : entries(), quick); }
+
+std::vector<TableJob> work_precision_of(const model::Scene& scene) { return jobs({{scene.name, scene, Search::full}}, false); }
 
 }  // namespace drape::bench

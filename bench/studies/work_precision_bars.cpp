@@ -27,7 +27,7 @@ void add_bar(TableBuilder& table, const SceneTrials& scene, const Bar& bar, doub
   table.text("detail", "", "what was compared", detail);
   if (!value) {
     table.text("verdict", "verdict", "whether the bar is met",
-               bar.at_least ? "met: only we reach this error" : "NOT met: not reached");
+               bar.at_least ? "met: they do not reach it in time" : "NOT met: not reached");
     return;
   }
   table.number("value", "value", "1", "what was measured", *value);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -12,6 +13,9 @@ namespace drape::bench {
 namespace {
 
 using solver::Vectors;
+
+/// The methods of the thesis with a loop.
+constexpr const char* looped[] = {"implicit-euler", "bdf2", "midpoint"};
 
 /// Cubic through positions and velocities at both ends of a step: of the order of the methods it is used with.
 Vectors between(double t, double t0, const solver::State& a, double t1, const solver::State& b) {
@@ -81,7 +85,9 @@ Cell cell(const model::Scene& scene, const std::string& name, const solver::Opti
 }
 
 bool by_default(const Cell& cell) {
-  return cell.options.stage == solver::Options().stage && cell.options.linear_solver == solver::Options().linear_solver;
+  const solver::Options usual, &options = cell.options;
+  return options.stage == usual.stage && options.linear_solver == usual.linear_solver &&
+         options.stage_accuracy == usual.stage_accuracy;
 }
 
 Family by_steps(Cell cell, const std::string& code, int parts) {
@@ -104,7 +110,7 @@ Family by_tolerance(Cell cell) {
 
 /// Explicit sub-steps follow the stability limit, however long the step.
 Family by_fraction(Cell cell, int halvings) {
-  Family family{cell.method_name() + " by fraction", "explicit", "fraction", "", {}};
+  Family family{cell.method_name() + " by fraction", "explicit", "fraction", std::string(cell.method->name), {}};
   for (int k = 0; k <= 2 * halvings; ++k) {
     cell.options.verlet_fraction = 0.9 * std::pow(2.0, -0.5 * k);
     family.candidates.push_back(ours(cell, cell.options.verlet_fraction));
@@ -112,10 +118,25 @@ Family by_fraction(Cell cell, int halvings) {
   return family;
 }
 
+/// The loop of the thesis with another linear solver, to so many digits; and stages that end as far off as the time step.
+void add_loose(std::vector<Family>& all, const model::Scene& scene, const std::string& method, int parts) {
+  solver::Options options;
+  for (const double tolerance : {0.1, 0.01}) {
+    options.loop_tolerance = tolerance;
+    all.push_back(by_steps(cell(scene, method + "/fixed-point/cholesky", options), "drape", parts));
+    all.back().name += fmt::format(" to {:.0e}", tolerance);
+  }
+  options = {};
+  options.stage_accuracy = 1;
+  all.push_back(by_steps(cell(scene, method, options), "drape", parts));
+  all.back().name += fmt::format(" to {:g}", options.stage_accuracy);
+}
+
 void add_ours(std::vector<Family>& all, const model::Scene& scene, Search search) {
   const int parts = finest_parts(search);
   for (const solver::Method& method : solver::methods()) {
     const std::string name(method.name);
+    if (!scene.obstacles.empty() && !method.meets_obstacles) continue;
     if (!method.implicit()) {
       all.push_back(by_fraction(cell(scene, name), search == Search::quick ? 3 : 10));
       continue;
@@ -127,6 +148,7 @@ void add_ours(std::vector<Family>& all, const model::Scene& scene, Search search
     if (method.nonlinear())
       for (const solver::StageKind& stage : solver::stage_kinds().subspan(1))
         all.push_back(by_steps(cell(scene, fmt::format("{}/{}", name, stage.name)), "drape", parts));
+    if (std::ranges::find(looped, name) != std::end(looped)) add_loose(all, scene, name, parts);
     if (name == "bdf2" || name == "sbdf2")
       for (const solver::LinearSolver& linear : solver::linear_solvers().subspan(1))
         all.push_back(by_steps(cell(scene, fmt::format("{}/{}", name, linear.name)), "drape", parts));
@@ -141,7 +163,7 @@ std::vector<int> loop_digits(Search search) {
 
 /// The fixed-point loop with IC(0)   [Etzmuß 2002, 3.4].
 void add_thesis(std::vector<Family>& all, const model::Scene& scene, Search search) {
-  for (const char* method : {"implicit-euler", "bdf2", "midpoint"})
+  for (const char* method : looped)
     for (const int digits : loop_digits(search)) {
       solver::Options options = solver::thesis_options();
       options.loop_tolerance = std::pow(10.0, -digits);
@@ -189,7 +211,7 @@ void add_peers(std::vector<Family>& all, const model::Scene& scene, Search searc
 }  // namespace
 
 std::vector<double> divided_steps(double end, int parts) {
-  std::vector<double> steps;
+  std::vector<double> steps{end / 5};
   for (int k = 0, last = 0;; ++k) {
     const int m = static_cast<int>(std::lround(std::pow(2.0, 0.5 * k)));
     if (m > parts) return steps;

@@ -39,7 +39,7 @@ enum class Search {
 /// Everything that is compared on a scene.
 std::vector<Family> families(const model::Scene& scene, Search search);
 
-/// Steps that divide a tenth of the end into 1 to so many parts, each about √2 times the next.
+/// A fifth of the end, and steps that divide a tenth of it into 1 to so many parts, each about √2 times the next.
 std::vector<double> divided_steps(double end, int parts);
 
 }  // namespace drape::bench

@@ -21,10 +21,10 @@ using Clock = std::chrono::steady_clock;
 constexpr double too_exact = 1;
 
 /// A family that is so many times slower than another of the same code twice in a row will not win.
-constexpr double hopeless = 4;
+constexpr double hopeless = 1.6;
 
 /// A first run may have been so much slower than others by chance.
-constexpr double slack = 1.6;
+constexpr double slack = 1.4;
 
 double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
@@ -104,6 +104,14 @@ void add_family(const Problem& problem, const Family& family, double cap, std::v
 
 }  // namespace
 
+std::vector<double> levels(const Problem& problem) {
+  constexpr double part = 0.3;  // of an error that the truth may be uncertain by
+  std::vector<double> all;
+  for (int digits = 1; digits <= 7; ++digits)
+    if (const double error = std::pow(10.0, -digits); problem.uncertainty <= part * error) all.push_back(error);
+  return all;
+}
+
 std::vector<Trial> try_all(const Problem& problem, const std::vector<Family>& families, const Effort& effort,
                            Progress& progress) {
   std::vector<Trial> trials;
@@ -138,7 +146,7 @@ void time_fronts(const Problem& problem, std::vector<Trial>& trials, const Effor
   for (const Contender& contender : contenders(trials)) {
     std::vector<results::Measured> measured;
     for (const std::size_t k : contender.members) measured.push_back(trials[k].measured);
-    for (const std::size_t k : results::near_front(measured, slack)) chosen.insert(contender.members[k]);
+    for (const std::size_t k : results::near_quickest(measured, levels(problem), slack)) chosen.insert(contender.members[k]);
   }
   std::vector<Prepare> runs;
   for (const std::size_t k : chosen)

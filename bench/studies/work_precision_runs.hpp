@@ -20,6 +20,9 @@ struct Problem {
   double growth = 0;       ///< of a small perturbation of the start; 0 if not known
 };
 
+/// Of 1e-1 to 1e-7 the errors that the truth of a scene resolves.
+std::vector<double> levels(const Problem& problem);
+
 /// What became of a candidate.
 struct Trial {
   const Family* family;

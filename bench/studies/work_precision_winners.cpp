@@ -45,14 +45,6 @@ Winner Winners::of_peers(double error) const {
   return best;
 }
 
-std::vector<double> levels(const Problem& problem) {
-  constexpr double part = 0.3;  // of an error that the truth may be uncertain by
-  std::vector<double> all;
-  for (int digits = 1; digits <= 7; ++digits)
-    if (const double error = std::pow(10.0, -digits); problem.uncertainty <= part * error) all.push_back(error);
-  return all;
-}
-
 std::vector<std::string> packages() {
   std::vector<std::string> names;
   for (const reference::Family& family : reference::families()) names.emplace_back(family.name);

@@ -35,9 +35,6 @@ class Winners {
   std::vector<Contender> contenders_;
 };
 
-/// Of 1e-1 to 1e-7 the errors that the truth of a scene resolves.
-std::vector<double> levels(const Problem& problem);
-
 /// The packages of SUNDIALS.
 std::vector<std::string> packages();
 
