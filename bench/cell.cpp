@@ -10,16 +10,19 @@
 #include "bench/contact_record.hpp"
 #include "model/energy_guard.hpp"
 #include "model/scene_file.hpp"
+#include "solver/threads.hpp"
 
 namespace drape::bench {
 namespace {
 
-std::vector<results::Parameter> parameters(const Cell& cell) {
+std::vector<results::Parameter> parameters(const Cell& cell, int particles) {
   const solver::Options& o = cell.options;
   std::vector<results::Parameter> all{{"size", model::size(cell.scene), "m", "length by which errors are divided"}};
   if (cell.method->implicit()) {
     all.push_back(
         {"cg_tolerance", o.cg_tolerance, "1", "residual of a linear solve over |b|; in the loop at most half of its"});
+    all.push_back(
+        {"threads", double(solver::threads_for(particles)), "1", "that the linear algebra of a sheet of this size may use"});
     all.push_back({"max_cg_iterations", double(o.max_cg_iterations), "1", "iterations a solve before it counts as failed"});
   } else {
     all.push_back({"verlet_fraction", o.verlet_fraction, "1", "sub-step over its stability limit"});
@@ -62,18 +65,18 @@ bool knows(std::span<const Row> table, std::string_view name) {
   return std::ranges::find(table, name, &Row::name) != table.end();
 }
 
-results::RunRecord describe(const Cell& cell, const model::Plan& plan) {
+results::RunRecord describe(const Cell& cell, const model::Cloth& cloth) {
   results::RunRecord run;
   run.scene = cell.scene.name;
   run.scene_toml = model::to_toml(cell.scene);
   run.overrides = cell.overrides;
-  run.plan = model::to_string(plan);
+  run.plan = model::to_string(cloth.plan);
   run.method = cell.method_name();
   run.stage_solver = stage_solver(cell);
   run.linear_solver = cell.method->implicit() ? cell.options.linear_solver->name : "none";
   run.step = cell.step;
   run.until = cell.scene.end;
-  run.parameters = parameters(cell);
+  run.parameters = parameters(cell, cloth.ode.particles());
   run.numerical_stiffness = model::numerical_stiffness(cell.scene, cell.step);
   run.stiffness_to_damping = model::stiffness_to_damping(cell.scene, cell.step);
   return run;
@@ -107,7 +110,7 @@ void choose_method(Cell& cell, const std::string& name) {
 results::RunRecord record(const Cell& cell, const solver::Observer& look) {
   const model::Cloth cloth = model::compile(cell.scene);
   const solver::SplitOde& ode = cloth.ode;
-  results::RunRecord run = describe(cell, cloth.plan);
+  results::RunRecord run = describe(cell, cloth);
   solver::Integrator integrator(ode, *cell.method, cell.options, cloth.start);
   if (look) look({0, 0, 0, 0, integrator.state(), {}});
   ContactWatch watch(cell.scene, cloth);

@@ -20,6 +20,7 @@
 #include "results/run_file.hpp"
 #include "results/runs_table.hpp"
 #include "solver/named.hpp"
+#include "solver/threads.hpp"
 
 namespace drape::bench {
 namespace {
@@ -39,6 +40,7 @@ struct Arguments {
   std::vector<int> control;
   solver::Options options;
   double tolerance = 0;
+  int threads = 1;
   std::string study;
   bool quick = false;
   bool no_reference = false;
@@ -250,6 +252,13 @@ void add_solver_options(CLI::App& command, Arguments& a) {
       ->excludes(tolerance);
 }
 
+void add_thread_option(CLI::App& run, Arguments& a) {
+  run.add_option("--threads", a.threads, "that the linear algebra of large grids may use")
+      ->type_name("N")
+      ->check(between(1, solver::max_threads))
+      ->capture_default_str();
+}
+
 void add_frame_options(CLI::App& run, Arguments& a) {
   CLI::Option* folder = run.add_option("--frames", a.frames.folder, "new folder for the runs as sequences of OBJ meshes")
                             ->type_name("FOLDER")
@@ -279,13 +288,17 @@ void add_run(CLI::App& app, Arguments& a) {
   run.add_option("--until", a.until, "end time in seconds [the scene's]")->type_name("T")->check(positive());
   run.add_option("--set", a.sets, "override a key of the scene (repeatable)")->type_name("key=value")->allow_extra_args(false);
   add_solver_options(run, a);
+  add_thread_option(run, a);
   add_frame_options(run, a);
   add_output_options(run, a);
   run.footer(fmt::format("{}\n{}\n{}\n{}\n{}", paragraph("Scenes", scene_choices()), paragraph("Methods", method_choices()),
                          paragraph("Stage solvers", stage_solver_choices()),
                          paragraph("Linear solvers", linear_solver_choices()),
                          paragraph("Keys of scenes", scene_key_choices())));
-  run.callback([&a] { sweep_and_print(run_groups(a), a, "run"); });
+  run.callback([&a] {
+    solver::use_threads(a.threads);
+    sweep_and_print(run_groups(a), a, "run");
+  });
 }
 
 void add_study(CLI::App& app, Arguments& a) {

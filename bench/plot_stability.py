@@ -7,13 +7,13 @@ to fail.
 import pathlib
 import sys
 
-import h5py
 import matplotlib
-
-matplotlib.use("Agg")
-matplotlib.rcParams.update({"font.size": 7, "svg.fonttype": "none", "svg.hashsalt": "drape"})
 import matplotlib.pyplot as plt
 import numpy as np
+
+import plot_files
+
+matplotlib.rcParams["font.size"] = 7
 
 # Okabe and Ito's colours, which the colour-blind tell apart, and symbols for those who print in black and white.
 VERDICTS = {
@@ -24,13 +24,6 @@ VERDICTS = {
     "not converged": ("#CC79A7", "x"),
     "not finished": ("#999999", "…"),
 }
-
-
-def read_atlas(path):
-    with h5py.File(path) as file:
-        table = file["tables/stability-atlas"]
-        text = lambda name: table[name].asstr()[:]
-        return {name: text(name) if h5py.check_string_dtype(table[name].dtype) else table[name][:] for name in table}
 
 
 def power_of_ten(value):
@@ -86,16 +79,12 @@ def draw_sheet(path, atlas, n, step):
     ]
     figure.get_layout_engine().set(rect=(0, 0.04, 1, 0.96))  # below is the legend
     figure.legend(handles=handles, loc="lower center", ncols=len(handles))
-    for suffix in ("png", "svg"):
-        name = path.with_name(f"{path.stem}-{n}-{step:g}.{suffix}")
-        figure.savefig(name, dpi=120, metadata={"Date": None} if suffix == "svg" else None)
-        print(name)
-    plt.close(figure)
+    plot_files.save(figure, path, f"{n}-{step:g}")
 
 
 def main():
     path = pathlib.Path(sys.argv[1])
-    atlas = read_atlas(path)
+    atlas = plot_files.read_table(path, "stability-atlas")
     for n, step in sorted(set(zip(atlas["n"], atlas["step"]))):
         draw_sheet(path, atlas, n, step)
 

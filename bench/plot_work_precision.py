@@ -10,11 +10,12 @@ import sys
 
 import h5py
 import matplotlib
-
-matplotlib.use("Agg")
-matplotlib.rcParams.update({"font.size": 8, "svg.fonttype": "none", "svg.hashsalt": "drape"})
 import matplotlib.pyplot as plt
 import numpy as np
+
+import plot_files
+
+matplotlib.rcParams["font.size"] = 8
 
 OURS = ("drape", "explicit", "thesis")
 # Okabe and Ito's colours, which the colour-blind tell apart; the marks tell them apart in black and white.
@@ -30,10 +31,8 @@ STYLES = {
 }
 
 
-def read_trials(file, name):
-    table = file["tables"][name]
-    text = lambda column: table[column].asstr()[:]
-    trials = {key: text(key) if h5py.check_string_dtype(table[key].dtype) else table[key][:] for key in table}
+def read_trials(path, name):
+    trials = plot_files.read_table(path, name)
     measured = trials["error"] > 0
     return {key: column[measured] for key, column in trials.items()}
 
@@ -66,20 +65,16 @@ def draw(path, scene, trials):
     axes.set_xlabel(f"error: largest RMS distance at three times, over the scene's size (reference uncertain by {uncertainty:.0e})")
     axes.set_ylabel("solver time [ms]")
     axes.legend(loc="upper left", bbox_to_anchor=(1, 1))
-    for suffix in ("png", "svg"):
-        name = path.with_name(f"{path.stem}-{re.sub('[ =]', '-', scene)}.{suffix}")
-        figure.savefig(name, dpi=120, metadata={"Date": None} if suffix == "svg" else None)
-        print(name)
-    plt.close(figure)
+    plot_files.save(figure, path, re.sub("[ =]", "-", scene))
 
 
 def main():
     path = pathlib.Path(sys.argv[1])
     prefix = "trials: "
     with h5py.File(path) as file:
-        for name in file["tables"]:
-            if name.startswith(prefix):
-                draw(path, name.removeprefix(prefix), read_trials(file, name))
+        scenes = [name.removeprefix(prefix) for name in file["tables"] if name.startswith(prefix)]
+    for scene in scenes:
+        draw(path, scene, read_trials(path, prefix + scene))
 
 
 if __name__ == "__main__":

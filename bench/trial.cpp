@@ -16,7 +16,7 @@ constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 struct Exhausted {};
 
 /// The same equation, whose functions count their calls and end the run that exceeds its budget.
-solver::SplitOde metered(solver::SplitOde ode, std::int64_t budget, Trial& trial) {
+solver::SplitOde metered(solver::SplitOde ode, std::int64_t budget, Attempt& trial) {
   const auto count = [budget, &trial] {
     if (++trial.evaluations > budget) throw Exhausted();
   };
@@ -61,13 +61,13 @@ std::vector<Conditions> yardsticks(double size, double until) {
 
 }  // namespace
 
-std::string Trial::reason() const {
+std::string Attempt::reason() const {
   if (!finished) return fmt::format("not finished in {} evaluations, at t = {:.4g} s", evaluations - 1, run.last_good_time);
   return run.message;
 }
 
-Trial attempt(const Specimen& specimen, const Conditions& conditions) {
-  Trial trial;
+Attempt attempt(const Specimen& specimen, const Conditions& conditions) {
+  Attempt trial;
   const solver::SplitOde ode = metered(specimen.cloth.ode, conditions.budget, trial);
   const model::EnergyGuard guard(specimen.scene, specimen.cloth);
   solver::Integrator integrator(ode, *conditions.method, conditions.options, specimen.cloth.start);
@@ -87,11 +87,12 @@ Yardstick::Yardstick(const Specimen& specimen, double until, double effort)
     : Yardstick(
           specimen, until, [&](const Conditions& conditions) { return attempt(specimen, conditions); }, effort) {}
 
-Yardstick::Yardstick(const Specimen& specimen, double until, const std::function<Trial(const Conditions&)>& run, double effort)
+Yardstick::Yardstick(const Specimen& specimen, double until, const std::function<Attempt(const Conditions&)>& run,
+                     double effort)
     : size_(model::size(specimen.scene)), mass_(specimen.cloth.ode.mass), positions_(not_known), centre_(not_known) {
   for (Conditions& conditions : yardsticks(size_, until)) {
     conditions.budget = static_cast<std::int64_t>(effort * static_cast<double>(conditions.budget));
-    const Trial trial = run(conditions);
+    const Attempt trial = run(conditions);
     if (!trial.succeeded()) continue;
     if (truth_.size() == 0) {
       truth_ = trial.end.x;
@@ -103,7 +104,7 @@ Yardstick::Yardstick(const Specimen& specimen, double until, const std::function
   }
 }
 
-results::Measured Yardstick::measure(const Trial& trial, double bound) const {
+results::UncertainError Yardstick::measure(const Attempt& trial, double bound) const {
   constexpr double telling = 0.25;  // part of the bound
   if (!trial.succeeded() || !(centre_ <= telling * bound)) return {};
   const solver::Vectors difference = trial.end.x - truth_;

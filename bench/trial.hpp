@@ -28,7 +28,7 @@ struct Conditions {
 };
 
 /// What became of it.
-struct Trial {
+struct Attempt {
   solver::RunResult run;
   bool finished = true;
   solver::State end;
@@ -42,7 +42,7 @@ struct Trial {
   std::string reason() const;
 };
 
-Trial attempt(const Specimen& specimen, const Conditions& conditions);
+Attempt attempt(const Specimen& specimen, const Conditions& conditions);
 
 /// The end of a specimen as two different methods find it, and how far they differ: the first two that succeed of ESDIRK3 and
 /// TR-BDF2 with controlled errors, velocity Verlet, the midpoint rule and SBDF(2) with many steps.
@@ -52,11 +52,11 @@ class Yardstick {
   Yardstick(const Specimen& specimen, double until, double effort = 1);
 
   /// The same for a specimen that `run` takes to its end as it is told.
-  Yardstick(const Specimen& specimen, double until, const std::function<Trial(const Conditions&)>& run, double effort = 1);
+  Yardstick(const Specimen& specimen, double until, const std::function<Attempt(const Conditions&)>& run, double effort = 1);
 
   /// Error of a trial over the size of the scene, with what the yardstick itself is uncertain by: root mean square of
   /// positions, or, where that cannot be told from `bound`, the distance of the centres of mass. NaN if that cannot either.
-  results::Measured measure(const Trial& trial, double bound) const;
+  results::UncertainError measure(const Attempt& trial, double bound) const;
 
   double uncertainty() const { return positions_; }  ///< of positions; NaN if there are no two
 

@@ -5,7 +5,7 @@
 namespace drape::model {
 
 NewtonMatrix::NewtonMatrix(Curvature curvature, const Eigen::VectorXd& mass, const std::vector<solver::Pin>& pins)
-    : curvature_(curvature), mass_(mass.replicate(1, 3).reshaped<Eigen::RowMajor>()), pinned_(mass_.size(), false) {
+    : curvature_(curvature), mass_(solver::thrice(mass)), pinned_(mass_.size(), false) {
   for (const solver::Pin& pin : pins)
     for (int a = 0; a < 3; ++a) pinned_[3 * pin.particle + a] = pin.fixed[a];
 }

@@ -32,13 +32,13 @@ constexpr std::string_view to_string(Verdict verdict) {
 }
 
 /// An error known up to an uncertainty; NaN: not known.
-struct Measured {
+struct UncertainError {
   double error = std::numeric_limits<double>::quiet_NaN();
   double uncertainty = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// The verdict on a run. Its error counts as below or above the bound only if it is so however the reference errs.
-constexpr Verdict judge(solver::Outcome outcome, bool finished, const Measured& measured, double bound) {
+constexpr Verdict judge(solver::Outcome outcome, bool finished, const UncertainError& measured, double bound) {
   if (!finished) return Verdict::not_finished;
   switch (outcome) {
     case solver::Outcome::success: break;

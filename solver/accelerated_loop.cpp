@@ -60,24 +60,39 @@ void AcceleratedLoop::begin(const Stage& stage, const State& y) {
   stage_ = &stage;
   result_ = {};
   guess_ = y.v;
-  best_ = infinity;
-  part_ = 1;
-  rate_ = 0;
-  since_renewal_ = renewals_here_ = 0;
   factor_ = nullptr;
-  made_here_ = true;  // A is what it is
-  anderson_.restart();
+  renewals_here_ = 0;
+  forget();
 }
 
-/// Makes the factor at y; false, with the outcome, if that is impossible.
-bool AcceleratedLoop::use_newton(NewtonFactor* factor, State& y) {
-  factor_ = factor;
+/// With another P the iteration is another one.
+void AcceleratedLoop::forget() {
   best_ = infinity;
   part_ = 1;
   rate_ = 0;
   since_renewal_ = 0;
   made_here_ = true;
   anderson_.restart();
+}
+
+/// Finds the P that the stage begins with; false, with the outcome, if there is none.
+bool AcceleratedLoop::find_matrix(State& y) {
+  NewtonFactor* const factor = preferred();
+  if (factor == nullptr) {
+    result_.outcome = system_.prepare(stage_->gamma, similar_gamma);
+    return result_.outcome == Outcome::success;
+  }
+  const bool usable = !factor->empty() && std::abs(factor->gamma() / stage_->gamma - 1) <= different_gamma;
+  if (!usable) return use_newton(factor, y);
+  factor_ = factor;
+  made_here_ = false;
+  return true;
+}
+
+/// Makes the factor at y; false, with the outcome, if that is impossible.
+bool AcceleratedLoop::use_newton(NewtonFactor* factor, State& y) {
+  factor_ = factor;
+  forget();
   y.x = stage_->ax + stage_->gamma * y.v;
   ++renewals_;
   ++renewals_here_;
@@ -172,20 +187,13 @@ void AcceleratedLoop::plan_next() {
   if (newton_stages_ == 0) return;
   const int cost = update_cost * result_.updates + renewal_cost * renewals_here_;
   mean_cost_ += 0.2 * (cost - mean_cost_);
-  if (--newton_stages_ == 0 && mean_cost_ < cheap && factor_ != nullptr) newton_stages_ = next_stay_;
+  if (--newton_stages_ == 0 && mean_cost_ < cheap) newton_stages_ = next_stay_;
 }
 
 StageResult AcceleratedLoop::solve(const Stage& stage, State& y) {
   begin(stage, y);
-  const Outcome prepared = system_.prepare(stage.gamma, similar_gamma);
-  if (prepared != Outcome::success) return ended(prepared);
   prescribe(ode_.pins, y.v);
-  if (NewtonFactor* const factor = preferred()) {
-    const bool usable = !factor->empty() && std::abs(factor->gamma() / stage.gamma - 1) <= different_gamma;
-    factor_ = factor;
-    made_here_ = false;
-    if (!usable && !use_newton(factor, y)) return result_;
-  }
+  if (!find_matrix(y)) return result_;
   for (;;) {
     if (result_.updates >= options_.max_updates) return ended(Outcome::not_converged);
     system_.evaluate(stage, nullptr, y);

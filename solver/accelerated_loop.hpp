@@ -25,6 +25,8 @@ class AcceleratedLoop {
   using Matrix = StageKind::Matrix;
 
   void begin(const Stage& stage, const State& y);
+  void forget();
+  bool find_matrix(State& y);
   bool use_newton(NewtonFactor* factor, State& y);
   bool correct();
   bool retreat(State& y);
@@ -57,7 +59,7 @@ class AcceleratedLoop {
   double part_ = 1;                 ///< of an update that is made
   double rate_ = 0;                 ///< by which |d| changed last
   int since_renewal_ = 0, renewals_here_ = 0;
-  bool made_here_ = false;  ///< the factor was made at best_v_
+  bool made_here_ = false;  ///< P was made at best_v_; A is what it is everywhere
 
   // What `auto` remembers.
   int newton_stages_ = 0;  ///< still to be solved with Newton's matrix

@@ -1,9 +1,8 @@
-#include <cholmod.h>
-
 #include <new>
 #include <numeric>
 #include <vector>
 
+#include "solver/cholmod_view.hpp"
 #include "solver/preconditioner.hpp"
 #include "solver/triangle.hpp"
 
@@ -35,7 +34,7 @@ class Cholesky : public Preconditioner {
 
   void analyze(const SparseMatrix& A) override {
     cholmod_free_factor(&factor_, &common_);
-    cholmod_sparse view = lower(A);
+    cholmod_sparse view = cholmod_view(A);
     factor_ = cholmod_analyze(&view, &common_);
     if (factor_ == nullptr) throw std::bad_alloc();
     inverse_.resize(A.rows());
@@ -46,7 +45,7 @@ class Cholesky : public Preconditioner {
   }
 
   Outcome factor(const SparseMatrix& A) override {
-    cholmod_sparse view = lower(A);
+    cholmod_sparse view = cholmod_view(A);
     cholmod_factorize(&view, factor_, &common_);
     if (common_.status != CHOLMOD_OK) return Outcome::breakdown;
     take_factor();
@@ -75,23 +74,6 @@ class Cholesky : public Preconditioner {
   }
 
  private:
-  /// The matrix as CHOLMOD sees it: our rows are its columns, so the upper half of the one is the lower half of the other.
-  static cholmod_sparse lower(const SparseMatrix& A) {
-    cholmod_sparse view{};
-    view.nrow = view.ncol = static_cast<std::size_t>(A.rows());
-    view.nzmax = static_cast<std::size_t>(A.nonZeros());
-    view.p = const_cast<int*>(A.outerIndexPtr());
-    view.i = const_cast<int*>(A.innerIndexPtr());
-    view.x = const_cast<double*>(A.valuePtr());
-    view.stype = -1;
-    view.itype = CHOLMOD_INT;
-    view.xtype = CHOLMOD_REAL;
-    view.dtype = CHOLMOD_DOUBLE;
-    view.sorted = 1;
-    view.packed = 1;
-    return view;
-  }
-
   void take_factor();
 
   cholmod_common common_{};

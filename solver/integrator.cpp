@@ -90,7 +90,11 @@ StageResult Integrator::step(double h) {
   if (hard) step_without_history();
   StageResult& result = step_.result;
   if (result.outcome == Outcome::success && !finite(step_.next.y)) result.outcome = Outcome::not_finite;
-  if (result.outcome == Outcome::success && !hard && (error_ = estimate_error(h)) > 1) result.outcome = Outcome::inaccurate;
+  if (result.outcome == Outcome::success && !hard) {
+    predict(h);
+    error_ = estimate_error(h);
+    if (error_ > 1) result.outcome = Outcome::inaccurate;
+  }
   if (result.outcome != Outcome::success) {
     ++rejected_;
     return result;
@@ -129,6 +133,13 @@ void Integrator::finish_contacts() {
   if (contacts_ && contacts_->finish(step_.next.y, step_.now.y)) step_.now.has_f = false;
 }
 
+/// What the past says of the end of the step, in av, and in ax if an estimate of the error needs it.
+void Integrator::predict(double h) {
+  if (step_.history.size() < 2) return;
+  const bool positions = options_.error_control.enabled() && !step_.embedded;
+  step_.history.extrapolate(step_.t + h, step_.av, positions ? &step_.ax : nullptr);
+}
+
 /// By the method that is embedded, or from what the extrapolation of the past misses (Milne's device). While the past is short
 /// the miss itself, which is of a lower order, stands for the error.
 double Integrator::estimate_error(double h) {
@@ -138,9 +149,7 @@ double Integrator::estimate_error(double h) {
   State& error = step_.error;
   if (!step_.embedded) {
     if (history.size() < 2) return 0;
-    const double t1 = step_.t + h;
-    history.extrapolate(t1, step_.av, &step_.ax);
-    const double over_miss = step_.error_over_miss(t1);
+    const double over_miss = step_.error_over_miss(step_.t + h);
     const double part = history.full() ? over_miss / (1 + over_miss) : 1;
     error.x = part * (step_.next.y.x - step_.ax);
     error.v = part * (step_.next.y.v - step_.av);
@@ -168,7 +177,6 @@ double Integrator::first_step() const {
 void Integrator::remember(double h, bool hard) {
   History& history = step_.history;
   const Vectors& v1 = step_.next.y.v;
-  if (history.size() > 1 && !hard) history.extrapolate(step_.t + h, step_.av);
   history.push(step_.t + h, step_.next.y);
   if (hard || (history.size() > 2 && (v1 - step_.av).squaredNorm() > (v1 - step_.now.y.v).squaredNorm())) history.restart();
 }

@@ -46,6 +46,7 @@ class Integrator {
   bool hit_hard() const;
   void step_without_history();
   void finish_contacts();
+  void predict(double h);
   double estimate_error(double h);
   void remember(double h, bool hard);
   void advance_time(double h);

@@ -1,8 +1,8 @@
 #include "solver/newton_factor.hpp"
 
-#include <cholmod.h>
-
 #include <new>
+
+#include "solver/cholmod_view.hpp"
 
 namespace drape::solver {
 
@@ -13,7 +13,7 @@ class NewtonFactor::Factor {
     cholmod_start(&common_);
     common_.final_ll = 1;  // so that a matrix that is not positive definite is noticed
     common_.print = 0;     // outcomes are returned, not printed
-    cholmod_sparse view = lower(J);
+    cholmod_sparse view = cholmod_view(J);
     factor_ = cholmod_analyze(&view, &common_);
     right_ = cholmod_zeros(J.rows(), 1, CHOLMOD_REAL, &common_);
     if (factor_ == nullptr || right_ == nullptr) throw std::bad_alloc();
@@ -27,7 +27,7 @@ class NewtonFactor::Factor {
   Factor& operator=(const Factor&) = delete;
 
   Outcome renew(const SparseMatrix& J) {
-    cholmod_sparse view = lower(J);
+    cholmod_sparse view = cholmod_view(J);
     cholmod_factorize(&view, factor_, &common_);
     return common_.status == CHOLMOD_OK ? Outcome::success : Outcome::breakdown;
   }
@@ -38,27 +38,7 @@ class NewtonFactor::Factor {
     d = Eigen::Map<const Vectors>(static_cast<const double*>(solution_->x), r.rows(), 3);
   }
 
-  double solve_work() const { return 2 * common_.lnz; }
-  double renewal_work() const { return common_.fl; }
-
  private:
-  /// Our rows are CHOLMOD's columns: the upper triangle of the one is the lower triangle of the other.
-  static cholmod_sparse lower(const SparseMatrix& J) {
-    cholmod_sparse view{};
-    view.nrow = view.ncol = static_cast<std::size_t>(J.rows());
-    view.nzmax = static_cast<std::size_t>(J.nonZeros());
-    view.p = const_cast<int*>(J.outerIndexPtr());
-    view.i = const_cast<int*>(J.innerIndexPtr());
-    view.x = const_cast<double*>(J.valuePtr());
-    view.stype = -1;
-    view.itype = CHOLMOD_INT;
-    view.xtype = CHOLMOD_REAL;
-    view.dtype = CHOLMOD_DOUBLE;
-    view.sorted = 1;
-    view.packed = 1;
-    return view;
-  }
-
   cholmod_common common_{};
   cholmod_factor* factor_ = nullptr;
   cholmod_dense* right_ = nullptr;
@@ -80,7 +60,5 @@ Outcome NewtonFactor::renew(double t, const State& y, double gamma) {
 }
 
 void NewtonFactor::solve(const Vectors& r, Vectors& d) { factor_->solve(r, d); }
-double NewtonFactor::solve_work() const { return factor_ ? factor_->solve_work() : 0; }
-double NewtonFactor::renewal_work() const { return factor_ ? factor_->renewal_work() : 0; }
 
 }  // namespace drape::solver

@@ -24,11 +24,6 @@ class NewtonFactor {
   /// d = J⁻¹ r; both N × 3.
   void solve(const Vectors& r, Vectors& d);
 
-  /// Multiplications of one solve.
-  double solve_work() const;
-  /// Multiplications of a renewal, roughly.
-  double renewal_work() const;
-
  private:
   class Factor;
 

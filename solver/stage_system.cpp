@@ -33,9 +33,6 @@ Eigen::ArrayXd aligned(const SparseMatrix& pattern, const SparseMatrix& B) {
   return values;
 }
 
-/// Every value three times, once a coordinate.
-Eigen::ArrayXd thrice(const Eigen::VectorXd& values) { return values.replicate(1, 3).reshaped<Eigen::RowMajor>(); }
-
 auto flat(const Vectors& a) { return Eigen::ArrayXd::Map(a.data(), a.size()); }
 auto flat(Vectors& a) { return Eigen::ArrayXd::Map(a.data(), a.size()); }
 

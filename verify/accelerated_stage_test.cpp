@@ -121,6 +121,15 @@ TEST(Newton, KeepsItsFactorWhileItConverges) {
   EXPECT_GE(cloth.ode.work->count("newton_factorizations"), 1);
 }
 
+TEST(Newton, LeavesTheConstantMatrixAlone) {
+  for (const char* kind : {"newton", "lean-newton"}) {
+    const model::Cloth cloth = sheet();
+    EXPECT_EQ(run(cloth, "bdf2", stage(kind), 0.005).result.outcome, Outcome::success);
+    EXPECT_EQ(cloth.ode.work->count("matrix_builds"), 0) << kind;
+    EXPECT_EQ(cloth.ode.work->count("factorizations"), 0) << kind;
+  }
+}
+
 TEST(Newton, NeedsAMatrix) {
   model::Cloth cloth = sheet();
   cloth.ode.newton_matrix = nullptr;

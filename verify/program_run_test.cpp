@@ -208,6 +208,15 @@ TEST(ProgramScene, MayBeAFileOfTheUser) {
   EXPECT_EQ(h5py(program, "print(len(files[0]['runs/000/final_state/x']))", {"a.h5"}), "15\n");
 }
 
+TEST(ProgramThreads, AreRecordedWhereTheSheetIsLargeEnoughForThem) {
+  const BenchIntegrators program;
+  for (const auto& [n, threads, file] : {std::tuple("5", "2", "a.h5"), {"200", "1", "b.h5"}, {"200", "2", "c.h5"}})
+    program.output({"run", "--scene", "hung-edge", "--set", std::string("grid.n=") + n, "--method", "imex-euler/mic0", "--step",
+                    "0.001", "--until", "0.001", "--threads", threads, "--no-reference", "--repeat", "1", "--out", file});
+  const std::string script = "print([int(file['runs/000/parameters/threads'][()]) for file in files])";
+  EXPECT_EQ(h5py(program, script, {"a.h5", "b.h5", "c.h5"}), "[1, 1, 2]\n");
+}
+
 // --- Failures are results ------------------------------------------------------------------------------------------------
 
 TEST(ProgramFailure, IsARowWithReasonAndLastGoodTime) {

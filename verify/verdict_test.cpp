@@ -8,7 +8,7 @@ namespace drape::verify::verdict_test {
 namespace {
 
 using results::judge;
-using results::Measured;
+using results::UncertainError;
 using results::Verdict;
 using solver::Outcome;
 
@@ -24,7 +24,7 @@ TEST(VerdictOnARun, KnowsNoErrorThatTheReferenceLeavesOpen) {
 }
 
 TEST(VerdictOnARun, OfARunThatFailedIsItsReasonWhateverItsError) {
-  const Measured small{1e-6, 1e-9};
+  const UncertainError small{1e-6, 1e-9};
   EXPECT_EQ(judge(Outcome::unstable, true, small, 1e-2), Verdict::unstable);
   EXPECT_EQ(judge(Outcome::not_finite, true, small, 1e-2), Verdict::unstable);
   EXPECT_EQ(judge(Outcome::not_converged, true, small, 1e-2), Verdict::not_converged);

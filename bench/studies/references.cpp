@@ -14,11 +14,11 @@ namespace drape::bench {
 namespace {
 
 constexpr double rtol = 1e-10;
-constexpr double agreement = 1e-8;  ///< of the size of the scene
+constexpr double closest = 1e-8;  ///< of the size of the scene
 constexpr int outputs = 10;
 
 const std::vector<std::string> names{"cvode-bdf", "arkode-esdirk", "ida-bdf"};
-const std::vector<std::string> dampings{"50", "5", "0.5"};
+const std::vector<std::string> reference_dampings{"50", "5", "0.5"};
 const std::vector<std::string> scenes{"hung-edge", "hung-corners"};
 
 /// What a family computes of a scene, what it counted, and how long it took [s].
@@ -43,7 +43,7 @@ Solution solve(const std::string& family, const model::Scene& scene) {
 }
 
 /// Largest distance of positions at the output times, over the size of the scene.
-double distance(const Solution& a, const Solution& b, double size) {
+double largest_distance(const Solution& a, const Solution& b, double size) {
   double largest = 0;
   for (std::size_t k = 0; k < a.trajectory.states.size(); ++k)
     largest = std::max(largest, reference::rms_distance(a.trajectory.states[k].x, b.trajectory.states[k].x) / size);
@@ -60,16 +60,16 @@ void add_row(results::TableBuilder& table, const model::Scene& scene, const std:
   table.count("factorisations", "LU", "factorisations of the sparse Newton matrix", solution.factorisations);
   table.number("wall", "wall", "s", "wall time, once", solution.seconds);
   if (&solution == &first) return;
-  const double apart = distance(solution, first, model::size(scene));
+  const double apart = largest_distance(solution, first, model::size(scene));
   table.number("distance", "from CVODE", "1", "largest distance of positions at ten times, over the size of the scene", apart);
-  table.text("verdict", "verdict", "whether it agrees with CVODE to 1e-8", apart <= agreement ? "agrees" : "NOT in agreement");
+  table.text("verdict", "verdict", "whether it agrees with CVODE to 1e-8", apart <= closest ? "agrees" : "NOT in agreement");
 }
 
 results::Table compare(bool quick, Progress& progress) {
   results::TableBuilder table("references",
                               fmt::format("Three families of solvers on the same equation of motion, rtol = {:g}", rtol));
   for (const std::string& name : scenes)
-    for (const std::string& damping : dampings) {
+    for (const std::string& damping : reference_dampings) {
       std::vector<model::Override> overrides{{"material.damping", damping}};
       if (quick) overrides.insert(overrides.end(), {{"grid.n", "6"}, {"end.time", "0.2"}});
       const model::Scene scene = model::load_scene(name, overrides);
@@ -87,7 +87,7 @@ results::Table compare(bool quick, Progress& progress) {
 }  // namespace
 
 std::vector<TableJob> references(bool quick) {
-  const auto parts = static_cast<int>(scenes.size() * dampings.size() * names.size());
+  const auto parts = static_cast<int>(scenes.size() * reference_dampings.size() * names.size());
   return {{parts, [quick](Progress& progress) { return compare(quick, progress); }}};
 }
 

@@ -6,7 +6,7 @@
 
 namespace drape::bench {
 
-Judged judged(Trial trial, const Yardstick& yardstick) {
+Judged judged(Attempt trial, const Yardstick& yardstick) {
   Judged result{std::move(trial), {}, {}};
   result.error = yardstick.measure(result.trial, error_bound);
   result.verdict = results::judge(result.trial.run.outcome, result.trial.finished, result.error, error_bound);

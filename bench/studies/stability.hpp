@@ -12,13 +12,13 @@ inline constexpr double horizon = 0.24;      ///< [s], in which a free sheet fal
 
 /// A trial with its error and what follows from them.
 struct Judged {
-  Trial trial;
-  results::Measured error;
+  Attempt trial;
+  results::UncertainError error;
   results::Verdict verdict;
 
   bool stable() const { return verdict <= results::Verdict::bounded; }
 };
-Judged judged(Trial trial, const Yardstick& yardstick);
+Judged judged(Attempt trial, const Yardstick& yardstick);
 
 /// A square sheet of n × n particles, horizontal, hung by two corners, with the shear modulus k/100.
 Specimen hung_by_corners(int n, double k, double d);

@@ -19,9 +19,9 @@ struct Softness {
 };
 
 /// Finds the fewest equal steps to the horizon with which a method does well.
-class Search {
+class FewestSteps {
  public:
-  Search(const Specimen& specimen, const Yardstick& yardstick, const solver::Method& method)
+  FewestSteps(const Specimen& specimen, const Yardstick& yardstick, const solver::Method& method)
       : specimen_(specimen), yardstick_(yardstick), method_(method) {}
 
   /// Where doubling the number first does well, bisected between there and the number before; 0 if none does.
@@ -80,7 +80,7 @@ TableJob largest_steps(bool quick) {
               const Yardstick yardstick(specimen, horizon);
               for (const solver::Method& method : solver::methods()) {
                 progress.show(fmt::format("largest step of {}, k = {}, d = {}", method.name, k, d));
-                Search search(specimen, yardstick, method);
+                FewestSteps search(specimen, yardstick, method);
                 table.row();
                 table.number("tension", "k", "N/m", "tension modulus", k);
                 table.number("damping", "d", "N s/m", "damping, linear", d);

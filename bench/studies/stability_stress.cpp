@@ -84,11 +84,11 @@ constexpr Stress stresses[] = {
 };
 
 /// A trial to the end; half way the sheet turns into what it then is, if it does.
-Trial endure(const Stress& stress, int n, Conditions conditions) {
+Attempt endure(const Stress& stress, int n, Conditions conditions) {
   Specimen specimen = stress.make(n);
   if (!stress.then) return attempt(specimen, conditions);
   conditions.until /= 2;
-  Trial first = attempt(specimen, conditions);
+  Attempt first = attempt(specimen, conditions);
   if (!first.succeeded()) return first;
   specimen = stress.then(n);
   specimen.cloth.start = first.end;

@@ -10,7 +10,7 @@
 namespace drape::bench {
 namespace {
 
-constexpr double step = 0.01;  ///< [s]
+constexpr double draping_step = 0.01;  ///< [s]
 
 /// Two values of the stiffness and two of the damping: what grows with k and falls with d is seen in these four.
 struct Block {
@@ -38,7 +38,7 @@ model::Scene scene(double k, double d, bool quick) {
 results::RunRecord run_bdf2(const model::Scene& scene) {
   solver::Options options = solver::thesis_options();
   options.max_updates = 20'000;  // k = 1e5 needs some thousands a step where it drapes
-  return record({scene, "", &solver::method("bdf2"), step, options});
+  return record({scene, "", &solver::method("bdf2"), draping_step, options});
 }
 
 /// What a run cost; a run that stalls costs more than any other.
@@ -47,11 +47,11 @@ double cost(const results::RunRecord& run, const char* work) {
   return static_cast<double>(work_count(run, work));
 }
 
-using Runs = std::array<std::array<results::RunRecord, 2>, 2>;  ///< by k, then by d
+using RunsOfBlock = std::array<std::array<results::RunRecord, 2>, 2>;  ///< by k, then by d
 
 /// The thesis: "increasing Young's modulus leads to a larger number of iterations … a larger damping coefficient smoothes the
 /// trajectories and fewer iterations are necessary".
-std::string verdict(const Runs& runs) {
+std::string verdict(const RunsOfBlock& runs) {
   bool grows = true, falls = true;
   for (const char* work : {"updates", "cg_iterations"})
     for (const int i : {0, 1}) {
@@ -65,7 +65,7 @@ std::string verdict(const Runs& runs) {
 results::Table compute(bool quick, Progress& progress) {
   results::TableBuilder table("table-3.1", "Table 3.1: the work of BDF(2) on the tablecloth against stiffness k and damping d");
   for (const Block& block : blocks()) {
-    Runs runs;
+    RunsOfBlock runs;
     for (const int i : {0, 1})
       for (const int j : {0, 1}) {
         progress.show(fmt::format("tablecloth, k = {}, d = {}", block.k[i], block.d[j]));
@@ -76,7 +76,7 @@ results::Table compute(bool quick, Progress& progress) {
         table.number("tension", "k", "N/m", "tension modulus", block.k[i]);
         table.number("damping", "d", "N s/m", "linear damping", block.d[j]);
         table.number("stiffness_to_damping", "h k/d", "1", "what the fixed-point loop's contraction depends on",
-                     step * block.k[i] / block.d[j]);
+                     draping_step * block.k[i] / block.d[j]);
         add_draping(table, cloth, runs[i][j], block.thesis[i][j]);
         progress.advance();
       }

@@ -8,6 +8,7 @@
 
 #include "bench/cell.hpp"
 #include "reference/families.hpp"
+#include "solver/dense_output.hpp"
 
 namespace drape::bench {
 namespace {
@@ -17,44 +18,15 @@ using solver::Vectors;
 /// The methods of the thesis with a loop.
 constexpr const char* looped[] = {"implicit-euler", "bdf2", "midpoint"};
 
-/// Cubic through positions and velocities at both ends of a step: of the order of the methods it is used with.
-Vectors between(double t, double t0, const solver::State& a, double t1, const solver::State& b) {
-  const double h = t1 - t0, s = (t - t0) / h, r = 1 - s;
-  return r * r * (1 + 2 * s) * a.x + s * s * (1 + 2 * r) * b.x + h * s * r * (r * a.v - s * b.v);
-}
-
-/// Takes positions at given times out of a run.
-class Sampler {
- public:
-  Sampler(std::span<const double> times, solver::State start) : times_(times), before_(std::move(start)) {}
-
-  void see(double t, const solver::State& y) {
-    constexpr double same = 1e-9;  // of a step
-    for (; taken.size() < times_.size() && times_[taken.size()] <= t + same * (t - t_);) {
-      const double at = times_[taken.size()];
-      taken.push_back(at >= t - same * (t - t_) ? y.x : between(at, t_, before_, t, y));
-    }
-    t_ = t;
-    before_ = y;
-  }
-
-  std::vector<Vectors> taken;
-
- private:
-  std::span<const double> times_;
-  double t_ = 0;
-  solver::State before_;
-};
-
 std::vector<Vectors> solve_ours(const Cell& cell, const model::Cloth& cloth, std::span<const double> times) {
   solver::Integrator integrator(cloth.ode, *cell.method, cell.options, cloth.start);
-  Sampler sampler(times, integrator.state());
+  solver::DenseOutput output(times, integrator.time(), integrator.state());
   solver::Observer observer;
-  if (times.size() > 1) observer = [&](const solver::StepReport& report) { sampler.see(report.t, report.y); };
+  if (times.size() > 1) observer = [&](const solver::StepReport& report) { output.see(report.t, report.y); };
   const solver::RunResult run = integrate(integrator, times.back(), cell.step, observer);
   if (run.outcome != solver::Outcome::success) throw std::runtime_error(run.message);
-  if (!observer) sampler.taken.push_back(integrator.state().x);
-  return std::move(sampler.taken);
+  if (!observer) output.positions.push_back(integrator.state().x);
+  return std::move(output.positions);
 }
 
 std::vector<Vectors> solve_by_peer(const reference::Family& family, const reference::SolveOptions& options,

@@ -1,0 +1,57 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <deque>
+
+#include "bench/studies/scaling.hpp"
+#include "results/runs_table.hpp"
+
+namespace drape::bench::scaling_study {
+namespace {
+
+/// What a BDF(2) step of the large sheet costs a particle over what the same step of the small one costs. The small one is run
+/// several times over, for its steps are short, and both in turns, because the machine's speed drifts.
+std::vector<double> growth(int large, int small) {
+  constexpr int copies = 5, steps = 5;
+  Run big(large, "bdf2");
+  std::deque<Run> little;
+  for (int k = 0; k < copies; ++k) little.emplace_back(small, "bdf2");
+  std::vector<double> ratios;
+  for (int k = 0; k < steps; ++k) {
+    std::vector<double> times;
+    const double time = big.advance() / big.particles();
+    for (Run& run : little) times.push_back(run.advance() / run.particles());
+    ratios.push_back(time / results::quantile(times, 0.5));
+  }
+  return ratios;
+}
+
+/// `sense`: 1 if the value may be at most `bar`, −1 if at least.
+void add_bar(results::TableBuilder& table, const std::string& what, int sense, double bar, const std::vector<double>& values) {
+  const double value = results::quantile(values, 0.5), miss = sense > 0 ? value / bar : bar / value;
+  table.row();
+  table.text("what", "asked for", "what is compared", what);
+  table.text("bar", "bar", "what it may be", fmt::format("{} {:g}", sense > 0 ? "<=" : ">=", bar));
+  table.number("value", "value", "1", "median of turns", value);
+  table.number("lowest", "from", "1", "lowest of turns", *std::ranges::min_element(values));
+  table.number("highest", "to", "1", "highest of turns", *std::ranges::max_element(values));
+  table.text("verdict", "verdict", "whether the bar is met", miss <= 1 ? "met" : fmt::format("NOT met by {:.2f}", miss));
+}
+
+}  // namespace
+
+results::Table bars(bool quick, Progress& progress) {
+  const int large = sizes(quick).back(), small = quick ? 20 : 100;
+  results::TableBuilder table("scaling-bars", "What was asked for, one thread");
+  progress.show("bars: a step");
+  add_bar(table, fmt::format("BDF(2) step: time per particle, {0} x {0} over {1} x {1}", large, small), 1, 3,
+          growth(large, small));
+  progress.advance();
+  progress.show("bars: conjugate gradients");
+  add_bar(table, fmt::format("fused CG and stencil: bandwidth over the triad's, {0} x {0}", large), -1, 0.6,
+          bandwidth_of_bare_iterations(large, 31));
+  progress.advance();
+  return table.finish();
+}
+
+}  // namespace drape::bench::scaling_study

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cholmod.h>
+
+#include "solver/state.hpp"
+
+namespace drape::solver {
+
+/// A symmetric matrix as CHOLMOD sees it; of its entries only the upper triangle counts. Our rows are CHOLMOD's columns, so the
+/// upper triangle of the one is the lower triangle of the other. Valid as long as A is and keeps its pattern.
+inline cholmod_sparse cholmod_view(const SparseMatrix& A) {
+  cholmod_sparse view{};
+  view.nrow = view.ncol = static_cast<std::size_t>(A.rows());
+  view.nzmax = static_cast<std::size_t>(A.nonZeros());
+  view.p = const_cast<int*>(A.outerIndexPtr());
+  view.i = const_cast<int*>(A.innerIndexPtr());
+  view.x = const_cast<double*>(A.valuePtr());
+  view.stype = -1;
+  view.itype = CHOLMOD_INT;
+  view.xtype = CHOLMOD_REAL;
+  view.dtype = CHOLMOD_DOUBLE;
+  view.sorted = 1;
+  view.packed = 1;
+  return view;
+}
+
+}  // namespace drape::solver
