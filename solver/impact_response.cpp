@@ -8,7 +8,7 @@
 namespace drape::solver {
 namespace {
 
-constexpr double round_off = 1e-13;  ///< of a position [m]: so near to the border a particle rests on it
+constexpr double border_noise = 1e-13;  ///< of a position [m]: so near to the border a particle rests on it
 
 }  // namespace
 
@@ -44,7 +44,7 @@ void ImpactResponse::take_turns(double Side::*given, double time, Vectors& rows,
       side.*given += change;
       rows.row(side.contact.particle) += change * side.escape;
       impulse_ += ode_.mass[side.contact.particle] * time * change * side.escape;
-      again = again || std::abs(change) > round_off;
+      again = again || std::abs(change) > border_noise;
     }
   }
 }
@@ -55,7 +55,7 @@ void ImpactResponse::push_out(double s, Vectors& x) {
     return border - x.row(side.contact.particle).dot(side.contact.normal);
   };
   take_turns(&Side::pushed, 0, x, depth);
-  for (Side& side : contacts_) side.touched = depth(side) > -10 * round_off;
+  for (Side& side : contacts_) side.touched = depth(side) > -10 * border_noise;
 }
 
 void ImpactResponse::stop(double tau, bool begins, Vectors& v, Vectors& a) {
@@ -65,7 +65,7 @@ void ImpactResponse::stop(double tau, bool begins, Vectors& v, Vectors& a) {
     return side.touched ? (contact.velocity - v.row(contact.particle).transpose()).dot(contact.normal) : 0.0;
   };
   const auto pressure = [&](const Side& side) {
-    const bool leaves = !side.touched || approach(side) < -round_off;
+    const bool leaves = !side.touched || approach(side) < -border_noise;
     return leaves ? 0.0 : -a.row(side.contact.particle).dot(side.contact.normal);
   };
   take_turns(&Side::impact, 1, v, approach);

@@ -17,7 +17,7 @@ using solver::Vectors;
 
 constexpr double lag_step = 0.01;  ///< [s]
 constexpr double longest = 1;      ///< [s]
-constexpr double agreement = 0.1;
+constexpr double lag_agreement = 0.1;
 
 /// How far the centre of mass has sunk [m], step by step from t = 0 on.
 struct Fall {
@@ -151,7 +151,7 @@ void add_row(results::TableBuilder& table, double nu, double ratio) {
   add_lags(table, "sbdf2", sbdf2, inertia);
   add_lags(table, "imex-euler", imex_euler, damping);
   const auto near = [end](double measured, double predicted) {  // in the lag, and in the way that is left
-    return std::abs(measured - predicted) <= agreement * std::min(predicted, end - predicted);
+    return std::abs(measured - predicted) <= lag_agreement * std::min(predicted, end - predicted);
   };
   table.text("verdict", "verdict", "whether both lags, and what they leave of t, are within a tenth of what is predicted",
              near(sbdf2, inertia) && near(imex_euler, damping) ? "as predicted" : "NOT as predicted");

@@ -14,7 +14,7 @@
 namespace drape::bench {
 namespace {
 
-constexpr double h = 0.01;           ///< [s]
+constexpr double box_step = 0.01;    ///< [s]
 constexpr std::size_t window = 5;    ///< steps of which people see the mean
 constexpr std::size_t at_rest = 20;  ///< the last steps
 constexpr double most_iterations = 1.5, most_time = 1.3;
@@ -26,7 +26,7 @@ model::Scene swing(bool quick) {
 }
 
 Cell cell(const model::Scene& scene, std::string_view method) {
-  return {scene, "", &solver::method(method), h, solver::thesis_options()};
+  return {scene, "", &solver::method(method), box_step, solver::thesis_options()};
 }
 
 /// The method alone: all runs have the thesis' solvers.
@@ -62,7 +62,8 @@ results::Table over_time(const char* name, const char* title, const std::vector<
   results::TableBuilder table(name, title);
   for (std::size_t first = 0; first + length <= steps; first += length) {
     table.row();
-    table.number("t", seen ? "until" : "", "s", "end of the last of these steps", h * static_cast<double>(first + length));
+    table.number("t", seen ? "until" : "", "s", "end of the last of these steps",
+                 box_step * static_cast<double>(first + length));
     for (const RunRecord& run : runs) {
       if (first + length > run.steps.size()) continue;
       for (const auto& [curve, description, value] : curves)

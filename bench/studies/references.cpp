@@ -13,11 +13,11 @@
 namespace drape::bench {
 namespace {
 
-constexpr double rtol = 1e-10;
+constexpr double reference_rtol = 1e-10;
 constexpr double closest = 1e-8;  ///< of the size of the scene
 constexpr int outputs = 10;
 
-const std::vector<std::string> names{"cvode-bdf", "arkode-esdirk", "ida-bdf"};
+const std::vector<std::string> family_names{"cvode-bdf", "arkode-esdirk", "ida-bdf"};
 const std::vector<std::string> reference_dampings{"50", "5", "0.5"};
 const std::vector<std::string> scenes{"hung-edge", "hung-corners"};
 
@@ -34,7 +34,8 @@ Solution solve(const std::string& family, const model::Scene& scene) {
   for (int k = 1; k <= outputs; ++k) times.push_back(scene.end * k / outputs);
   const auto begin = std::chrono::steady_clock::now();
   Solution solution{
-      reference::family(family).solve(cloth.ode, cloth.start, 0, times, {.rtol = rtol, .size = model::size(scene)}), 0, 0, 0};
+      reference::family(family).solve(cloth.ode, cloth.start, 0, times, {.rtol = reference_rtol, .size = model::size(scene)}),
+      0, 0, 0};
   solution.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   const std::string prefix = family.substr(0, family.find('-'));
   solution.steps = cloth.ode.work->count(prefix + "/steps");
@@ -66,20 +67,21 @@ void add_row(results::TableBuilder& table, const model::Scene& scene, const std:
 }
 
 results::Table compare(bool quick, Progress& progress) {
-  results::TableBuilder table("references",
-                              fmt::format("Three families of solvers on the same equation of motion, rtol = {:g}", rtol));
+  results::TableBuilder table(
+      "references", fmt::format("Three families of solvers on the same equation of motion, rtol = {:g}", reference_rtol));
   for (const std::string& name : scenes)
     for (const std::string& damping : reference_dampings) {
       std::vector<model::Override> overrides{{"material.damping", damping}};
       if (quick) overrides.insert(overrides.end(), {{"grid.n", "6"}, {"end.time", "0.2"}});
       const model::Scene scene = model::load_scene(name, overrides);
       std::vector<Solution> solutions;
-      for (const std::string& family : names) {
+      for (const std::string& family : family_names) {
         progress.show(fmt::format("{}, d = {}, {}", name, damping, family));
         solutions.push_back(solve(family, scene));
         progress.advance();
       }
-      for (std::size_t k = 0; k < names.size(); ++k) add_row(table, scene, names[k], solutions[k], solutions.front());
+      for (std::size_t k = 0; k < family_names.size(); ++k)
+        add_row(table, scene, family_names[k], solutions[k], solutions.front());
     }
   return table.finish();
 }
@@ -87,7 +89,7 @@ results::Table compare(bool quick, Progress& progress) {
 }  // namespace
 
 std::vector<TableJob> references(bool quick) {
-  const auto parts = static_cast<int>(scenes.size() * reference_dampings.size() * names.size());
+  const auto parts = static_cast<int>(scenes.size() * reference_dampings.size() * family_names.size());
   return {{parts, [quick](Progress& progress) { return compare(quick, progress); }}};
 }
 

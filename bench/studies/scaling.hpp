@@ -52,6 +52,7 @@ class Run {
   solver::Integrator integrator_;
 };
 
+/// A table each: a step by size; an iteration of conjugate gradients by size; and whether the bars are met.
 results::Table steps(bool quick, Progress& progress);
 results::Table iterations(bool quick, Progress& progress);
 results::Table bars(bool quick, Progress& progress);

@@ -11,7 +11,7 @@ namespace {
 using results::Verdict;
 
 constexpr int particles = 10;       ///< a side
-constexpr int finest = 1024;        ///< steps
+constexpr int most_parts = 1024;    ///< steps
 constexpr double resolution = 0.1;  ///< of h*, relative
 
 struct Softness {
@@ -29,7 +29,7 @@ class FewestSteps {
   int fewest(const Good& good) {
     int bad = 0, enough = 1;
     for (; !good((*this)(enough)); enough *= 2) {
-      if (enough == finest) return 0;
+      if (enough == most_parts) return 0;
       bad = enough;
     }
     while (enough - bad > 1 && enough - bad > resolution * bad) {
@@ -74,7 +74,7 @@ TableJob largest_steps(bool quick) {
             results::TableBuilder table(
                 "stability-steps",
                 fmt::format("The largest usable step of every method by bisection, at least {:.2g} s, to {} s",
-                            horizon / finest, horizon));
+                            horizon / most_parts, horizon));
             for (const auto& [k, d] : sheets) {
               const Specimen specimen = hung_by_corners(quick ? 6 : particles, k, d);
               const Yardstick yardstick(specimen, horizon);
