@@ -17,11 +17,13 @@ constexpr int most_patience = 12;         ///< even if it was made for this stag
 constexpr double different_gamma = 0.25;  ///< or for a γ so far away
 constexpr int most_constant_updates = 150;  ///< what a stage costs with Newton's matrix where it is hard
 constexpr double similar_gamma = 0.1;       ///< the constant matrix serves for a γ as near as this
+constexpr int most_renewals = 4;            ///< of a factor in a stage; then every update needs one
 constexpr int update_cost = 4;              ///< of an update with a Newton factor, in updates with the constant matrix
 constexpr int renewal_cost = 40;            ///< of making the factor
 constexpr int longest_stay = 64;            ///< stages after which `auto` tries the constant matrix again
 constexpr double cheap = 50;                ///< cost of a stage for which the constant matrix need not be tried
 constexpr double mean_weight = 0.2;         ///< of the second estimate of the error
+constexpr double stiffest = 1e5;            ///< A over M, beyond which `auto` does not trust it
 
 }  // namespace
 
@@ -32,6 +34,7 @@ AcceleratedLoop::AcceleratedLoop(const SplitOde& ode, const Options& options, St
       anderson_(ode.particles()),
       newton_(ode, false),
       lean_newton_(ode, true),
+      search_(ode, system),
       work_(*ode.work),
       renewals_(ode.work->counter("newton_factorizations", "factorizations of a Newton matrix")),
       escalations_(ode.work->counter("escalations", "stages that auto gave to Newton's matrix")) {
@@ -62,6 +65,7 @@ void AcceleratedLoop::begin(const Stage& stage, const State& y) {
   guess_ = y.v;
   factor_ = nullptr;
   renewals_here_ = 0;
+  searched_ = false;
   forget();
 }
 
@@ -127,13 +131,23 @@ bool AcceleratedLoop::retreat(State& y) {
     return false;
   }
   y.v = best_v_;
-  if (factor_ != nullptr && !made_here_) return use_newton(factor_, y);
+  if (factor_ != nullptr) return made_here_ ? search(y) : use_newton(factor_, y);
   anderson_.restart();
   part_ /= 4;
   rate_ = 0;
   if (part_ < smallest_part) return escalate(y);
   y.v += part_ * best_d_;
   return true;
+}
+
+/// The rest of the stage by Newton's method with line searches; false if that fails, too.
+bool AcceleratedLoop::search(State& y) {
+  const int updates = result_.updates;
+  y.v = guess_;  // the solution near it is the one that is wanted
+  search_.solve(*stage_, newton_, y, result_);
+  renewals_here_ += result_.updates - updates;
+  searched_ = true;
+  return result_.outcome == Outcome::success;
 }
 
 bool AcceleratedLoop::may_escalate() const {
@@ -176,6 +190,9 @@ bool AcceleratedLoop::close_enough(const State& y) const {
   return part_ == 1 && error <= std::max(round_off, stage_->accuracy * (y.v - guess_).norm());
 }
 
+/// Whether A is so stiff that its updates do not show how far off slow modes are.
+bool AcceleratedLoop::blind() const { return may_escalate() && bound_ > stiffest * size_; }
+
 bool AcceleratedLoop::slow() const {
   if (factor_ == nullptr) return false;
   const bool old = !made_here_ && (since_renewal_ >= patience || (since_renewal_ > 2 && rate_ > slow_rate));
@@ -207,14 +224,17 @@ StageResult AcceleratedLoop::solve(const Stage& stage, State& y) {
     ++since_renewal_;
     if (!(size_ <= (part_ < 1 ? 1 : growth) * best_)) {
       if (!retreat(y)) return result_;
+      if (searched_) break;
       continue;
     }
     advance(y);
-    if (close_enough(y)) break;
-    if (may_escalate() && result_.updates >= most_constant_updates) {
+    const bool close = close_enough(y);
+    if (close && !blind()) break;
+    if (may_escalate() && (close || result_.updates >= most_constant_updates)) {
       if (!escalate(y)) return result_;
-    } else if (slow() && !use_newton(factor_, y)) {
-      return result_;
+    } else if (slow()) {
+      if (renewals_here_ < most_renewals ? !use_newton(factor_, y) : !search(y)) return result_;
+      if (searched_) break;
     }
   }
   y.x = stage.ax + stage.gamma * y.v;

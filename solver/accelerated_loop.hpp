@@ -1,7 +1,7 @@
 #pragma once
 
 #include "solver/anderson.hpp"
-#include "solver/newton_factor.hpp"
+#include "solver/newton_search.hpp"
 #include "solver/stage_system.hpp"
 
 namespace drape::solver {
@@ -30,10 +30,12 @@ class AcceleratedLoop {
   bool use_newton(NewtonFactor* factor, State& y);
   bool correct();
   bool retreat(State& y);
+  bool search(State& y);
   bool escalate(State& y);
   void advance(State& y);
   bool close_enough(const State& y) const;
   bool may_escalate() const;
+  bool blind() const;
   bool slow() const;
   NewtonFactor* preferred();
   void plan_next();
@@ -44,6 +46,7 @@ class AcceleratedLoop {
   StageSystem& system_;
   Anderson anderson_;
   NewtonFactor newton_, lean_newton_;
+  NewtonSearch search_;
   Vectors guess_;
   Vectors best_v_, best_d_;  ///< where |d| was smallest since the last renewal
 
@@ -60,6 +63,7 @@ class AcceleratedLoop {
   double rate_ = 0;                 ///< by which |d| changed last
   int since_renewal_ = 0, renewals_here_ = 0;
   bool made_here_ = false;  ///< P was made at best_v_; A is what it is everywhere
+  bool searched_ = false;   ///< the stage was solved by line searches
 
   // What `auto` remembers.
   int newton_stages_ = 0;  ///< still to be solved with Newton's matrix

@@ -106,6 +106,32 @@ TEST(Auto, IsAsAccurateAsNewtonOnAStiffSheet) {
   EXPECT_LE(ours.result.rejected_steps, 2);
 }
 
+/// Without damping, numerical stiffness 1e7: folds as soon as it hangs.
+model::Cloth inextensible() { return sheet({{"material.tension", "1e9"}, {"material.damping", "0"}}); }
+
+TEST(NewtonSearch, SolvesWhatNothingElseDoesWithoutCuttingSteps) {
+  for (const char* method : {"implicit-euler", "bdf2", "midpoint"}) {
+    const model::Cloth cloth = inextensible();
+    const Ended ours = run(cloth, method, {}, 0.01);
+    ASSERT_EQ(ours.result.outcome, Outcome::success) << method << ": " << ours.result.message;
+    EXPECT_EQ(ours.result.rejected_steps, 0) << method;
+    EXPECT_GE(cloth.ode.work->count("searched_stages"), 5) << method;
+    EXPECT_LE(cloth.ode.work->count("newton_factorizations"), 300) << method;
+  }
+}
+
+TEST(NewtonSearch, FindsTheSolutionNearTheGuess) {
+  const Vectors exact = run(inextensible(), "implicit-euler", stage("newton", 1e-7), 0.01).end.x;
+  for (const char* kind : {"auto", "newton", "lean-newton"})
+    EXPECT_LE(rms(run(inextensible(), "implicit-euler", stage(kind), 0.01).end.x - exact), 1e-4) << kind;
+}
+
+TEST(NewtonSearch, IsNotNeededWhereDampingIsStrong) {
+  const model::Cloth cloth = sheet({{"material.tension", "1e9"}, {"material.damping", "1e6"}});
+  EXPECT_EQ(run(cloth, "bdf2", {}, 0.01).result.outcome, Outcome::success);
+  EXPECT_EQ(cloth.ode.work->count("searched_stages"), 0);
+}
+
 TEST(Anderson, NeedsFarFewerUpdatesThanTheLoopItAccelerates) {
   const model::Cloth loop = sheet({{"material.damping", "5"}}), accelerated = sheet({{"material.damping", "5"}});
   run(loop, "bdf2", tolerances(1e-6, 1e-7), 0.01);

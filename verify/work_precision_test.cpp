@@ -110,7 +110,7 @@ TEST_F(WorkPrecision, NamesWinnersJudgesTheBarsAndDrawsEveryScene) {
   program.run({"study", "work-precision", "--quick", "--out", "study.h5"});
   const auto all = results::read_tables(program.folder() / "study.h5");
   ASSERT_THAT(all, SizeIs(6));
-  for (const char* name : {"trials: hung-corners d=5", "trials: peer-edge n=20"}) {
+  for (const char* name : {"trials: hung-corners d=5", "trials: peer-edge n=8"}) {
     const auto codes = texts(table(all, name), "code");
     for (const char* code : {"drape", "explicit", "thesis", "cvode-bdf", "arkode-esdirk", "arkode-imex", "ida-bdf"})
       EXPECT_THAT(codes, testing::Contains(code)) << name;

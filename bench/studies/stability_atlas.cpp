@@ -47,7 +47,7 @@ std::vector<Sheet> sheets(bool quick) {
           {20, 0.01, decades(1, 7, 2), ratios(-2, 6, 2), 0.5},
           {10, 0.04, decades(1, 7, 3), ratios(-2, 6, 2)},
           {10, 0.0025, decades(1, 7, 3), ratios(-2, 6, 2)},
-          {40, 0.01, {1e3, 1e7}, {1, 1e3, infinity}, 0.2, true}};
+          {40, 0.01, {1e3, 1e7}, {1, 1e3, infinity}, 1, true}};
 }
 
 /// A method with its stage solver as it stands in the atlas.
@@ -65,7 +65,7 @@ bool is_bar_method(std::string_view name) { return std::ranges::find(bar_methods
 /// What a run may cost. A sub-step of an explicit method is far cheaper than an update of an implicit one.
 std::int64_t budget(const Method& method) {
   if (!method.implicit()) return 100'000;
-  return is_bar_method(method.name) ? 10'000 : 4'000;
+  return is_bar_method(method.name) ? 20'000 : 4'000;
 }
 
 /// All methods, and the thesis' loop where a method has one.

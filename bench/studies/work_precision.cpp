@@ -91,6 +91,7 @@ void find_explicit_truth(Problem& problem) {
     problem.uncertainty = std::max(problem.uncertainty, moved);
   }
   problem.length = 1;  // errors in metres, as those of the other codes
+  problem.asked = peer_errors();
 }
 
 /// What the tables of all scenes are made from.

@@ -23,6 +23,9 @@ constexpr double too_exact = 1;
 /// A family that is so many times slower than another of the same code twice in a row will not win.
 constexpr double hopeless = 1.6;
 
+/// Steps may be so coarse that nothing converges in time: this many are left out then, as long as no finer one has succeeded.
+constexpr std::size_t leap = 4;
+
 /// A first run may have been so much slower than others by chance.
 constexpr double slack = 1.4;
 
@@ -93,12 +96,16 @@ bool outdone(const Trial& trial, const std::vector<Trial>& trials) {
 
 void add_family(const Problem& problem, const Family& family, double cap, std::vector<Trial>& trials) {
   int times_outdone = 0;
-  for (const Candidate& candidate : family.candidates) {
+  bool succeeded = false;
+  for (std::size_t k = 0; k < family.candidates.size();) {
     const auto begin = Clock::now();
-    const Trial trial = attempt(problem, family, candidate, cap);
+    const Trial trial = attempt(problem, family, family.candidates[k], cap);
+    const bool too_long = seconds_since(begin) > 0.7 * cap;
+    succeeded |= trial.outcome == "success";
     times_outdone = outdone(trial, trials) ? times_outdone + 1 : 0;
     trials.push_back(trial);
-    if (seconds_since(begin) > 0.7 * cap || trial.measured.error < too_exact * problem.uncertainty || times_outdone > 1) return;
+    if ((too_long && succeeded) || trial.measured.error < too_exact * problem.uncertainty || times_outdone > 1) return;
+    k += too_long ? leap : 1;
   }
 }
 
@@ -109,6 +116,12 @@ std::vector<double> levels(const Problem& problem) {
   std::vector<double> all;
   for (int digits = 1; digits <= 7; ++digits)
     if (const double error = std::pow(10.0, -digits); problem.uncertainty <= part * error) all.push_back(error);
+  return all;
+}
+
+std::vector<double> asked(const Problem& problem) {
+  std::vector<double> all = levels(problem);
+  all.insert(all.end(), problem.asked.begin(), problem.asked.end());
   return all;
 }
 
@@ -146,7 +159,7 @@ void time_fronts(const Problem& problem, std::vector<Trial>& trials, const Effor
   for (const Contender& contender : contenders(trials)) {
     std::vector<results::Measured> measured;
     for (const std::size_t k : contender.members) measured.push_back(trials[k].measured);
-    for (const std::size_t k : results::near_quickest(measured, levels(problem), slack)) chosen.insert(contender.members[k]);
+    for (const std::size_t k : results::near_quickest(measured, asked(problem), slack)) chosen.insert(contender.members[k]);
   }
   std::vector<Prepare> runs;
   for (const std::size_t k : chosen)

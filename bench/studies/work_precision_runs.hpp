@@ -16,12 +16,16 @@ struct Problem {
   double length = 1;               ///< by which errors are divided [m]
   std::vector<double> times = {};  ///< the last is the end [s]
   std::vector<solver::Vectors> truth = {};
-  double uncertainty = 0;  ///< of the truth, over `length`
-  double growth = 0;       ///< of a small perturbation of the start; 0 if not known
+  double uncertainty = 0;          ///< of the truth, over `length`
+  double growth = 0;               ///< of a small perturbation of the start; 0 if not known
+  std::vector<double> asked = {};  ///< errors at which somebody asks for the quickest, beside the usual ones
 };
 
 /// Of 1e-1 to 1e-7 the errors that the truth of a scene resolves.
 std::vector<double> levels(const Problem& problem);
+
+/// These, and those that are asked for besides.
+std::vector<double> asked(const Problem& problem);
 
 /// What became of a candidate.
 struct Trial {

@@ -65,7 +65,7 @@ std::vector<Score> scores(const std::vector<SceneTrials>& scenes) {
       if (const Winner best = winners.of("ours", error))
         for (Score& score : all) add(score, best, winners.of(score.contender, error));
   }
-  std::ranges::sort(all, {}, [](const Score& score) { return std::pair(score.missed, score.mean()); });
+  std::ranges::sort(all, {}, [](const Score& score) { return score.mean(); });
   return all;
 }
 

@@ -1,0 +1,32 @@
+#pragma once
+
+#include "solver/newton_factor.hpp"
+#include "solver/options.hpp"
+#include "solver/stage_system.hpp"
+
+namespace drape::solver {
+
+/// Newton's method with a new matrix for every update, of which only a part is made where the whole leads too far: slow but
+/// hard to stop.
+///
+/// Along an update d the slope r(v + α d)·d falls from r(v)·d > 0; α is where little of it is left. If forces have a potential,
+/// that is downhill in the energy whose minimum solves the stage, to near the lowest point along d; no energy is evaluated.
+class NewtonSearch {
+ public:
+  NewtonSearch(const SplitOde& ode, StageSystem& system);
+
+  /// Goes on from the guess y.v. Adds to the result's updates and sets its outcome. `factor`: of all forces.
+  void solve(const Stage& stage, NewtonFactor& factor, State& y, StageResult& result);
+
+ private:
+  void evaluate(const Stage& stage, State& y);
+  double slope() const;
+  bool follow(const Stage& stage, State& y);
+
+  StageSystem& system_;
+  Vectors guess_, from_, d_;
+  LinearWork work_;
+  std::int64_t &renewals_, &stages_;
+};
+
+}  // namespace drape::solver
