@@ -173,7 +173,7 @@ void sweep_and_print(const std::vector<Group>& groups, const Arguments& a, const
 
 std::vector<TableJob> table_jobs(const Study& chosen, const Arguments& a) {
   if (a.scene.empty()) return chosen.tables(a.quick);
-  return chosen.of_scene(chosen_scene(a));
+  return chosen.of_scene(chosen_scene(a), a.quick);
 }
 
 void check_scene(const Study& chosen, const Arguments& a) {
@@ -187,8 +187,9 @@ void run_study(const Study& chosen, const Arguments& a) {
   check_scene(chosen, a);
   const std::string name(chosen.name);
   if (chosen.groups) return sweep_and_print(chosen.groups(a.quick), a, name);
+  const std::vector<TableJob> jobs = table_jobs(chosen, a);
   const std::filesystem::path out = out_file(a, name);
-  const auto tables = compute(table_jobs(chosen, a), out, a.command_line);
+  const auto tables = compute(jobs, out, a.command_line);
   print_tables(tables, a.format);
   say_where(out, a.format);
   if (chosen.plot.empty()) return;
@@ -304,11 +305,12 @@ void add_run(CLI::App& app, Arguments& a) {
 void add_study(CLI::App& app, Arguments& a) {
   CLI::App& command = *app.add_subcommand("study", "run one of the studies");
   command.add_option("NAME", a.study, "its name")->required()->type_name("");
-  CLI::Option* quick = command.add_flag("--quick", a.quick, "a short form, for tests");
-  command.add_option("--scene", a.scene, fmt::format("this scene, by name or TOML file, and all solvers ({})", of_any_scene()))
+  command.add_flag("--quick", a.quick, "a short form, for tests");
+  command
+      .add_option("--scene", a.scene,
+                  fmt::format("a scene, by name or TOML file, instead of the study's own ({})", of_any_scene()))
       ->type_name("SCENE")
-      ->check(not_empty())
-      ->excludes(quick);
+      ->check(not_empty());
   command.add_option("--set", a.sets, "override a key of that scene (repeatable)")
       ->type_name("key=value")
       ->allow_extra_args(false);

@@ -24,10 +24,10 @@ struct TableJob {
 struct Study {
   std::string_view name;
   std::string_view description;
-  std::vector<Group> (*groups)(bool quick) = nullptr;     ///< runs, compared with references
-  std::vector<TableJob> (*tables)(bool quick) = nullptr;  ///< or tables
-  std::string_view plot = {};                             ///< script that draws them; empty: none
-  std::vector<TableJob> (*of_scene)(const model::Scene& scene) = nullptr;  ///< the same question about another scene
+  std::vector<Group> (*groups)(bool quick) = nullptr;                                  ///< runs, compared with references
+  std::vector<TableJob> (*tables)(bool quick) = nullptr;                               ///< or tables
+  std::string_view plot = {};                                                          ///< script that draws them; empty: none
+  std::vector<TableJob> (*of_scene)(const model::Scene& scene, bool quick) = nullptr;  ///< the same about another scene
 };
 
 /// All studies; the first is the main job.
@@ -49,6 +49,6 @@ std::vector<TableJob> figure_4_3(bool quick);
 std::vector<TableJob> scaling(bool quick);
 std::vector<TableJob> stability(bool quick);
 std::vector<TableJob> work_precision(bool quick);
-std::vector<TableJob> work_precision_of(const model::Scene& scene);
+std::vector<TableJob> work_precision_of(const model::Scene& scene, bool quick);
 
 }  // namespace drape::bench

@@ -119,8 +119,16 @@ TEST_F(WorkPrecision, NamesWinnersJudgesTheBarsAndDrawsEveryScene) {
   EXPECT_THAT(bars, testing::Each(testing::AnyOf(HasSubstr("met"), HasSubstr("NOT met"))));
   EXPECT_THAT(bars, SizeIs(testing::Ge(15)));
   EXPECT_THAT(texts(table(all, "winners"), "best"), AllOf(SizeIs(testing::Ge(10)), testing::Each(Not(IsEmpty()))));
-  for (const char* name : {"study-hung-corners-d-5.svg", "study-hung-corners-d-5.png", "study-peer-edge-n-20.svg"})
+  for (const char* name : {"study-hung-corners-d-5.svg", "study-hung-corners-d-5.png", "study-peer-edge-n-8.svg"})
     EXPECT_GT(std::filesystem::file_size(program.folder() / name), 5000u) << name;
+}
+
+TEST_F(WorkPrecision, JudgesAnyScene) {
+  program.run({"study", "work-precision", "--quick", "--scene", "hung-edge", "--set", "grid.n=5", "--set", "end.time=0.1",
+               "--out", "study.h5"});
+  const auto all = results::read_tables(program.folder() / "study.h5");
+  EXPECT_THAT(texts(table(all, "winners"), "scene"), testing::Each(std::string("hung-edge")));
+  EXPECT_THAT(texts(table(all, "trials: hung-edge"), "code"), testing::Contains("cvode-bdf"));
 }
 
 }  // namespace

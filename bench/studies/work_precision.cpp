@@ -126,6 +126,8 @@ std::vector<TableJob> jobs(const std::vector<Entry>& list, bool quick) {
 
 std::vector<TableJob> work_precision(bool quick) { return jobs(quick ? quick_entries() : entries(), quick); }
 
-std::vector<TableJob> work_precision_of(const model::Scene& scene) { return jobs({{scene.name, scene, Search::full}}, false); }
+std::vector<TableJob> work_precision_of(const model::Scene& scene, bool quick) {
+  return jobs({{scene.name, scene, quick ? Search::quick : Search::full}}, quick);
+}
 
 }  // namespace drape::bench
