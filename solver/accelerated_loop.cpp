@@ -143,8 +143,7 @@ bool AcceleratedLoop::retreat(State& y) {
 /// The rest of the stage by Newton's method with line searches; false if that fails, too.
 bool AcceleratedLoop::search(State& y) {
   const int updates = result_.updates;
-  y.v = guess_;  // the solution near it is the one that is wanted
-  search_.solve(*stage_, newton_, y, result_);
+  search_.solve(*stage_, guess_, newton_, y, result_);
   renewals_here_ += result_.updates - updates;
   searched_ = true;
   return result_.outcome == Outcome::success;

@@ -18,7 +18,7 @@ NewtonSearch::NewtonSearch(const SplitOde& ode, StageSystem& system)
       work_(*ode.work),
       renewals_(ode.work->counter("newton_factorizations", "factorizations of a Newton matrix")),
       stages_(ode.work->counter("searched_stages", "stages solved by Newton's method with line searches")) {
-  for (Vectors* field : {&guess_, &from_, &d_}) field->setZero(ode.particles(), 3);
+  for (Vectors* field : {&from_, &d_}) field->setZero(ode.particles(), 3);
 }
 
 void NewtonSearch::evaluate(const Stage& stage, State& y) {
@@ -49,9 +49,8 @@ bool NewtonSearch::follow(const Stage& stage, State& y) {
   return false;
 }
 
-void NewtonSearch::solve(const Stage& stage, NewtonFactor& factor, State& y, StageResult& result) {
+void NewtonSearch::solve(const Stage& stage, const Vectors& guess, NewtonFactor& factor, State& y, StageResult& result) {
   ++stages_;
-  guess_ = y.v;
   const double noise = system_.noise(y, stage.gamma);
   double before = 0;  // |d|, of the update before
   evaluate(stage, y);
@@ -67,7 +66,7 @@ void NewtonSearch::solve(const Stage& stage, NewtonFactor& factor, State& y, Sta
     const double size = d_.norm(), rate = before > 0 ? size / before : 1;
     const double error = size / std::max(1 - rate, least_ahead);
     const double round_off = StageSystem::round_off(y.x.norm()) / stage.gamma;
-    if (error <= std::max(round_off, stage.accuracy * (y.v - guess_).norm())) {
+    if (error <= std::max(round_off, stage.accuracy * (y.v - guess).norm())) {
       y.v += d_;
       return;
     }

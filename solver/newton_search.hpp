@@ -15,8 +15,9 @@ class NewtonSearch {
  public:
   NewtonSearch(const SplitOde& ode, StageSystem& system);
 
-  /// Goes on from the guess y.v. Adds to the result's updates and sets its outcome. `factor`: of all forces.
-  void solve(const Stage& stage, NewtonFactor& factor, State& y, StageResult& result);
+  /// Goes on from y.v; guess: where the stage began. Adds to the result's updates and sets its outcome. `factor`: of all
+  /// forces.
+  void solve(const Stage& stage, const Vectors& guess, NewtonFactor& factor, State& y, StageResult& result);
 
  private:
   void evaluate(const Stage& stage, State& y);
@@ -24,7 +25,7 @@ class NewtonSearch {
   bool follow(const Stage& stage, State& y);
 
   StageSystem& system_;
-  Vectors guess_, from_, d_;
+  Vectors from_, d_;
   LinearWork work_;
   std::int64_t &renewals_, &stages_;
 };

@@ -112,15 +112,15 @@ model::Cloth inextensible() { return sheet({{"material.tension", "1e9"}, {"mater
 TEST(NewtonSearch, SolvesWhatNothingElseDoesWithoutCuttingSteps) {
   for (const char* method : {"implicit-euler", "bdf2", "midpoint"}) {
     const model::Cloth cloth = inextensible();
-    const Ended ours = run(cloth, method, {}, 0.01);
+    const Ended ours = run(cloth, method, {}, 0.01, 0.25);
     ASSERT_EQ(ours.result.outcome, Outcome::success) << method << ": " << ours.result.message;
     EXPECT_EQ(ours.result.rejected_steps, 0) << method;
-    EXPECT_GE(cloth.ode.work->count("searched_stages"), 5) << method;
-    EXPECT_LE(cloth.ode.work->count("newton_factorizations"), 300) << method;
+    EXPECT_GE(cloth.ode.work->count("searched_stages"), 10) << method;
+    EXPECT_LE(cloth.ode.work->count("newton_factorizations"), 500) << method;
   }
 }
 
-TEST(NewtonSearch, FindsTheSolutionNearTheGuess) {
+TEST(Auto, DoesNotTrustAConstantMatrixThatIsFarTooStiff) {
   const Vectors exact = run(inextensible(), "implicit-euler", stage("newton", 1e-7), 0.01).end.x;
   for (const char* kind : {"auto", "newton", "lean-newton"})
     EXPECT_LE(rms(run(inextensible(), "implicit-euler", stage(kind), 0.01).end.x - exact), 1e-4) << kind;
