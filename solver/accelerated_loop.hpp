@@ -8,7 +8,7 @@ namespace drape::solver {
 
 /// Solves stages without contacts by Anderson's method. What it accelerates is the iteration v ← v + P⁻¹ r(v), where P is the
 /// constant matrix A or the factor of a Newton matrix, which is kept until convergence slows. An update that leads away is
-/// taken back and tried with a smaller part, or with a new factor.
+/// taken back and tried with a smaller part, or with a new factor; where that does not help, NewtonSearch goes on.
 ///
 /// It ends when an estimate of the error of v is a small part of the error of the time step, which the distance between
 /// solution and first guess tells (Stage::accuracy). There are two estimates: |P⁻¹ r| over the weakest response seen to a
