@@ -34,7 +34,7 @@ AcceleratedLoop::AcceleratedLoop(const SplitOde& ode, const Options& options, St
       anderson_(ode.particles()),
       newton_(ode, false),
       lean_newton_(ode, true),
-      search_(ode, system),
+      search_(ode, options, system),
       work_(*ode.work),
       renewals_(ode.work->counter("newton_factorizations", "factorizations of a Newton matrix")),
       escalations_(ode.work->counter("escalations", "stages that auto gave to Newton's matrix")) {

@@ -13,8 +13,9 @@ constexpr double least_ahead = 0.01;  ///< 1 − rate of convergence at least, w
 
 }  // namespace
 
-NewtonSearch::NewtonSearch(const SplitOde& ode, StageSystem& system)
-    : system_(system),
+NewtonSearch::NewtonSearch(const SplitOde& ode, const Options& options, StageSystem& system)
+    : options_(options),
+      system_(system),
       work_(*ode.work),
       renewals_(ode.work->counter("newton_factorizations", "factorizations of a Newton matrix")),
       stages_(ode.work->counter("searched_stages", "stages solved by Newton's method with line searches")) {
@@ -54,7 +55,7 @@ void NewtonSearch::solve(const Stage& stage, const Vectors& guess, NewtonFactor&
   const double noise = system_.noise(y, stage.gamma);
   double before = 0;  // |d|, of the update before
   evaluate(stage, y);
-  for (int k = 0; k < most_matrices; ++k) {
+  for (int k = 0; k < most_matrices && result.updates < options_.max_updates; ++k) {
     result.outcome = Outcome::not_finite;
     if (!y.v.allFinite() || !system_.residual().allFinite()) return;
     result.outcome = factor.renew(stage.t, y, stage.gamma);

@@ -13,7 +13,7 @@ namespace drape::solver {
 /// that is downhill in the energy whose minimum solves the stage, to near the lowest point along d; no energy is evaluated.
 class NewtonSearch {
  public:
-  NewtonSearch(const SplitOde& ode, StageSystem& system);
+  NewtonSearch(const SplitOde& ode, const Options& options, StageSystem& system);
 
   /// Goes on from y.v; guess: where the stage began. Adds to the result's updates and sets its outcome. `factor`: of all
   /// forces.
@@ -24,6 +24,7 @@ class NewtonSearch {
   double slope() const;
   bool follow(const Stage& stage, State& y);
 
+  const Options& options_;
   StageSystem& system_;
   Vectors from_, d_;
   LinearWork work_;
