@@ -23,7 +23,7 @@ constexpr int renewal_cost = 40;            ///< of making the factor
 constexpr int longest_stay = 64;            ///< stages after which `auto` tries the constant matrix again
 constexpr double cheap = 50;                ///< cost of a stage for which the constant matrix need not be tried
 constexpr double mean_weight = 0.2;         ///< of the second estimate of the error
-constexpr double stiffest = 1e5;            ///< A over M, beyond which `auto` does not trust it
+constexpr double stiffest = 1e4;            ///< A over A without springs, beyond which `auto` does not trust it
 
 }  // namespace
 
@@ -63,6 +63,7 @@ void AcceleratedLoop::begin(const Stage& stage, const State& y) {
   stage_ = &stage;
   result_ = {};
   guess_ = y.v;
+  unsprung_mass_ = ode_.mass - stage.gamma * ode_.damping.diagonal();
   factor_ = nullptr;
   renewals_here_ = 0;
   searched_ = false;
@@ -108,6 +109,7 @@ bool AcceleratedLoop::use_newton(NewtonFactor* factor, State& y) {
 bool AcceleratedLoop::correct() {
   const Vectors& r = system_.residual();
   bound_ = (ode_.mass.cwiseInverse().asDiagonal() * r).norm();
+  if (may_escalate()) unsprung_ = (unsprung_mass_.cwiseInverse().asDiagonal() * r).norm();
   size_ = infinity;
   if (!std::isfinite(residual_)) return true;
   if (factor_ != nullptr) {
@@ -189,8 +191,8 @@ bool AcceleratedLoop::close_enough(const State& y) const {
   return part_ == 1 && error <= std::max(round_off, stage_->accuracy * (y.v - guess_).norm());
 }
 
-/// Whether A is so stiff that its updates do not show how far off slow modes are.
-bool AcceleratedLoop::blind() const { return may_escalate() && bound_ > stiffest * size_; }
+/// Whether the springs make A so stiff that its updates do not show how far off modes are in which the cloth is slack.
+bool AcceleratedLoop::blind() const { return may_escalate() && unsprung_ > stiffest * size_; }
 
 bool AcceleratedLoop::slow() const {
   if (factor_ == nullptr) return false;

@@ -48,6 +48,7 @@ class AcceleratedLoop {
   NewtonFactor newton_, lean_newton_;
   NewtonSearch search_;
   Vectors guess_;
+  Eigen::VectorXd unsprung_mass_;
   Vectors best_v_, best_d_;  ///< where |d| was smallest since the last renewal
 
   // Of the stage that is being solved.
@@ -58,6 +59,7 @@ class AcceleratedLoop {
   double noise_ = 0;                ///< what of it is round-off
   double size_ = 0;                 ///< |d|
   double bound_ = 0;                ///< |M⁻¹ r|
+  double unsprung_ = 0;             ///< the same with M − γD, of which only the diagonal counts
   double best_ = 0;                 ///< smallest |d|
   double part_ = 1;                 ///< of an update that is made
   double rate_ = 0;                 ///< by which |d| changed last
