@@ -20,8 +20,9 @@ using Clock = std::chrono::steady_clock;
 /// Below so many uncertainties of the truth an error says nothing.
 constexpr double too_exact = 1;
 
-/// A family that is so many times slower than another of the same code twice in a row will not win.
-constexpr double hopeless = 1.6;
+/// A family that is so many times slower than another of the same code twice in a row will not win, unless its steps are so
+/// coarse that finer ones take less time.
+constexpr double hopeless = 2;
 
 /// Steps may be so coarse that nothing converges in time: this many are left out then, as long as no finer one has succeeded.
 constexpr std::size_t leap = 4;
@@ -96,13 +97,16 @@ bool outdone(const Trial& trial, const std::vector<Trial>& trials) {
 
 void add_family(const Problem& problem, const Family& family, double cap, std::vector<Trial>& trials) {
   int times_outdone = 0;
+  double before = INFINITY;  // seconds
   bool succeeded = false;
   for (std::size_t k = 0; k < family.candidates.size();) {
     const auto begin = Clock::now();
     const Trial trial = attempt(problem, family, family.candidates[k], cap);
-    const bool too_long = seconds_since(begin) > 0.7 * cap;
+    const double seconds = seconds_since(begin);
+    const bool too_long = seconds > 0.7 * cap;
     succeeded |= trial.outcome == "success";
-    times_outdone = outdone(trial, trials) ? times_outdone + 1 : 0;
+    times_outdone = seconds > before && outdone(trial, trials) ? times_outdone + 1 : 0;
+    before = seconds;
     trials.push_back(trial);
     if ((too_long && succeeded) || trial.measured.error < too_exact * problem.uncertainty || times_outdone > 1) return;
     k += too_long ? leap : 1;
