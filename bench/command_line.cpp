@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
+#include <functional>
 #include <optional>
 #include <system_error>
 
@@ -85,20 +86,21 @@ solver::StepControl step_control(const std::vector<int>& bounds) {
   return {.min_updates = low, .max_updates = high};
 }
 
-/// The studies that can be made of any scene.
-std::string of_any_scene() {
+/// The names of those for which something holds, for a message.
+template <class Row, class Holds>
+std::string names_of(std::span<const Row> table, Holds holds) {
   std::vector<std::string_view> names;
-  for (const Study& study : studies())
-    if (study.of_scene != nullptr) names.push_back(study.name);
+  for (const Row& row : table)
+    if (holds(row)) names.push_back(row.name);
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-std::string for_obstacles() {
-  std::vector<std::string_view> names;
-  for (const solver::Method& method : solver::methods())
-    if (method.meets_obstacles) names.push_back(method.name);
-  return fmt::format("{}", fmt::join(names, ", "));
+/// The studies that can be made of any scene.
+std::string of_any_scene() {
+  return names_of(studies(), [](const Study& study) { return study.of_scene != nullptr; });
 }
+
+std::string for_obstacles() { return names_of(solver::methods(), std::mem_fn(&solver::Method::meets_obstacles)); }
 
 model::Scene chosen_scene(const Arguments& a) {
   std::vector<model::Override> overrides;

@@ -31,12 +31,12 @@ AcceleratedLoop::AcceleratedLoop(const SplitOde& ode, const Options& options, St
     : ode_(ode),
       options_(options),
       system_(system),
+      drag_(ode.damping.diagonal()),
       anderson_(ode.particles()),
       newton_(ode, false),
       lean_newton_(ode, true),
       search_(ode, options, system),
       work_(*ode.work),
-      renewals_(ode.work->counter("newton_factorizations", "factorizations of a Newton matrix")),
       escalations_(ode.work->counter("escalations", "stages that auto gave to Newton's matrix")) {
   const bool newton = options.stage->matrix == Matrix::newton || options.stage->matrix == Matrix::lean_newton;
   if (newton && !ode.newton_matrix) throw std::invalid_argument("stage solver 'newton': expected an ODE with a newton_matrix");
@@ -63,7 +63,6 @@ void AcceleratedLoop::begin(const Stage& stage, const State& y) {
   stage_ = &stage;
   result_ = {};
   guess_ = y.v;
-  unsprung_mass_ = ode_.mass - stage.gamma * ode_.damping.diagonal();
   factor_ = nullptr;
   renewals_here_ = 0;
   searched_ = false;
@@ -99,7 +98,6 @@ bool AcceleratedLoop::use_newton(NewtonFactor* factor, State& y) {
   factor_ = factor;
   forget();
   y.x = stage_->ax + stage_->gamma * y.v;
-  ++renewals_;
   ++renewals_here_;
   result_.outcome = factor->renew(stage_->t, y, stage_->gamma);
   return result_.outcome == Outcome::success;
@@ -109,7 +107,7 @@ bool AcceleratedLoop::use_newton(NewtonFactor* factor, State& y) {
 bool AcceleratedLoop::correct() {
   const Vectors& r = system_.residual();
   bound_ = (ode_.mass.cwiseInverse().asDiagonal() * r).norm();
-  if (may_escalate()) unsprung_ = (unsprung_mass_.cwiseInverse().asDiagonal() * r).norm();
+  if (may_escalate()) unsprung_ = ((ode_.mass - stage_->gamma * drag_).cwiseInverse().asDiagonal() * r).norm();
   size_ = infinity;
   if (!std::isfinite(residual_)) return true;
   if (factor_ != nullptr) {
@@ -187,8 +185,7 @@ void AcceleratedLoop::advance(State& y) {
 
 bool AcceleratedLoop::close_enough(const State& y) const {
   const double error = std::max(size_ / anderson_.weakest(), mean_weight * std::sqrt(bound_ * size_));
-  const double round_off = StageSystem::round_off(y.x.norm()) / stage_->gamma;
-  return part_ == 1 && error <= std::max(round_off, stage_->accuracy * (y.v - guess_).norm());
+  return part_ == 1 && error <= StageSystem::allowed_error(*stage_, guess_, y);
 }
 
 /// Whether the springs make A so stiff that its updates do not show how far off modes are in which the cloth is slack.

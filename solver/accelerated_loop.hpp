@@ -44,11 +44,11 @@ class AcceleratedLoop {
   const SplitOde& ode_;
   const Options& options_;
   StageSystem& system_;
+  const Eigen::VectorXd drag_;  ///< diagonal of D
   Anderson anderson_;
   NewtonFactor newton_, lean_newton_;
   NewtonSearch search_;
   Vectors guess_;
-  Eigen::VectorXd unsprung_mass_;
   Vectors best_v_, best_d_;  ///< where |d| was smallest since the last renewal
 
   // Of the stage that is being solved.
@@ -72,7 +72,7 @@ class AcceleratedLoop {
   int next_stay_ = 4;
   double mean_cost_ = 0;  ///< of a stage with Newton's matrix, in updates with A
   LinearWork work_;
-  std::int64_t &renewals_, &escalations_;
+  std::int64_t& escalations_;
 };
 
 }  // namespace drape::solver

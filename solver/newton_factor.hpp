@@ -32,6 +32,7 @@ class NewtonFactor {
   SparseMatrix J_;
   std::unique_ptr<Factor> factor_;
   double gamma_ = 0;
+  std::int64_t& renewals_;
 };
 
 }  // namespace drape::solver

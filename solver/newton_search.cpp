@@ -17,7 +17,6 @@ NewtonSearch::NewtonSearch(const SplitOde& ode, const Options& options, StageSys
     : options_(options),
       system_(system),
       work_(*ode.work),
-      renewals_(ode.work->counter("newton_factorizations", "factorizations of a Newton matrix")),
       stages_(ode.work->counter("searched_stages", "stages solved by Newton's method with line searches")) {
   for (Vectors* field : {&from_, &d_}) field->setZero(ode.particles(), 3);
 }
@@ -59,15 +58,13 @@ void NewtonSearch::solve(const Stage& stage, const Vectors& guess, NewtonFactor&
     result.outcome = Outcome::not_finite;
     if (!y.v.allFinite() || !system_.residual().allFinite()) return;
     result.outcome = factor.renew(stage.t, y, stage.gamma);
-    ++renewals_;
     if (result.outcome != Outcome::success) return;
     factor.solve(system_.residual(), d_);
     ++result.updates;
     ++work_.updates;
     const double size = d_.norm(), rate = before > 0 ? size / before : 1;
     const double error = size / std::max(1 - rate, least_ahead);
-    const double round_off = StageSystem::round_off(y.x.norm()) / stage.gamma;
-    if (error <= std::max(round_off, stage.accuracy * (y.v - guess).norm())) {
+    if (error <= StageSystem::allowed_error(stage, guess, y)) {
       y.v += d_;
       return;
     }

@@ -28,7 +28,7 @@ class NewtonSearch {
   StageSystem& system_;
   Vectors from_, d_;
   LinearWork work_;
-  std::int64_t &renewals_, &stages_;
+  std::int64_t& stages_;
 };
 
 }  // namespace drape::solver

@@ -54,6 +54,12 @@ class StageSystem {
   /// Round-off of a sum of terms of this size.
   static double round_off(double size) { return 8 * std::numeric_limits<double>::epsilon() * size; }
 
+  /// Error of v [m/s] that may be left in a stage that began with this guess: a part of the error of the time step, which the
+  /// distance between the two tells, but no less than round-off.
+  static double allowed_error(const Stage& stage, const Vectors& guess, const State& y) {
+    return std::max(round_off(y.x.norm()) / stage.gamma, stage.accuracy * (y.v - guess).norm());
+  }
+
   /// A d = r for another r; what pins and constraints bear of it does not count.
   LinearResult respond(const Vectors& r, double tolerance);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <deque>
 
+#include "bench/bar.hpp"
 #include "bench/studies/scaling.hpp"
 #include "results/runs_table.hpp"
 
@@ -26,16 +27,15 @@ std::vector<double> growth(int large, int small) {
   return ratios;
 }
 
-/// `sense`: 1 if the value may be at most `bar`, −1 if at least.
-void add_bar(results::TableBuilder& table, const std::string& what, int sense, double bar, const std::vector<double>& values) {
-  const double value = results::quantile(values, 0.5), miss = sense > 0 ? value / bar : bar / value;
+void add_bar(results::TableBuilder& table, const std::string& what, const Bar& bar, const std::vector<double>& values) {
+  const double value = results::quantile(values, 0.5);
   table.row();
   table.text("what", "asked for", "what is compared", what);
-  table.text("bar", "bar", "what it may be", fmt::format("{} {:g}", sense > 0 ? "<=" : ">=", bar));
+  table.text("bar", "bar", "what it may be", to_string(bar));
   table.number("value", "value", "1", "median of turns", value);
   table.number("lowest", "from", "1", "lowest of turns", *std::ranges::min_element(values));
   table.number("highest", "to", "1", "highest of turns", *std::ranges::max_element(values));
-  table.text("verdict", "verdict", "whether the bar is met", miss <= 1 ? "met" : fmt::format("NOT met by {:.2f}", miss));
+  table.text("verdict", "verdict", "whether the bar is met", verdict(bar, value));
 }
 
 }  // namespace
@@ -44,11 +44,11 @@ results::Table bars(bool quick, Progress& progress) {
   const int large = sizes(quick).back(), small = quick ? 20 : 100;
   results::TableBuilder table("scaling-bars", "What was asked for, one thread");
   progress.show("bars: a step");
-  add_bar(table, fmt::format("BDF(2) step: time per particle, {0} x {0} over {1} x {1}", large, small), 1, 3,
+  add_bar(table, fmt::format("BDF(2) step: time per particle, {0} x {0} over {1} x {1}", large, small), {3, false},
           growth(large, small));
   progress.advance();
   progress.show("bars: conjugate gradients");
-  add_bar(table, fmt::format("fused CG and stencil: bandwidth over the triad's, {0} x {0}", large), -1, 0.6,
+  add_bar(table, fmt::format("fused CG and stencil: bandwidth over the triad's, {0} x {0}", large), {0.6, true},
           bandwidth_of_bare_iterations(large, 31));
   progress.advance();
   return table.finish();

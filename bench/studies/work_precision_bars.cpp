@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "bench/bar.hpp"
 #include "bench/studies/work_precision_winners.hpp"
 #include "results/table_builder.hpp"
 
@@ -10,20 +11,13 @@ namespace {
 
 using results::TableBuilder;
 
-/// A bar asks for a ratio of at least, or at most, so much.
-struct Bar {
-  std::string name;
-  double wanted;
-  bool at_least;
-};
-
-void add_bar(TableBuilder& table, const SceneTrials& scene, const Bar& bar, double error, std::optional<double> value,
-             const std::string& detail) {
+void add_bar(TableBuilder& table, const SceneTrials& scene, const std::string& name, const Bar& bar, double error,
+             std::optional<double> value, const std::string& detail) {
   table.row();
   table.text("scene", "scene", "its name", scene.problem.name);
-  table.text("bar", "bar", "what is compared", bar.name);
+  table.text("bar", "bar", "what is compared", name);
   table.number("error", "error", "1", "at most", error);
-  table.text("wanted", "wanted", "what is asked for", fmt::format("{} {:g}", bar.at_least ? ">=" : "<=", bar.wanted));
+  table.text("wanted", "wanted", "what is asked for", to_string(bar));
   table.text("detail", "", "what was compared", detail);
   if (!value) {
     table.text("verdict", "verdict", "whether the bar is met",
@@ -31,8 +25,7 @@ void add_bar(TableBuilder& table, const SceneTrials& scene, const Bar& bar, doub
     return;
   }
   table.number("value", "value", "1", "what was measured", *value);
-  const double by = bar.at_least ? bar.wanted / *value : *value / bar.wanted;
-  table.text("verdict", "verdict", "whether the bar is met", by <= 1 ? "met" : fmt::format("NOT met by {:.2f}", by));
+  table.text("verdict", "verdict", "whether the bar is met", verdict(bar, *value));
 }
 
 double wanted_of_peers(double error) { return error > 3e-4 ? 5 : error > 3e-7 ? 3 : 1; }
@@ -50,16 +43,16 @@ void add_bars(TableBuilder& table, const SceneTrials& scene, const std::string& 
     const auto ratio = [&](const Winner& a) { return a ? std::optional(a.time / best.time) : std::nullopt; };
     const auto names = [&](const Winner& a) { return fmt::format("{} / {}", a.name(), best.name()); };
     if (!best) {
-      add_bar(table, scene, {"our best", 1, false}, error, std::nullopt, "none");
+      add_bar(table, scene, "our best", {1, false}, error, std::nullopt, "none");
       continue;
     }
     if (const Winner peer = winners.of_peers(error); is_about_peers(scene))
-      add_bar(table, scene, {"SUNDIALS' best / our best", wanted_of_peers(error), true}, error, ratio(peer), names(peer));
+      add_bar(table, scene, "SUNDIALS' best / our best", {wanted_of_peers(error), true}, error, ratio(peer), names(peer));
     if (const Winner thesis = winners.of("thesis", error))
-      add_bar(table, scene, {"thesis' loop / our best", 3, true}, error, ratio(thesis), names(thesis));
+      add_bar(table, scene, "thesis' loop / our best", {3, true}, error, ratio(thesis), names(thesis));
     for (const std::string contender : {"defaults", usual.c_str()}) {
       const Winner winner = winners.of(contender, error);
-      add_bar(table, scene, {(contender == usual ? usual : "any method, auto") + " / our best", default_bar, false}, error,
+      add_bar(table, scene, (contender == usual ? usual : "any method, auto") + " / our best", {default_bar, false}, error,
               ratio(winner), names(winner));
     }
   }
@@ -70,11 +63,10 @@ void add_peer_bars(TableBuilder& table, const SceneTrials& scene) {
   const Winners winners(scene);
   const double end = scene.problem.times.back();
   const auto seconds = [&](const Winner& winner) { return winner ? std::optional(1e-3 * winner.time / end) : std::nullopt; };
-  const Winner implicit = winners.of("implicit", 5e-2);
-  add_bar(table, scene, {"implicit [s per simulated second]", 0.4, false}, 5e-2, seconds(implicit), implicit.name());
-  for (const auto& [error, bar] : {std::pair(5e-3, 0.7), {3e-4, 0.5}}) {
-    const Winner best = winners.of("ours", error);
-    add_bar(table, scene, {"any [s per simulated second]", bar, false}, error, seconds(best), best.name());
+  for (const PeerBar& bar : peer_bars) {
+    const Winner best = winners.of(bar.contender, bar.error);
+    add_bar(table, scene, fmt::format("{} [s per simulated second]", bar.contender), {bar.seconds, false}, bar.error,
+            seconds(best), best.name());
   }
 }
 

@@ -107,7 +107,8 @@ results::Table defaults_table(const std::vector<SceneTrials>& scenes) {
 }
 
 std::vector<double> peer_errors() {
-  std::vector<double> errors{5e-2, 5e-3, 3e-4};
+  std::vector<double> errors;
+  for (const PeerBar& bar : peer_bars) errors.push_back(bar.error);
   for (const Figure& figure : figures) errors.push_back(figure.error);
   return errors;
 }
