@@ -7,6 +7,7 @@
 #include "bench/studies.hpp"
 #include "bench/studies/work_precision_tables.hpp"
 #include "model/scene_file.hpp"
+#include "reference/arkode.hpp"
 #include "reference/reference.hpp"
 
 namespace drape::bench {
@@ -19,17 +20,20 @@ struct Entry {
   std::string name;
   model::Scene scene;
   Search search = Search::usual;
+  Effort effort = {};
 };
 
 Entry entry(const std::string& name, const std::string& scene, const std::vector<model::Override>& overrides,
-            Search search = Search::usual) {
-  return {name, model::load_scene(scene, overrides), search};
+            Search search = Search::usual, const Effort& effort = {}) {
+  return {name, model::load_scene(scene, overrides), search, effort};
 }
+
+constexpr Effort quick_effort{.cap = 0.3, .repetitions = 3}, large_effort{.cap = 10, .repetitions = 3};
 
 std::vector<Entry> quick_entries() {
   return {entry("hung-corners d=5", "hung-corners", {{"material.damping", "5"}, {"grid.n", "6"}, {"end.time", "0.2"}},
-                Search::quick),
-          entry("peer-edge n=8", "peer-edge", {{"grid.n", "8"}, {"end.time", "0.1"}}, Search::quick)};
+                Search::quick, quick_effort),
+          entry("peer-edge n=8", "peer-edge", {{"grid.n", "8"}, {"end.time", "0.1"}}, Search::quick, quick_effort)};
 }
 
 std::vector<Entry> entries() {
@@ -44,6 +48,7 @@ std::vector<Entry> entries() {
   all.push_back(entry("wind", "wind", {{"end.time", "0.5"}}));
   all.push_back(entry("tablecloth", "tablecloth", {{"end.time", "0.3"}}));
   for (const char* n : {"20", "100"}) all.push_back(entry(fmt::format("peer-edge n={}", n), "peer-edge", {{"grid.n", n}}));
+  all.push_back(entry("peer-edge n=316", "peer-edge", {{"grid.n", "316"}}, Search::large, large_effort));
   return all;
 }
 
@@ -65,31 +70,35 @@ void find_truth(Problem& problem) {
   }
 }
 
+/// Velocity Verlet, so many times below its stability limit, and extrapolated from twice that.
 std::vector<solver::Vectors> leapfrog(const Problem& problem, double fraction) {
-  solver::Options options;
-  options.verlet_fraction = fraction;
-  const model::Cloth cloth = model::compile(problem.scene);
-  solver::Integrator integrator(cloth.ode, solver::method("verlet"), options, cloth.start);
-  std::vector<solver::Vectors> positions;
-  for (const double t : problem.times) {
-    if (integrate(integrator, t, t).outcome != solver::Outcome::success) throw std::runtime_error("verlet failed");
-    positions.push_back(integrator.state().x);
-  }
-  return positions;
+  const auto positions = [&](double part) {
+    solver::Options options;
+    options.verlet_fraction = part;
+    const model::Cloth cloth = model::compile(problem.scene);
+    solver::Integrator integrator(cloth.ode, solver::method("verlet"), options, cloth.start);
+    std::vector<solver::Vectors> all;
+    for (const double t : problem.times) {
+      if (integrate(integrator, t, t).outcome != solver::Outcome::success) throw std::runtime_error("verlet failed");
+      all.push_back(integrator.state().x);
+    }
+    return all;
+  };
+  auto fine = positions(fraction);
+  const auto coarse = positions(2 * fraction);
+  for (std::size_t k = 0; k < fine.size(); ++k) fine[k] += (fine[k] - coarse[k]) / 3;
+  return fine;
 }
 
-/// Large undamped sheets are beyond the families' factorisations, but not stiff: velocity Verlet far below its stability
-/// limit, extrapolated.
+/// Large undamped sheets are beyond the families' factorisations, but not stiff: two explicit families.
 void find_explicit_truth(Problem& problem) {
-  constexpr double fine = 0.05;
-  const auto coarse = leapfrog(problem, 2 * fine);
-  problem.truth = leapfrog(problem, fine);
-  for (std::size_t k = 0; k < coarse.size(); ++k) {
-    const solver::Vectors correction = (problem.truth[k] - coarse[k]) / 3;
-    problem.truth[k] += correction;
-    const double moved = std::sqrt(correction.squaredNorm() / static_cast<double>(correction.rows()));
-    problem.uncertainty = std::max(problem.uncertainty, moved);
-  }
+  constexpr double fraction = 0.1, rtol = 1e-7;
+  problem.truth = leapfrog(problem, fraction);
+  const model::Cloth cloth = model::compile(problem.scene);
+  const reference::SolveOptions options{.rtol = rtol, .size = model::size(problem.scene)};
+  const auto witness = reference::arkode_erk(cloth.ode, cloth.start, 0, problem.times, options).states;
+  for (std::size_t k = 0; k < witness.size(); ++k)
+    problem.uncertainty = std::max(problem.uncertainty, reference::rms_distance(problem.truth[k], witness[k].x));
   problem.length = 1;  // errors in metres, as those of the other codes
   problem.asked = peer_errors();
 }
@@ -97,26 +106,25 @@ void find_explicit_truth(Problem& problem) {
 /// What the tables of all scenes are made from.
 using All = std::vector<SceneTrials>;
 
-results::Table try_scene(const Entry& entry, bool quick, All& all, Progress& progress) {
-  const Effort effort = quick ? Effort{.cap = 0.3, .repetitions = 3} : Effort();
+results::Table try_scene(const Entry& entry, All& all, Progress& progress) {
   progress.show("reference of " + entry.name);
   SceneTrials& scene = all.emplace_back(SceneTrials{problem(entry), {}, {}});
   Problem& problem = scene.problem;
   entry.scene.name == "peer-edge" ? find_explicit_truth(problem) : find_truth(problem);
   scene.families = families(problem.scene, entry.search);
-  scene.trials = try_all(problem, scene.families, effort, progress);
+  scene.trials = try_all(problem, scene.families, entry.effort, progress);
   progress.show("timing " + entry.name);
-  time_fronts(problem, scene.trials, effort);
+  time_fronts(problem, scene.trials, entry.effort);
   return trials_table(scene);
 }
 
-std::vector<TableJob> jobs(const std::vector<Entry>& list, bool quick) {
+std::vector<TableJob> jobs(const std::vector<Entry>& list) {
   const auto all = std::make_shared<All>();
   std::vector<TableJob> jobs;
   all->reserve(list.size());  // trials point into what is in it
   for (const Entry& entry : list)
     jobs.push_back({static_cast<int>(families(entry.scene, entry.search).size()),
-                    [=](Progress& progress) { return try_scene(entry, quick, *all, progress); }});
+                    [=](Progress& progress) { return try_scene(entry, *all, progress); }});
   for (auto* table : {winners_table, defaults_table, bars_table, peers_table})
     jobs.push_back({0, [=](Progress&) { return table(*all); }});
   return jobs;
@@ -124,10 +132,10 @@ std::vector<TableJob> jobs(const std::vector<Entry>& list, bool quick) {
 
 }  // namespace
 
-std::vector<TableJob> work_precision(bool quick) { return jobs(quick ? quick_entries() : entries(), quick); }
+std::vector<TableJob> work_precision(bool quick) { return jobs(quick ? quick_entries() : entries()); }
 
 std::vector<TableJob> work_precision_of(const model::Scene& scene, bool quick) {
-  return jobs({{scene.name, scene, quick ? Search::quick : Search::full}}, quick);
+  return jobs({quick ? Entry{scene.name, scene, Search::quick, quick_effort} : Entry{scene.name, scene, Search::full}});
 }
 
 }  // namespace drape::bench

@@ -18,6 +18,11 @@ using solver::Vectors;
 /// The methods of the thesis with a loop.
 constexpr const char* looped[] = {"implicit-euler", "bdf2", "midpoint"};
 
+/// What is tried of the implicit methods where not all are.
+constexpr const char* few[] = {"bdf2", "midpoint", "sbdf2", "imex-midpoint"};
+
+bool tries_few(Search search) { return search == Search::quick || search == Search::large; }
+
 std::vector<Vectors> solve_ours(const Cell& cell, const model::Cloth& cloth, std::span<const double> times) {
   solver::Integrator integrator(cloth.ode, *cell.method, cell.options, cloth.start);
   solver::DenseOutput output(times, integrator.time(), integrator.state());
@@ -44,7 +49,7 @@ std::vector<double> tolerances(int finest) {
 }
 
 /// Into how many parts a tenth of the end is divided at most.
-int finest_parts(Search search) { return search == Search::quick ? 16 : 512; }
+int finest_parts(Search search) { return tries_few(search) ? 16 : 512; }
 
 Candidate ours(const Cell& cell, double value) {
   return {value, [cell](const model::Cloth& cloth, std::span<const double> times) { return solve_ours(cell, cloth, times); }};
@@ -110,10 +115,10 @@ void add_ours(std::vector<Family>& all, const model::Scene& scene, Search search
     const std::string name(method.name);
     if (!scene.obstacles.empty() && !method.meets_obstacles) continue;
     if (!method.implicit()) {
-      all.push_back(by_fraction(cell(scene, name), search == Search::quick ? 3 : 10));
+      all.push_back(by_fraction(cell(scene, name), tries_few(search) ? 3 : 10));
       continue;
     }
-    if (search == Search::quick && name != "bdf2" && name != "midpoint" && name != "sbdf2") continue;
+    if (tries_few(search) && std::ranges::find(few, name) == std::end(few)) continue;
     all.push_back(by_steps(cell(scene, name), "drape", parts));
     all.push_back(by_tolerance(cell(scene, name)));
     if (search != Search::full) continue;
@@ -128,7 +133,7 @@ void add_ours(std::vector<Family>& all, const model::Scene& scene, Search search
 }
 
 std::vector<int> loop_digits(Search search) {
-  if (search == Search::quick) return {3};
+  if (tries_few(search)) return {3};
   if (search == Search::usual) return {2, 4};
   return {1, 2, 3, 4, 5, 6};
 }
@@ -166,7 +171,7 @@ std::vector<int> orders(const std::string& package) {
 }
 
 void add_peers(std::vector<Family>& all, const model::Scene& scene, Search search) {
-  if (!scene.obstacles.empty()) return;  // they have no contacts
+  if (!scene.obstacles.empty() || search == Search::large) return;  // they have no contacts
   for (const reference::Family& package : reference::families()) {
     const std::string name(package.name);
     for (const reference::NewtonSolve& newton : reference::newton_solves()) {

@@ -32,6 +32,7 @@ struct Family {
 /// How much is tried.
 enum class Search {
   quick,  ///< a few methods and configurations, for tests
+  large,  ///< the same without SUNDIALS' packages, which factor matrices of all coordinates
   usual,  ///< all methods with automatic stages and linear solvers, SUNDIALS' packages with all linear solvers
   full,   ///< also all stage and linear solvers, and all orders of SUNDIALS' methods
 };
