@@ -16,7 +16,7 @@ Trajectory arkode_esdirk(const solver::SplitOde& ode, const solver::State& y0, d
 Trajectory arkode_imex(const solver::SplitOde& ode, const solver::State& y0, double t0, std::span<const double> times,
                        const SolveOptions& options = {});
 
-/// The same with ARKODE's explicit Runge-Kutta method of order 5: no matrices, so for large sheets without damping, whose
+/// The same with ARKODE's explicit Runge-Kutta method of order 2 to 5: no matrices, so for large sheets without damping, whose
 /// steps stability bounds but little.
 Trajectory arkode_erk(const solver::SplitOde& ode, const solver::State& y0, double t0, std::span<const double> times,
                       const SolveOptions& options = {});
