@@ -10,6 +10,7 @@
 
 #include "model/cloth.hpp"
 #include "model/scene_file.hpp"
+#include "reference/arkode.hpp"
 #include "reference/exact/tension.hpp"
 #include "reference/first_order.hpp"
 #include "reference/ida.hpp"
@@ -53,6 +54,21 @@ TEST_P(FamilyOn, FollowsTheExactMotionAsCloselyAsAsked) {
   EXPECT_LE(worst(problem, solve(1e-6)), 300e-6);
   EXPECT_LE(worst(problem, solve(1e-10)), 300e-10);
   EXPECT_GE(worst(problem, solve(1e-4)), 1e-8) << "it does not depend on its tolerance";
+}
+
+class ExplicitRungeKuttaOn : public testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(, ExplicitRungeKuttaOn, testing::ValuesIn(names(problems())));
+
+TEST_P(ExplicitRungeKuttaOn, FollowsTheExactMotionWithoutMatrices) {
+  const Problem problem = problem_named(GetParam());
+  const auto solve = [&](double rtol) {
+    return reference::arkode_erk(problem.ode, problem.start, start_time, times, {.rtol = rtol, .max_order = 4});
+  };
+  EXPECT_LE(worst(problem, solve(1e-6)), 300e-6);
+  EXPECT_LE(worst(problem, solve(1e-9)), 300e-9);
+  EXPECT_GE(worst(problem, solve(1e-4)), 1e-9) << "it does not depend on its tolerance";
+  EXPECT_EQ(problem.ode.work->count("arkode/jacobians"), 0);
+  EXPECT_EQ(problem.ode.work->count("arkode/factorisations"), 0);
 }
 
 TEST_P(FamilyOn, BeginsWithTheStart) {
