@@ -1,0 +1,16 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+/// The subcommands of bench_integrators, each in a file of its own: its options, and what it does once they are parsed.
+namespace drape::bench {
+
+void add_list(CLI::App& app);
+void add_run(CLI::App& app, const std::string& command_line);
+void add_study(CLI::App& app, const std::string& command_line);
+
+/// What the program does without a subcommand.
+void do_main_job(const std::string& command_line);
+
+}  // namespace drape::bench

@@ -1,0 +1,38 @@
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "bench/choices.hpp"
+#include "bench/commands/commands.hpp"
+#include "solver/named.hpp"
+
+namespace drape::bench {
+namespace {
+
+struct Kind {
+  std::string_view name;
+  Choices (*choices)();
+};
+constexpr Kind kinds[] = {{"scenes", scene_choices}, {"methods", method_choices}, {"studies", study_choices}};
+
+/// The names of one kind for programs, or all kinds for people.
+void list(const std::string& kind) {
+  if (kind.empty()) {
+    std::string_view separator;
+    for (const Kind& any : kinds) fmt::print("{}{}", std::exchange(separator, "\n"), paragraph(any.name, any.choices()));
+    return;
+  }
+  for (const Choice& choice : solver::find_named(std::span<const Kind>(kinds), "kind of names", kind).choices())
+    fmt::print("{}\n", choice.name);
+}
+
+}  // namespace
+
+void add_list(CLI::App& app) {
+  CLI::App& command = *app.add_subcommand("list", "names of scenes, methods or studies, one a line");
+  const auto kind = std::make_shared<std::string>();
+  command.add_option("KIND", *kind, "scenes, methods or studies [all, with descriptions]")->type_name("");
+  command.callback([=] { list(*kind); });
+}
+
+}  // namespace drape::bench

@@ -1,0 +1,68 @@
+#include "bench/commands/output.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "bench/argument_checks.hpp"
+#include "results/runs_table.hpp"
+
+namespace drape::bench {
+namespace {
+
+void print_table(const results::Table& table, const std::string& format) {
+  fmt::print("{}", format == "csv" ? to_csv(table) : format == "json" ? to_json(table) : to_text(table));
+}
+
+}  // namespace
+
+void print_tables(const std::vector<results::Table>& tables, const std::string& format) {
+  if (format == "json") {
+    fmt::print("{}", results::to_json(std::span(tables)));
+    return;
+  }
+  for (const results::Table& table : tables) {
+    if (format == "table" && std::ranges::all_of(table.columns, [](const auto& column) { return column.title.empty(); }))
+      continue;  // for the file
+    fmt::print("{}{}\n", format == "csv" ? "# " : "\n", format == "csv" ? table.name : table.description);
+    print_table(table, format);
+  }
+}
+
+void say_where(const std::filesystem::path& out, const std::string& format) {
+  if (format == "table") fmt::print("\nrecorded in {}\n", out.string());
+}
+
+std::filesystem::path out_file(const Output& output, const std::string& job) {
+  return output.sweep.out.empty() ? default_out(job) : output.sweep.out;
+}
+
+void sweep_and_print(const std::vector<Group>& groups, Output output, const std::string& job) {
+  output.sweep.out = out_file(output, job);
+  print_table(results::to_table(sweep(groups, output.sweep)), output.format);
+  say_where(output.sweep.out, output.format);
+}
+
+void add_output_options(CLI::App& command, Output& output) {
+  command.add_option("--repeat", output.sweep.repetitions, "timed repetitions of every run, interleaved")
+      ->type_name("R")
+      ->check(between(1, 1000))
+      ->capture_default_str();
+  command
+      .add_option("--out", output.sweep.out, "HDF5 file to record in; must not exist [results/runs/<time>-<job>-<process>.h5]")
+      ->type_name("FILE.h5")
+      ->check(not_empty());
+  command.add_option("--format", output.format, "what is printed")
+      ->type_name("table|csv|json")
+      ->check(CLI::IsMember({"table", "csv", "json"}).description(""))
+      ->capture_default_str();
+  command.add_flag("!--no-reference", output.sweep.reference, "measure no errors");
+  command
+      .add_option("--agreement", output.sweep.agreement,
+                  "largest disagreement of the two solvers behind a reference, over the scene's size")
+      ->type_name("X")
+      ->check(between(1e-15, 1.0))
+      ->capture_default_str();
+}
+
+}  // namespace drape::bench

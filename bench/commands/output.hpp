@@ -1,0 +1,33 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "bench/sweep.hpp"
+#include "results/table.hpp"
+
+namespace drape::bench {
+
+/// How results are made, where they are kept and what is printed of them.
+struct Output {
+  SweepOptions sweep;
+  std::string format = "table";
+};
+
+void add_output_options(CLI::App& command, Output& output);
+
+/// The file asked for, or one named after the job.
+std::filesystem::path out_file(const Output& output, const std::string& job);
+
+/// Runs all groups, prints the runs and says where they are recorded.
+void sweep_and_print(const std::vector<Group>& groups, Output output, const std::string& job);
+
+/// Tables under their descriptions; as CSV under their names; as JSON in one object.
+void print_tables(const std::vector<results::Table>& tables, const std::string& format);
+
+/// Only among tables for people.
+void say_where(const std::filesystem::path& out, const std::string& format);
+
+}  // namespace drape::bench

@@ -1,0 +1,175 @@
+#include <fmt/format.h>
+
+#include <functional>
+#include <optional>
+
+#include "bench/argument_checks.hpp"
+#include "bench/choices.hpp"
+#include "bench/commands/commands.hpp"
+#include "bench/commands/names_of.hpp"
+#include "bench/commands/output.hpp"
+#include "bench/commands/scene_choice.hpp"
+#include "bench/frames.hpp"
+#include "results/atomic_file.hpp"
+#include "solver/threads.hpp"
+
+namespace drape::bench {
+namespace {
+
+constexpr double most_steps = 1e7;
+
+struct RunArguments {
+  SceneChoice choice;
+  std::vector<std::string> methods;
+  std::vector<double> steps;
+  std::optional<double> until;
+  std::vector<int> control;
+  solver::Options options;
+  double tolerance = 0;
+  int threads = 1;
+  Frames frames;
+  Output output;
+};
+
+/// Checks what CLI11 cannot: numbers that belong together.
+void check_steps(const RunArguments& a, double end) {
+  for (const double h : a.steps)
+    if (!(end / h <= most_steps))
+      throw std::invalid_argument(fmt::format("--step: expected at most {:g} steps to t = {:g} s, so at least {:g}, not {:g}",
+                                              most_steps, end, end / most_steps, h));
+}
+
+solver::StepControl step_control(const std::vector<int>& bounds) {
+  if (bounds.empty()) return {};
+  const int low = bounds[0], high = bounds[1];
+  if (low > high || high == 0)
+    throw std::invalid_argument(fmt::format("--control: expected MIN <= MAX and MAX at least 1, not {} {}", low, high));
+  return {.min_updates = low, .max_updates = high};
+}
+
+std::string for_obstacles() { return names_of(solver::methods(), std::mem_fn(&solver::Method::meets_obstacles)); }
+
+/// All methods with all steps.
+Group run_group(const RunArguments& a) {
+  model::Scene scene = a.choice.load();
+  scene.end = a.until.value_or(scene.end);
+  check_steps(a, scene.end);
+  Cell cell{scene, fmt::format("{}", fmt::join(a.choice.sets, " ")), nullptr, 0, a.options};
+  cell.options.control = step_control(a.control);
+  cell.options.error_control = {a.tolerance, model::size(scene), scene.end};
+  Group group;
+  for (const std::string& name : a.methods) {
+    cell.options.stage = a.options.stage;
+    cell.options.linear_solver = a.options.linear_solver;
+    choose_method(cell, name);
+    if (!scene.obstacles.empty() && !cell.method->meets_obstacles)
+      throw std::invalid_argument(
+          fmt::format("method '{}': expected one of {} in a scene with obstacles", name, for_obstacles()));
+    for (const double h : a.steps) {
+      cell.step = h;
+      group.push_back(cell);
+    }
+  }
+  return group;
+}
+
+void run(const RunArguments& a) {
+  solver::use_threads(a.threads);
+  const std::vector<Group> groups{run_group(a)};
+  Output output = a.output;
+  if (!a.frames.folder.empty()) {
+    output.sweep.out = out_file(output, "run");
+    results::require_creatable(output.sweep.out);  // before a folder is made
+    make_folder(a.frames);
+    output.sweep.look = [&](const Cell& cell) { return frame_writer(cell, a.frames); };
+  }
+  sweep_and_print(groups, output, "run");
+}
+
+void add_solver_options(CLI::App& command, RunArguments& a) {
+  command.add_option("--loop-tolerance", a.options.loop_tolerance, "of the fixed-point loop, relative to |b|")
+      ->type_name("X")
+      ->check(between(1e-15, 1.0))
+      ->capture_default_str();
+  command
+      .add_option("--cg-tolerance", a.options.cg_tolerance,
+                  "of linear solves, relative to |b|; in the loop at most half of its")
+      ->type_name("X")
+      ->check(between(1e-15, 1.0))
+      ->capture_default_str();
+  command.add_option("--max-updates", a.options.max_updates, "updates a step before it counts as not converged")
+      ->type_name("N")
+      ->check(between(1, 1000000))
+      ->capture_default_str();
+  command.add_option("--verlet-fraction", a.options.verlet_fraction, "sub-step of verlet over its stability limit")
+      ->type_name("X")
+      ->check(between(1e-3, 1.0))
+      ->capture_default_str();
+  CLI::Option* tolerance =
+      command
+          .add_option("--tolerance", a.tolerance, "of the local error over the scene's size: steps of --step at most follow it")
+          ->type_name("X")
+          ->check(between(1e-15, 1.0));
+  command.add_option("--stage-accuracy", a.options.stage_accuracy, "error left in a stage over the error of the time step")
+      ->type_name("X")
+      ->check(between(1e-9, 1.0))
+      ->capture_default_str();
+  command.add_option("--control", a.control, "step control by the number of updates a step")
+      ->option_text("MIN MAX")
+      ->check(between(0, 1000000))
+      ->expected(2)
+      ->excludes(tolerance);
+}
+
+void add_thread_option(CLI::App& run, RunArguments& a) {
+  run.add_option("--threads", a.threads, "that the linear algebra of large grids may use")
+      ->type_name("N")
+      ->check(between(1, solver::max_threads))
+      ->capture_default_str();
+}
+
+void add_frame_options(CLI::App& run, RunArguments& a) {
+  CLI::Option* folder = run.add_option("--frames", a.frames.folder, "new folder for the runs as sequences of OBJ meshes")
+                            ->type_name("FOLDER")
+                            ->check(not_empty());
+  run.add_option("--every", a.frames.every, "simulated seconds between two frames")
+      ->type_name("SECONDS")
+      ->check(positive())
+      ->needs(folder)
+      ->capture_default_str();
+}
+
+}  // namespace
+
+void add_run(CLI::App& app, const std::string& command_line) {
+  CLI::App& command = *app.add_subcommand("run", "run methods on a scene and compare them with the reference");
+  const auto a = std::make_shared<RunArguments>();
+  a->output.sweep.command_line = command_line;
+  command.add_option("--scene", a->choice.scene, "built-in scene or TOML file")->required()->type_name("NAME|FILE.toml");
+  command
+      .add_option("--method", a->methods,
+                  "methods, with /STAGE_SOLVER and /LINEAR_SOLVER if not the first: bdf2,sbdf2/ic0,bdf2/newton")
+      ->required()
+      ->type_name("A,B")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  command.add_option("--step", a->steps, "steps h in seconds")
+      ->required()
+      ->type_name("H1,H2")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(positive());
+  command.add_option("--until", a->until, "end time in seconds [the scene's]")->type_name("T")->check(positive());
+  add_overrides(command, a->choice);
+  add_solver_options(command, *a);
+  add_thread_option(command, *a);
+  add_frame_options(command, *a);
+  add_output_options(command, a->output);
+  command.footer(fmt::format("{}\n{}\n{}\n{}\n{}", paragraph("Scenes", scene_choices()), paragraph("Methods", method_choices()),
+                             paragraph("Stage solvers", stage_solver_choices()),
+                             paragraph("Linear solvers", linear_solver_choices()),
+                             paragraph("Keys of scenes", scene_key_choices())));
+  command.callback([=] { run(*a); });
+}
+
+}  // namespace drape::bench

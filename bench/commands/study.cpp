@@ -1,0 +1,74 @@
+#include <fmt/format.h>
+
+#include "bench/argument_checks.hpp"
+#include "bench/choices.hpp"
+#include "bench/commands/commands.hpp"
+#include "bench/commands/names_of.hpp"
+#include "bench/commands/output.hpp"
+#include "bench/commands/scene_choice.hpp"
+#include "bench/plot.hpp"
+#include "bench/studies.hpp"
+#include "bench/table_jobs.hpp"
+
+namespace drape::bench {
+namespace {
+
+struct StudyArguments {
+  std::string name;
+  bool quick = false;
+  SceneChoice choice;
+  Output output;
+};
+
+/// The studies that can be made of any scene.
+std::string of_any_scene() {
+  return names_of(studies(), [](const Study& study) { return study.of_scene != nullptr; });
+}
+
+void check_scene(const Study& chosen, const SceneChoice& choice) {
+  if (!choice.scene.empty() && chosen.of_scene == nullptr)
+    throw std::invalid_argument(
+        fmt::format("--scene: the study {} has scenes of its own; it is for {}", chosen.name, of_any_scene()));
+  if (choice.scene.empty() && !choice.sets.empty()) throw std::invalid_argument("--set: expected --scene beside it");
+}
+
+void run_study(const Study& chosen, const StudyArguments& a) {
+  check_scene(chosen, a.choice);
+  const std::string name(chosen.name);
+  if (chosen.groups) return sweep_and_print(chosen.groups(a.quick), a.output, name);
+  const std::vector<TableJob> jobs =
+      a.choice.scene.empty() ? chosen.tables(a.quick) : chosen.of_scene(a.choice.load(), a.quick);
+  const std::filesystem::path out = out_file(a.output, name);
+  print_tables(compute(jobs, out, a.output.sweep.command_line), a.output.format);
+  say_where(out, a.output.format);
+  if (chosen.plot.empty()) return;
+  const std::string said = plot(chosen.plot, out);
+  if (a.output.format == "table") fmt::print("{}", said);
+}
+
+}  // namespace
+
+void add_study(CLI::App& app, const std::string& command_line) {
+  CLI::App& command = *app.add_subcommand("study", "run one of the studies");
+  const auto a = std::make_shared<StudyArguments>();
+  a->output.sweep.command_line = command_line;
+  command.add_option("NAME", a->name, "its name")->required()->type_name("");
+  command.add_flag("--quick", a->quick, "a short form, for tests");
+  command
+      .add_option("--scene", a->choice.scene,
+                  fmt::format("a scene, by name or TOML file, instead of the study's own ({})", of_any_scene()))
+      ->type_name("SCENE")
+      ->check(not_empty());
+  add_overrides(command, a->choice);
+  add_output_options(command, a->output);
+  command.footer(paragraph("Studies", study_choices()));
+  command.callback([=] { run_study(study(a->name), *a); });
+}
+
+void do_main_job(const std::string& command_line) {
+  StudyArguments a;
+  a.output.sweep.command_line = command_line;
+  run_study(studies().front(), a);
+}
+
+}  // namespace drape::bench
