@@ -56,7 +56,8 @@ void add_output_options(CLI::App& command, Output& output) {
       ->type_name("table|csv|json")
       ->check(CLI::IsMember({"table", "csv", "json"}).description(""))
       ->capture_default_str();
-  command.add_flag("!--no-reference", output.sweep.reference, "measure no errors");
+  command.add_flag_callback(
+      "--no-reference", [&] { output.sweep.reference = false; }, "measure no errors");
   command
       .add_option("--agreement", output.sweep.agreement,
                   "largest disagreement of the two solvers behind a reference, over the scene's size")
