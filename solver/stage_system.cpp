@@ -1,6 +1,8 @@
 #include "solver/stage_system.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <vector>
 
@@ -9,46 +11,84 @@
 namespace drape::solver {
 namespace {
 
-/// The pattern of M − γ² K − γ D without the rows and columns of particles that are pinned in all directions.
-SparseMatrix stage_pattern(const SplitOde& ode) {
-  std::vector<bool> gone(ode.particles(), false);
-  for (const Pin& pin : ode.pins) gone[pin.particle] = pin.all();
-  std::vector<Eigen::Triplet<double>> entries;
-  for (int i = 0; i < ode.particles(); ++i) entries.emplace_back(i, i, 0.0);
-  for (const SparseMatrix* B : {&ode.stiffness, &ode.damping})
-    for (int i = 0; i < B->outerSize(); ++i)
-      for (SparseMatrix::InnerIterator b(*B, i); b; ++b)
-        if (!gone[b.row()] && !gone[b.col()]) entries.emplace_back(b.row(), b.col(), 0.0);
-  SparseMatrix A(ode.particles(), ode.particles());
-  A.setFromTriplets(entries.begin(), entries.end());
-  return A;
-}
+/// What is left of a row of a compressed matrix.
+class Row {
+ public:
+  Row(const SparseMatrix& B, int i) {
+    if (B.nonZeros() == 0) return;
+    next_ = B.innerIndexPtr() + B.outerIndexPtr()[i];
+    end_ = B.innerIndexPtr() + B.outerIndexPtr()[i + 1];
+    value_ = B.valuePtr() + B.outerIndexPtr()[i];
+  }
 
-/// The values of B at the entries of the pattern, 0 where B has none.
-Eigen::ArrayXd aligned(const SparseMatrix& pattern, const SparseMatrix& B) {
-  Eigen::ArrayXd values(pattern.nonZeros());
-  Eigen::Index k = 0;
-  for (int i = 0; i < pattern.outerSize(); ++i)
-    for (SparseMatrix::InnerIterator a(pattern, i); a; ++a) values[k++] = B.nonZeros() ? B.coeff(a.row(), a.col()) : 0.0;
-  return values;
-}
+  int column(int none) const { return next_ == end_ ? none : *next_; }
+
+  /// The entry in this column, if it is the next one, else 0.
+  double take(int column) {
+    if (next_ == end_ || *next_ != column) return 0;
+    ++next_;
+    return *value_++;
+  }
+
+ private:
+  const int *next_ = nullptr, *end_ = nullptr;
+  const double* value_ = nullptr;
+};
+
+auto array(const std::vector<double>& values) { return Eigen::ArrayXd::Map(values.data(), std::ssize(values)); }
 
 auto flat(const Vectors& a) { return Eigen::ArrayXd::Map(a.data(), a.size()); }
 auto flat(Vectors& a) { return Eigen::ArrayXd::Map(a.data(), a.size()); }
 
-SparseMatrix diagonal(const Eigen::VectorXd& mass) { return SparseMatrix(mass.asDiagonal()); }
-
 }  // namespace
 
+/// M, K and D merged row by row, without what couples particles that are pinned in all directions. On small sheets assembly
+/// by triplets and look-ups cost as much as some steps.
+struct StageSystem::Merged {
+  explicit Merged(const SplitOde& ode) : n(ode.particles()) {
+    std::vector<bool> gone(n, false);
+    for (const Pin& pin : ode.pins) gone[pin.particle] = pin.all();
+    for (int i = 0; i < n; ++i) {
+      Row k(ode.stiffness, i), d(ode.damping, i);
+      for (int own = i;;) {
+        const int j = std::min({own, k.column(n), d.column(n)});
+        if (j == n) break;
+        const double k_ij = k.take(j), d_ij = d.take(j);
+        if (j == own) own = n;
+        if (j == i || (!gone[i] && !gone[j])) add(j, j == i ? ode.mass[i] : 0, k_ij, d_ij);
+      }
+      start.push_back(static_cast<int>(column.size()));
+    }
+  }
+
+  void add(int j, double m_ij, double k_ij, double d_ij) {
+    column.push_back(j);
+    m.push_back(m_ij);
+    k.push_back(k_ij);
+    d.push_back(d_ij);
+  }
+
+  SparseMatrix pattern() const {
+    return Eigen::Map<const SparseMatrix>(n, n, start.back(), start.data(), column.data(), m.data());
+  }
+
+  int n;
+  std::vector<int> start{0}, column;
+  std::vector<double> m, k, d;  // aligned with the columns
+};
+
 StageSystem::StageSystem(const SplitOde& ode, const Options& options, ContactResponse* contacts)
+    : StageSystem(ode, Merged(ode), options, contacts) {}
+
+StageSystem::StageSystem(const SplitOde& ode, const Merged& merged, const Options& options, ContactResponse* contacts)
     : ode_(ode),
       contacts_(contacts),
       pinned_(Filter::partial(ode.pins)),
       cg_(options.linear_solver->make(), options.max_cg_iterations, *ode.work),
-      A_(stage_pattern(ode)),
-      mass_(aligned(A_, diagonal(ode.mass))),
-      stiffness_(aligned(A_, ode.stiffness)),
-      damping_(aligned(A_, ode.damping)),
+      A_(merged.pattern()),
+      mass_(array(merged.m)),
+      stiffness_(array(merged.k)),
+      damping_(array(merged.d)),
       momentum_(thrice(ode.mass)),
       spring_(thrice(ode.stiffness.diagonal())),
       work_(*ode.work) {

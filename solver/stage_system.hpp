@@ -68,6 +68,9 @@ class StageSystem {
   Vectors& correction() { return d_; }
 
  private:
+  struct Merged;
+  StageSystem(const SplitOde& ode, const Merged& merged, const Options& options, ContactResponse* contacts);
+
   const Filter& filtered() const { return touches() ? contacts_->filter() : pinned_; }
 
   const SplitOde& ode_;
