@@ -21,12 +21,14 @@ ReducedNewton::ReducedNewton(const solver::SplitOde& ode, NewtonSolve::Matrix ma
   if (matrix == NewtonSolve::Matrix::constant)
     constant_.emplace(ode, solver::Options(), nullptr);
   else
-    factor_.emplace(ode, false);
+    factor_.emplace(*ode.work);
 }
 
 bool ReducedNewton::prepare(double t, const State& y, double gamma) {
   gamma_ = gamma;
-  return (constant_ ? constant_->prepare(gamma) : factor_->renew(t, y, gamma)) == solver::Outcome::success;
+  if (constant_) return constant_->prepare(gamma) == solver::Outcome::success;
+  ode_.newton_matrix(t, y.x, y.v, gamma, false, matrix_);
+  return factor_->factor(matrix_) == solver::Outcome::success;
 }
 
 Vectors ReducedNewton::derivative(double t, const State& y, const State& direction) const {

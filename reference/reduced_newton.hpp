@@ -31,7 +31,8 @@ class ReducedNewton {
 
  private:
   const solver::SplitOde& ode_;
-  std::optional<solver::NewtonFactor> factor_;
+  solver::SparseMatrix matrix_;
+  std::optional<solver::NewtonFactor> factor_;  ///< of the matrix
   std::optional<solver::StageSystem> constant_;
   double gamma_ = 0;
 };

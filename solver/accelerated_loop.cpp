@@ -11,15 +11,15 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double forcing = 0.02;          ///< tolerance of an iterative solve over |r|
 constexpr double growth = 4;              ///< an update that makes |d| grow more leads away: Anderson's method is not monotone
 constexpr double smallest_part = 1e-3;    ///< of an update; below it there is no way on
-constexpr double slow_rate = 0.3;         ///< a Newton factor that converges slower is renewed,
+constexpr double slow_rate = 0.3;         ///< a Newton matrix that converges slower is renewed,
 constexpr int patience = 6;               ///< or after so many updates,
 constexpr int most_patience = 12;         ///< even if it was made for this stage,
 constexpr double different_gamma = 0.25;  ///< or for a γ so far away
 constexpr int most_constant_updates = 150;  ///< what a stage costs with Newton's matrix where it is hard
 constexpr double similar_gamma = 0.1;       ///< the constant matrix serves for a γ as near as this
-constexpr int most_renewals = 4;            ///< of a factor in a stage; then every update needs one
-constexpr int update_cost = 4;              ///< of an update with a Newton factor, in updates with the constant matrix
-constexpr int renewal_cost = 40;            ///< of making the factor
+constexpr int most_renewals = 4;            ///< of a matrix in a stage; then every update needs one
+constexpr int update_cost = 4;              ///< of an update with a Newton matrix, in updates with the constant matrix
+constexpr int renewal_cost = 40;            ///< of making it
 constexpr int longest_stay = 64;            ///< stages after which `auto` tries the constant matrix again
 constexpr double cheap = 50;                ///< cost of a stage for which the constant matrix need not be tried
 constexpr double mean_weight = 0.2;         ///< of the second estimate of the error
@@ -33,8 +33,8 @@ AcceleratedLoop::AcceleratedLoop(const SplitOde& ode, const Options& options, St
       system_(system),
       drag_(ode.damping.diagonal()),
       anderson_(ode.particles()),
-      newton_(ode, false),
-      lean_newton_(ode, true),
+      newton_(ode, options, system, false),
+      lean_newton_(ode, options, system, true),
       search_(ode, options, system),
       work_(*ode.work),
       escalations_(ode.work->counter("escalations", "stages that auto gave to Newton's matrix")) {
@@ -48,8 +48,8 @@ StageResult AcceleratedLoop::ended(Outcome outcome) {
   return result_;
 }
 
-/// Which factor a stage begins with.
-NewtonFactor* AcceleratedLoop::preferred() {
+/// Which Newton matrix a stage begins with, if with any.
+NewtonSystem* AcceleratedLoop::preferred() {
   switch (options_.stage->matrix) {
     case Matrix::newton: return &newton_;
     case Matrix::lean_newton: return &lean_newton_;
@@ -63,7 +63,7 @@ void AcceleratedLoop::begin(const Stage& stage, const State& y) {
   stage_ = &stage;
   result_ = {};
   guess_ = y.v;
-  factor_ = nullptr;
+  matrix_ = nullptr;
   renewals_here_ = 0;
   searched_ = false;
   forget();
@@ -81,25 +81,25 @@ void AcceleratedLoop::forget() {
 
 /// Finds the P that the stage begins with; false, with the outcome, if there is none.
 bool AcceleratedLoop::find_matrix(State& y) {
-  NewtonFactor* const factor = preferred();
-  if (factor == nullptr) {
+  NewtonSystem* const matrix = preferred();
+  if (matrix == nullptr) {
     result_.outcome = system_.prepare(stage_->gamma, similar_gamma);
     return result_.outcome == Outcome::success;
   }
-  const bool usable = !factor->empty() && std::abs(factor->gamma() / stage_->gamma - 1) <= different_gamma;
-  if (!usable) return use_newton(factor, y);
-  factor_ = factor;
+  const bool usable = !matrix->empty() && std::abs(matrix->gamma() / stage_->gamma - 1) <= different_gamma;
+  if (!usable) return use_newton(matrix, y);
+  matrix_ = matrix;
   made_here_ = false;
   return true;
 }
 
-/// Makes the factor at y; false, with the outcome, if that is impossible.
-bool AcceleratedLoop::use_newton(NewtonFactor* factor, State& y) {
-  factor_ = factor;
+/// Makes the matrix at y; false, with the outcome, if that is impossible.
+bool AcceleratedLoop::use_newton(NewtonSystem* matrix, State& y) {
+  matrix_ = matrix;
   forget();
   y.x = stage_->ax + stage_->gamma * y.v;
   ++renewals_here_;
-  result_.outcome = factor->renew(stage_->t, y, stage_->gamma);
+  result_.outcome = matrix->renew(stage_->t, y, stage_->gamma);
   return result_.outcome == Outcome::success;
 }
 
@@ -110,15 +110,12 @@ bool AcceleratedLoop::correct() {
   if (may_escalate()) unsprung_ = ((ode_.mass - stage_->gamma * drag_).cwiseInverse().asDiagonal() * r).norm();
   size_ = infinity;
   if (!std::isfinite(residual_)) return true;
-  if (factor_ != nullptr) {
-    factor_->solve(r, system_.correction());
-  } else {
-    const LinearResult solved = system_.correct(forcing * residual_);
-    result_.cg_iterations += solved.iterations;
-    if (solved.outcome != Outcome::success) {
-      result_.outcome = solved.outcome;
-      return false;
-    }
+  const LinearResult solved =
+      matrix_ != nullptr ? matrix_->solve(r, system_.correction()) : system_.correct(forcing * residual_);
+  result_.cg_iterations += solved.iterations;
+  if (solved.outcome != Outcome::success) {
+    result_.outcome = solved.outcome;
+    return false;
   }
   size_ = system_.correction().norm();
   return true;
@@ -131,7 +128,7 @@ bool AcceleratedLoop::retreat(State& y) {
     return false;
   }
   y.v = best_v_;
-  if (factor_ != nullptr) return made_here_ ? search(y) : use_newton(factor_, y);
+  if (matrix_ != nullptr) return made_here_ ? search(y) : use_newton(matrix_, y);
   anderson_.restart();
   part_ /= 4;
   rate_ = 0;
@@ -150,7 +147,7 @@ bool AcceleratedLoop::search(State& y) {
 }
 
 bool AcceleratedLoop::may_escalate() const {
-  return options_.stage->matrix == Matrix::chosen && ode_.newton_matrix && factor_ == nullptr;
+  return options_.stage->matrix == Matrix::chosen && ode_.newton_matrix && matrix_ == nullptr;
 }
 
 /// On with Newton's matrix where `auto` may; not converged otherwise.
@@ -169,7 +166,7 @@ bool AcceleratedLoop::escalate(State& y) {
 
 void AcceleratedLoop::advance(State& y) {
   if (size_ <= best_) {
-    made_here_ = factor_ == nullptr || !std::isfinite(best_);
+    made_here_ = matrix_ == nullptr || !std::isfinite(best_);
     best_v_ = y.v;
     best_d_ = system_.correction();
   }
@@ -192,7 +189,7 @@ bool AcceleratedLoop::close_enough(const State& y) const {
 bool AcceleratedLoop::blind() const { return may_escalate() && unsprung_ > stiffest * size_; }
 
 bool AcceleratedLoop::slow() const {
-  if (factor_ == nullptr) return false;
+  if (matrix_ == nullptr) return false;
   const bool old = !made_here_ && (since_renewal_ >= patience || (since_renewal_ > 2 && rate_ > slow_rate));
   return old || since_renewal_ > most_patience;
 }
@@ -231,7 +228,7 @@ StageResult AcceleratedLoop::solve(const Stage& stage, State& y) {
     if (may_escalate() && (close || result_.updates >= most_constant_updates)) {
       if (!escalate(y)) return result_;
     } else if (slow()) {
-      if (renewals_here_ < most_renewals ? !use_newton(factor_, y) : !search(y)) return result_;
+      if (renewals_here_ < most_renewals ? !use_newton(matrix_, y) : !search(y)) return result_;
       if (searched_) break;
     }
   }

@@ -7,8 +7,8 @@
 namespace drape::solver {
 
 /// Solves stages without contacts by Anderson's method. What it accelerates is the iteration v ← v + P⁻¹ r(v), where P is the
-/// constant matrix A or the factor of a Newton matrix, which is kept until convergence slows. An update that leads away is
-/// taken back and tried with a smaller part, or with a new factor; where that does not help, NewtonSearch goes on.
+/// constant matrix A or a Newton matrix, which is kept until convergence slows. An update that leads away is taken back and
+/// tried with a smaller part, or with a new matrix; where that does not help, NewtonSearch goes on.
 ///
 /// It ends when an estimate of the error of v is a small part of the error of the time step, which the distance between
 /// solution and first guess tells (Stage::accuracy). There are two estimates: |P⁻¹ r| over the weakest response seen to a
@@ -27,7 +27,7 @@ class AcceleratedLoop {
   void begin(const Stage& stage, const State& y);
   void forget();
   bool find_matrix(State& y);
-  bool use_newton(NewtonFactor* factor, State& y);
+  bool use_newton(NewtonSystem* matrix, State& y);
   bool correct();
   bool retreat(State& y);
   bool search(State& y);
@@ -37,7 +37,7 @@ class AcceleratedLoop {
   bool may_escalate() const;
   bool blind() const;
   bool slow() const;
-  NewtonFactor* preferred();
+  NewtonSystem* preferred();
   void plan_next();
   StageResult ended(Outcome outcome);
 
@@ -46,7 +46,7 @@ class AcceleratedLoop {
   StageSystem& system_;
   const Eigen::VectorXd drag_;  ///< diagonal of D
   Anderson anderson_;
-  NewtonFactor newton_, lean_newton_;
+  NewtonSystem newton_, lean_newton_;
   NewtonSearch search_;
   Vectors guess_;
   Vectors best_v_, best_d_;  ///< where |d| was smallest since the last renewal
@@ -54,7 +54,7 @@ class AcceleratedLoop {
   // Of the stage that is being solved.
   const Stage* stage_ = nullptr;
   StageResult result_;
-  NewtonFactor* factor_ = nullptr;  ///< P; null for A
+  NewtonSystem* matrix_ = nullptr;  ///< P; null for A
   double residual_ = 0;             ///< |r|
   double noise_ = 0;                ///< what of it is round-off
   double size_ = 0;                 ///< |d|

@@ -24,11 +24,18 @@ Outcome ConjugateGradients::factor(const SparseMatrix& A) {
 }
 
 LinearResult ConjugateGradients::solve_directly(Vectors& r, Vectors& d) {
-  const double rd = preconditioner_->apply(r, d);
+  const double rd = precondition({}, r, d);
   r.setZero();
+  return {std::isfinite(rd) ? Outcome::success : Outcome::not_finite, 0};
+}
+
+double ConjugateGradients::precondition(const Filter& filter, const Vectors& r, Vectors& z) {
   ++work_.preconditioner;
   work_.bytes += preconditioner_->bytes();
-  return {std::isfinite(rd) ? Outcome::success : Outcome::not_finite, 0};
+  const double rz = preconditioner_->apply(r, z);
+  if (filter.empty()) return rz;
+  filter(z);
+  return r.cwiseProduct(z).sum();
 }
 
 /// The next direction p = z + β p and q = A p. Returns <p, q>.
@@ -56,11 +63,7 @@ LinearResult ConjugateGradients::solve(const SparseMatrix& A, const Filter& filt
     if (k == max_iterations_) return {Outcome::not_converged, k};
 
     const double previous = rz;
-    rz = preconditioner_->apply(r, z_);
-    if (!filter.empty()) {
-      filter(z_);
-      rz = r.cwiseProduct(z_).sum();
-    }
+    rz = precondition(filter, r, z_);
     double pq = direct(A, k == 0 ? 0 : rz / previous);
     if (!filter.empty()) {
       filter(q_);
@@ -68,8 +71,7 @@ LinearResult ConjugateGradients::solve(const SparseMatrix& A, const Filter& filt
     }
     ++work_.cg_iterations;
     ++work_.products;
-    ++work_.preconditioner;
-    work_.bytes += direct_bytes(A) + preconditioner_->bytes() + vector_bytes(A.rows(), 6);
+    work_.bytes += direct_bytes(A) + vector_bytes(A.rows(), 6);
     if (std::isfinite(pq) && pq <= 0) return {Outcome::breakdown, k};
     norm = std::sqrt(advance(rz / pq, p_, q_, d, r));
   }

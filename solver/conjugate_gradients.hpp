@@ -34,6 +34,9 @@ class ConjugateGradients {
   /// iteration, and the residual is taken for 0.
   LinearResult solve(const SparseMatrix& A, const Filter& filter, Vectors& r, Vectors& d, double target);
 
+  /// z ≈ P A⁻¹ r for the matrix that was factored last and P r = r. Returns <r, z>.
+  double precondition(const Filter& filter, const Vectors& r, Vectors& z);
+
  private:
   LinearResult solve_directly(Vectors& r, Vectors& d);
   double direct(const SparseMatrix& A, double beta);

@@ -15,7 +15,7 @@ struct LinearWork {
   explicit LinearWork(Work& work)
       : updates(work.counter("updates", "linear systems solved, one an update of the fixed-point loop")),
         cg_iterations(work.counter("cg_iterations", "iterations of conjugate gradients")),
-        products(work.counter("matrix_products", "products of a scalar matrix with an N x 3 vector field")),
+        products(work.counter("matrix_products", "products of a matrix with an N x 3 vector field")),
         preconditioner(work.counter("preconditioner_applications", "applications of the preconditioner")),
         builds(work.counter("matrix_builds", "assemblies of the constant matrix A")),
         factorizations(work.counter("factorizations", "factorizations of A, complete or incomplete")),

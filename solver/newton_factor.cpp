@@ -48,18 +48,14 @@ class NewtonFactor::Factor {
   cholmod_dense* work_e_ = nullptr;
 };
 
-NewtonFactor::NewtonFactor(const SplitOde& ode, bool lean)
-    : ode_(ode), lean_(lean), renewals_(ode.work->counter("newton_factorizations", "factorizations of a Newton matrix")) {}
+NewtonFactor::NewtonFactor(Work& work)
+    : factorizations_(work.counter("newton_factorizations", "complete factorizations of a Newton matrix")) {}
 NewtonFactor::~NewtonFactor() = default;
 
-Outcome NewtonFactor::renew(double t, const State& y, double gamma) {
-  gamma_ = 0;
-  ++renewals_;
-  ode_.newton_matrix(t, y.x, y.v, gamma, lean_, J_);
-  if (!factor_) factor_ = std::make_unique<Factor>(J_);
-  const Outcome outcome = factor_->renew(J_);
-  if (outcome == Outcome::success) gamma_ = gamma;
-  return outcome;
+Outcome NewtonFactor::factor(const SparseMatrix& J) {
+  ++factorizations_;
+  if (!factor_) factor_ = std::make_unique<Factor>(J);
+  return factor_->renew(J);
 }
 
 void NewtonFactor::solve(const Vectors& r, Vectors& d) { factor_->solve(r, d); }

@@ -49,7 +49,7 @@ bool NewtonSearch::follow(const Stage& stage, State& y) {
   return false;
 }
 
-void NewtonSearch::solve(const Stage& stage, const Vectors& guess, NewtonFactor& factor, State& y, StageResult& result) {
+void NewtonSearch::solve(const Stage& stage, const Vectors& guess, NewtonSystem& newton, State& y, StageResult& result) {
   ++stages_;
   const double noise = system_.noise(y, stage.gamma);
   double before = 0;  // |d|, of the update before
@@ -57,9 +57,12 @@ void NewtonSearch::solve(const Stage& stage, const Vectors& guess, NewtonFactor&
   for (int k = 0; k < most_matrices && result.updates < options_.max_updates; ++k) {
     result.outcome = Outcome::not_finite;
     if (!y.v.allFinite() || !system_.residual().allFinite()) return;
-    result.outcome = factor.renew(stage.t, y, stage.gamma);
+    result.outcome = newton.renew(stage.t, y, stage.gamma);
     if (result.outcome != Outcome::success) return;
-    factor.solve(system_.residual(), d_);
+    const LinearResult solved = newton.solve(system_.residual(), d_);
+    result.cg_iterations += solved.iterations;
+    result.outcome = solved.outcome;
+    if (result.outcome != Outcome::success) return;
     ++result.updates;
     ++work_.updates;
     const double size = d_.norm(), rate = before > 0 ? size / before : 1;

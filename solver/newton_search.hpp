@@ -1,6 +1,6 @@
 #pragma once
 
-#include "solver/newton_factor.hpp"
+#include "solver/newton_system.hpp"
 #include "solver/options.hpp"
 #include "solver/stage_system.hpp"
 
@@ -15,9 +15,9 @@ class NewtonSearch {
  public:
   NewtonSearch(const SplitOde& ode, const Options& options, StageSystem& system);
 
-  /// Goes on from y.v; guess: where the stage began. Adds to the result's updates and sets its outcome. `factor`: of all
+  /// Goes on from y.v; guess: where the stage began. Adds to the result's updates and sets its outcome. `newton`: of all
   /// forces.
-  void solve(const Stage& stage, const Vectors& guess, NewtonFactor& factor, State& y, StageResult& result);
+  void solve(const Stage& stage, const Vectors& guess, NewtonSystem& newton, State& y, StageResult& result);
 
  private:
   void evaluate(const Stage& stage, State& y);

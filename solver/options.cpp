@@ -10,7 +10,8 @@ std::span<const StageKind> stage_kinds() {
       {"auto", "begins with anderson, goes on with newton where that is cheaper", Matrix::chosen, true},
       {"fixed-point", "the thesis' loop with the constant matrix (3.33)-(3.36), Alg. 6", Matrix::constant, false},
       {"anderson", "the same iteration accelerated over the last eight updates", Matrix::constant, true},
-      {"newton", "with the exact Jacobian, renewed when convergence slows", Matrix::newton, true},
+      {"newton", "with the exact Jacobian, renewed when convergence slows; factored, or inexact by conjugate gradients",
+       Matrix::newton, true},
       {"lean-newton", "with the Jacobian of tension and damping, without shear and bending", Matrix::lean_newton, true},
   };
   return table;

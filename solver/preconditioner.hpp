@@ -34,6 +34,7 @@ class Preconditioner {
 };
 
 /// A linear solver of the constant matrix: conjugate gradients with one of these preconditioners; an exact one alone will do.
+/// How systems with a Newton matrix are solved goes by it, too (NewtonSystem).
 struct LinearSolver {
   std::string_view name;
   std::string_view description;

@@ -41,6 +41,9 @@ class StageSystem {
   /// A d = r, to |A d − r| ≤ target; r is lost.
   LinearResult correct(double target) { return cg_.solve(A_, filtered(), r_, d_, target); }
 
+  /// z ≈ A⁻¹ r in the directions that pins leave free, for an r that lies in them. Returns <r, z>.
+  double precondition(const Vectors& r, Vectors& z) { return cg_.precondition(pinned_, r, z); }
+
   /// What |r| is compared with: |b| = |r + A v|, and the round-off below which no residual falls.
   struct Scale {
     double b, round_off;

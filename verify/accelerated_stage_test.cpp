@@ -25,9 +25,12 @@ model::Cloth sheet(std::vector<model::Override> changes = {}) {
 /// Stiff and hardly damped: the fixed-point loop does not converge in any reasonable time.
 model::Cloth stiff() { return sheet({{"material.tension", "1e7"}, {"material.damping", "0.5"}}); }
 
-Options stage(const char* name, double accuracy = 0.1) {
+/// `name`: of a stage solver, and after a slash of a linear solver.
+Options stage(const std::string& name, double accuracy = 0.1) {
   Options options;
-  options.stage = &solver::stage_kind(name);
+  const std::size_t slash = name.find('/');
+  options.stage = &solver::stage_kind(name.substr(0, slash));
+  if (slash != std::string::npos) options.linear_solver = &solver::linear_solver(name.substr(slash + 1));
   options.stage_accuracy = accuracy;
   return options;
 }
@@ -46,7 +49,8 @@ Ended run(const model::Cloth& cloth, const char* method, const Options& options,
 double rms(const Vectors& difference) { return difference.norm() / std::sqrt(difference.rows()); }
 
 class StageKinds : public testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(, StageKinds, testing::Values("anderson", "newton", "lean-newton", "auto"),
+INSTANTIATE_TEST_SUITE_P(, StageKinds,
+                         testing::Values("anderson", "newton", "lean-newton", "auto", "newton/multigrid", "lean-newton/ic0"),
                          [](const auto& test) { return identifier(test.param); });
 
 TEST_P(StageKinds, SolveTheSameEquationAsTheFixedPointLoop) {
@@ -54,7 +58,7 @@ TEST_P(StageKinds, SolveTheSameEquationAsTheFixedPointLoop) {
   for (const char* method : {"implicit-euler", "bdf2", "midpoint", "tr-bdf2", "esdirk4", "bdf4"}) {
     const Ended exact = run(cloth, method, tight(), 0.01);
     ASSERT_EQ(exact.result.outcome, Outcome::success) << method << ": " << exact.result.message;
-    const Ended ours = run(cloth, method, stage(GetParam().c_str(), 1e-8), 0.01);
+    const Ended ours = run(cloth, method, stage(GetParam(), 1e-8), 0.01);
     ASSERT_EQ(ours.result.outcome, Outcome::success) << method << ": " << ours.result.message;
     EXPECT_LE(rms(ours.end.x - exact.end.x), 1e-9) << method;
     EXPECT_LE(rms(ours.end.v - exact.end.v), 1e-7) << method;
@@ -66,7 +70,7 @@ TEST_P(StageKinds, LeaveAPartOfTheErrorOfTheTimeStep) {
   const Vectors truth = run(cloth, "bdf2", stage("auto", 1e-6), 1e-4).end.x;
   for (const double h : {0.01, 0.005, 0.0025}) {
     const Vectors exact = run(cloth, "bdf2", tight(), h).end.x;
-    const Vectors ours = run(cloth, "bdf2", stage(GetParam().c_str()), h).end.x;
+    const Vectors ours = run(cloth, "bdf2", stage(GetParam()), h).end.x;
     EXPECT_LE(rms(ours - exact), 0.3 * rms(exact - truth)) << h;
   }
 }
@@ -76,7 +80,7 @@ TEST_P(StageKinds, WorkWithPartialPinsAndObstacles) {
     const model::Override small[] = {{"grid.n", "6"}};
     const model::Cloth cloth = model::compile(model::load_scene(scene, small));
     const Ended exact = run(cloth, "bdf2", tolerances(1e-11, 1e-12), 0.002, 0.02);
-    const Ended ours = run(cloth, "bdf2", stage(GetParam().c_str(), 1e-6), 0.002, 0.02);
+    const Ended ours = run(cloth, "bdf2", stage(GetParam(), 1e-6), 0.002, 0.02);
     ASSERT_EQ(ours.result.outcome, Outcome::success) << ours.result.message;
     EXPECT_LE(rms(ours.end.x - exact.end.x), 1e-8) << scene;
   }

@@ -171,6 +171,7 @@ Problem problem_named(const std::string& name) {
 
 std::string identifier(std::string name) {
   std::ranges::replace(name, '-', '_');
+  std::ranges::replace(name, '/', '_');
   return name;
 }
 
