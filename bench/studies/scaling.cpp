@@ -131,7 +131,7 @@ std::vector<TableJob> scaling(bool quick) {
   const int count = static_cast<int>(scaling_study::sizes(quick).size());
   return {{2 * count, [quick](Progress& progress) { return scaling_study::steps(quick, progress); }},
           {count, [quick](Progress& progress) { return scaling_study::iterations(quick, progress); }},
-          {2, [quick](Progress& progress) { return scaling_study::bars(quick, progress); }}};
+          {3, [quick](Progress& progress) { return scaling_study::bars(quick, progress); }}};
 }
 
 }  // namespace drape::bench

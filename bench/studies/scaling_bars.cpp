@@ -27,6 +27,19 @@ std::vector<double> growth(int large, int small) {
   return ratios;
 }
 
+/// What the forces of the sheet (tension, damping, shear, weight) cost a particle [ns].
+std::vector<double> force_times(int n) {
+  constexpr int turns = 21;
+  const model::Cloth cloth = hung_sheet(n);
+  solver::Vectors f(cloth.ode.particles(), 3);
+  std::vector<double> times;
+  for (int k = 0; k < turns; ++k) {
+    const double time = seconds([&] { cloth.ode.force(0, cloth.start.x, cloth.start.v, f); });
+    times.push_back(1e9 * time / cloth.ode.particles());
+  }
+  return times;
+}
+
 void add_bar(results::TableBuilder& table, const std::string& what, const Bar& bar, const std::vector<double>& values) {
   const double value = results::quantile(values, 0.5);
   table.row();
@@ -50,6 +63,9 @@ results::Table bars(bool quick, Progress& progress) {
   progress.show("bars: conjugate gradients");
   add_bar(table, fmt::format("fused CG and stencil: bandwidth over the triad's, {0} x {0}", large), {0.6, true},
           bandwidth_of_bare_iterations(large, 31));
+  progress.advance();
+  progress.show("bars: forces");
+  add_bar(table, fmt::format("forces: ns per particle, {0} x {0}", large), {8, false}, force_times(large));
   progress.advance();
   return table.finish();
 }
