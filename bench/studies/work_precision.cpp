@@ -135,7 +135,10 @@ std::vector<TableJob> jobs(const std::vector<Entry>& list) {
 std::vector<TableJob> work_precision(bool quick) { return jobs(quick ? quick_entries() : entries()); }
 
 std::vector<TableJob> work_precision_of(const model::Scene& scene, bool quick) {
-  return jobs({quick ? Entry{scene.name, scene, Search::quick, quick_effort} : Entry{scene.name, scene, Search::full}});
+  if (quick) return jobs({{scene.name, scene, Search::quick, quick_effort}});
+  constexpr int large = 50'000;  // particles
+  if (scene.sheet.grid.particles() >= large) return jobs({{scene.name, scene, Search::large, large_effort}});
+  return jobs({{scene.name, scene, Search::full}});
 }
 
 }  // namespace drape::bench
