@@ -9,13 +9,10 @@
 #include "results/xdmf.hpp"
 
 namespace drape::bench {
-namespace {
 
 void print_table(const results::Table& table, const std::string& format) {
   fmt::print("{}", format == "csv" ? to_csv(table) : format == "json" ? to_json(table) : to_text(table));
 }
-
-}  // namespace
 
 void print_tables(const std::vector<results::Table>& tables, const std::string& format) {
   if (format == "json") {
