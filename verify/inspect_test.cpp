@@ -1,4 +1,4 @@
-// bench_integrators inspect: what it shows of files.
+// bench_integrators inspect and compare: what they show of files, and how they end.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -81,8 +81,36 @@ TEST_F(Inspect, SaysWhatThereIsInstead) {
   EXPECT_THAT(complaint({"inspect", "table.h5", "--run", "0"}), HasSubstr("table.h5 has no runs"));
   EXPECT_THAT(complaint({"inspect", "table.h5", "--table", "volumes"}), HasSubstr("(areas), not 'volumes'"));
   EXPECT_THAT(complaint({"inspect", "nothing.h5"}), HasSubstr("nothing.h5: there is no such file"));
+  EXPECT_THAT(complaint({"compare", "a.h5", "nothing.h5"}), HasSubstr("nothing.h5: there is no such file"));
   program_.write("text.h5", "no HDF5");
   EXPECT_THAT(complaint({"inspect", "text.h5"}), HasSubstr("text.h5: cannot be opened"));
+}
+
+TEST_F(Inspect, CompareEndsAsItsVerdictsWant) {
+  const auto compare = [&](const Words& arguments) { return program_.run(Words{"compare"} + arguments); };
+  program_.output(two_runs + Words{"b.h5"});
+  const ProgramResult same = compare({"a.h5", "b.h5", "--no-times"});
+  EXPECT_EQ(same.exit_code, 0) << same.out;
+  EXPECT_THAT(same.out,
+              AllOf(HasSubstr("accuracy: same"), HasSubstr("work: same"), HasSubstr("time: same (not compared, as asked)")));
+  const ProgramResult too_few = compare({"a.h5", "b.h5"});
+  EXPECT_EQ(too_few.exit_code, 2);
+  EXPECT_THAT(too_few.out, HasSubstr("time: not comparable"));
+  program_.output(two_runs + Words{"c.h5", "--stage-accuracy", "0.01"});
+  const ProgramResult different = compare({"a.h5", "c.h5", "--no-times"});
+  EXPECT_EQ(different.exit_code, 2);
+  EXPECT_THAT(different.out,
+              AllOf(HasSubstr("accuracy: not comparable"), HasSubstr("parameter stage_accuracy (0.1 and 0.01)")));
+}
+
+TEST_F(Inspect, CompareFindsARegressionInAFile) {
+  std::vector<results::RunRecord> runs = results::read_runs(program_.folder() / "a.h5");
+  ++runs[0].work[0].count;
+  results::RunFile file(program_.folder() / "more.h5", {});
+  for (const results::RunRecord& run : runs) file.add(run);
+  const ProgramResult more = program_.run({"compare", "a.h5", "more.h5", "--no-times"});
+  EXPECT_EQ(more.exit_code, 1);
+  EXPECT_THAT(more.out, AllOf(HasSubstr("work: REGRESSION"), HasSubstr(runs[0].work[0].name)));
 }
 
 }  // namespace

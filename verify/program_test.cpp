@@ -66,7 +66,7 @@ void expect_all_in(const std::string& text, const Words& parts) {
 TEST(ProgramHelp, OfTheProgramLeadsToItsSubcommands) {
   const BenchIntegrators program;
   expect_all_in(program.output({"--help"}), {"Without arguments", "\n  list ", "\n  run ", "\n  study ", "\n  inspect ",
-                                             "bench_integrators run --help"});
+                                             "\n  compare ", "bench_integrators run --help"});
 }
 
 TEST(ProgramHelp, OfRunHasEveryOptionAndAllThatThereIsToChooseFrom) {
