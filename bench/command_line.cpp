@@ -40,16 +40,20 @@ int run_command_line(int argc, const char* const* argv) {
   add_list(app);
   add_run(app, command_line);
   add_study(app, command_line);
+  add_inspect(app);
+  int exit_code = 0;
+  add_compare(app, exit_code);
   app.footer(
       "Examples:\n"
       "  bench_integrators run --scene hung-edge --method bdf2,sbdf2 --step 0.01,0.005 --set material.damping=0.5\n"
       "  bench_integrators study hung-sheets --out hung-sheets.h5 --format csv\n"
+      "  bench_integrators compare before.h5 after.h5\n"
       "  bench_integrators run --help\n");  // after the subcommands, which would inherit it
   try {
     app.parse(argc, argv);
     if (app.get_subcommands().empty()) do_main_job(command_line);
     flush_output();
-    return 0;
+    return exit_code;
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help
     return complain(explanation(app, error));

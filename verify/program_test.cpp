@@ -65,16 +65,16 @@ void expect_all_in(const std::string& text, const Words& parts) {
 
 TEST(ProgramHelp, OfTheProgramLeadsToItsSubcommands) {
   const BenchIntegrators program;
-  expect_all_in(program.output({"--help"}),
-                {"Without arguments", "\n  list ", "\n  run ", "\n  study ", "bench_integrators run --help"});
+  expect_all_in(program.output({"--help"}), {"Without arguments", "\n  list ", "\n  run ", "\n  study ", "\n  inspect ",
+                                             "\n  compare ", "bench_integrators run --help"});
 }
 
 TEST(ProgramHelp, OfRunHasEveryOptionAndAllThatThereIsToChooseFrom) {
   const BenchIntegrators program;
   const std::string help = program.output({"run", "--help"});
   expect_all_in(help, {"--scene NAME|FILE.toml", "--method A,B", "--step H1,H2", "--until T", "--set key=value", "--repeat R",
-                       "--out FILE.h5", "--format table|csv|json", "--no-reference", "--loop-tolerance", "--cg-tolerance",
-                       "--max-updates", "--verlet-fraction", "--control MIN MAX"});
+                       "--out FILE.h5", "--format table|csv|json", "--no-reference", "--trajectory every=SECONDS",
+                       "--loop-tolerance", "--cg-tolerance", "--max-updates", "--verlet-fraction", "--control MIN MAX"});
   expect_all_in(help,
                 lines(program.output({"list", "scenes"})) + methods + Words{"ic0", "mic0", "cholesky", "multigrid", "auto"});
   expect_all_in(help, {"grid.n", "material.tension", "material.damping", "material.shear", "material.bend"});

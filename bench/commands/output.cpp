@@ -6,15 +6,13 @@
 
 #include "bench/argument_checks.hpp"
 #include "results/runs_table.hpp"
+#include "results/xdmf.hpp"
 
 namespace drape::bench {
-namespace {
 
 void print_table(const results::Table& table, const std::string& format) {
   fmt::print("{}", format == "csv" ? to_csv(table) : format == "json" ? to_json(table) : to_text(table));
 }
-
-}  // namespace
 
 void print_tables(const std::vector<results::Table>& tables, const std::string& format) {
   if (format == "json") {
@@ -41,6 +39,8 @@ void sweep_and_print(const std::vector<Group>& groups, Output output, const std:
   output.sweep.out = out_file(output, job);
   print_table(results::to_table(sweep(groups, output.sweep)), output.format);
   say_where(output.sweep.out, output.format);
+  if (output.sweep.frames_every && output.format == "table")
+    fmt::print("motion for ParaView: {}\n", results::xdmf_path(output.sweep.out).string());
 }
 
 void add_output_options(CLI::App& command, Output& output) {
@@ -58,6 +58,12 @@ void add_output_options(CLI::App& command, Output& output) {
       ->capture_default_str();
   command.add_flag_callback(
       "--no-reference", [&] { output.sweep.reference = false; }, "measure no errors");
+  command
+      .add_option_function<std::string>(
+          "--trajectory", [&](const std::string& text) { output.sweep.frames_every = seconds_every(text); },
+          "keep the motion of every run in frames so far apart; ParaView opens FILE.h5.xdmf")
+      ->type_name("every=SECONDS")
+      ->check(every_seconds());
   command
       .add_option("--agreement", output.sweep.agreement,
                   "largest disagreement of the two solvers behind a reference, over the scene's size")

@@ -24,6 +24,8 @@ std::filesystem::path out_file(const Output& output, const std::string& job);
 /// Runs all groups, prints the runs and says where they are recorded.
 void sweep_and_print(const std::vector<Group>& groups, Output output, const std::string& job);
 
+void print_table(const results::Table& table, const std::string& format);
+
 /// Tables under their descriptions; as CSV under their names; as JSON in one object.
 void print_tables(const std::vector<results::Table>& tables, const std::string& format);
 

@@ -1,0 +1,76 @@
+#include "results/inspect.hpp"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <optional>
+#include <stdexcept>
+
+#include "bench/argument_checks.hpp"
+#include "bench/commands/commands.hpp"
+#include "bench/commands/output.hpp"
+#include "results/run_file.hpp"
+#include "results/runs_table.hpp"
+
+namespace drape::bench {
+namespace {
+
+struct InspectArguments {
+  std::string file;
+  std::optional<int> run;
+  std::string table;
+  std::string format = "table";
+};
+
+std::vector<results::Table> overview(const std::string& file) {
+  std::vector<results::Table> all{results::to_table(results::read_provenance(file))};
+  const std::vector<results::RunRecord> runs = results::read_runs(file);
+  if (!runs.empty()) all.push_back(results::to_table(std::span(runs)));
+  const std::vector<results::Table> tables = results::read_tables(file);
+  if (!tables.empty()) all.push_back(results::list_of(tables));
+  return all;
+}
+
+std::vector<results::Table> one_run(const std::string& file, int run) {
+  const std::vector<results::RunRecord> runs = results::read_runs(file);
+  if (run >= std::ssize(runs))
+    throw std::invalid_argument(runs.empty() ? fmt::format("--run: {} has no runs", file)
+                                             : fmt::format("--run: expected a run of {} from 000 to {}, not {}", file,
+                                                           results::run_name(runs.size() - 1), run));
+  return results::in_full(runs[static_cast<std::size_t>(run)]);
+}
+
+results::Table one_table(const std::string& file, const std::string& name) {
+  std::vector<std::string> names;
+  for (results::Table& table : results::read_tables(file)) {
+    if (table.name == name) return std::move(table);
+    names.push_back(table.name);
+  }
+  throw std::invalid_argument(fmt::format("--table: expected a table of {} ({}), not '{}'", file,
+                                          names.empty() ? "it has none" : fmt::format("{}", fmt::join(names, ", ")), name));
+}
+
+void inspect(const InspectArguments& a) {
+  if (!a.table.empty()) return print_table(one_table(a.file, a.table), a.format);
+  print_tables(a.run ? one_run(a.file, *a.run) : overview(a.file), a.format);
+}
+
+}  // namespace
+
+void add_inspect(CLI::App& app) {
+  CLI::App& command = *app.add_subcommand("inspect", "show what is in a file of results");
+  const auto a = std::make_shared<InspectArguments>();
+  command.add_option("FILE", a->file, "HDF5 file of results")->required()->type_name("");
+  CLI::Option* run =
+      command.add_option("--run", a->run, "one run in full, by its number")->type_name("NNN")->check(between(0, 1000000));
+  command.add_option("--table", a->table, "one table, by its name")->type_name("NAME")->check(not_empty())->excludes(run);
+  CLI::Option* csv = command.add_flag_callback(
+      "--csv", [=] { a->format = "csv"; }, "as comma-separated values");
+  command
+      .add_flag_callback(
+          "--json", [=] { a->format = "json"; }, "as JSON")
+      ->excludes(csv);
+  command.callback([=] { inspect(*a); });
+}
+
+}  // namespace drape::bench
