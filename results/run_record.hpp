@@ -44,6 +44,19 @@ struct ContactRecord {
   double reference_area = std::numeric_limits<double>::quiet_NaN();  ///< of the reference, NaN if there is none
 };
 
+/// What a particle is in a frame of a trajectory.
+enum class Constraint : int { free, pinned, in_contact };
+
+/// The motion of a sheet of `nu` × `nv` particles, F frames of N = nu nv; the particle (a, b) is row a + nu b. Cells have the
+/// corners (a, b), (a + 1, b), (a + 1, b + 1), (a, b + 1).
+struct TrajectoryRecord {
+  int nu = 0, nv = 0;                        ///< particles along u (weft) and v (warp); 1: a chain
+  std::vector<double> times;                 ///< F, ascending, from the start on [s]
+  std::vector<solver::State> states;         ///< F
+  std::vector<Eigen::VectorXd> stretch;      ///< F × N: mean strain of the edges that meet in a particle
+  std::vector<std::vector<int>> constraint;  ///< F × N: a Constraint
+};
+
 /// Distance of the final state from a reference. Lengths are divided by the scene's size, energies by the largest sum of
 /// kinetic energy and change of potential energy along the reference, so nothing has a unit. A spread is what a small
 /// perturbation of the start does to the quantity.
@@ -98,7 +111,8 @@ struct RunRecord {
   std::vector<WorkCount> work;
   solver::State final_state;
   std::optional<ErrorRecord> error;
-  std::optional<ContactRecord> contact;  ///< if the scene has obstacles
+  std::optional<ContactRecord> contact;        ///< if the scene has obstacles
+  std::optional<TrajectoryRecord> trajectory;  ///< if it was asked for
 };
 
 /// The count of a kind of work, 0 if the run knows no such kind.

@@ -80,7 +80,7 @@ std::string as_text(const solver::Vectors& values) {
 /// equal and -0.0 differs from 0.0.
 std::string as_text(const RunRecord& run) {
   const auto& [scene, scene_toml, overrides, plan, method, stage, linear, step, until, parameters, stiffness, to_damping,
-               outcome, message, last_good_time, steps, times_ms, work, state, error, contact] = run;
+               outcome, message, last_good_time, steps, times_ms, work, state, error, contact, trajectory] = run;
   std::string text = fmt::format("{}\n", fmt::join({scene, scene_toml, overrides, plan, method, stage, linear}, "\n"));
   text += fmt::format("{} {} {} {} {}\n{}\n{}\n", step, until, stiffness, to_damping, last_good_time, outcome, message);
   for (const auto& [name, value, unit, description] : parameters)
