@@ -40,6 +40,7 @@ int run_command_line(int argc, const char* const* argv) {
   add_list(app);
   add_run(app, command_line);
   add_study(app, command_line);
+  add_report(app);
   app.footer(
       "Examples:\n"
       "  bench_integrators run --scene hung-edge --method bdf2,sbdf2 --step 0.01,0.005 --set material.damping=0.5\n"

@@ -9,6 +9,7 @@ namespace drape::bench {
 void add_list(CLI::App& app);
 void add_run(CLI::App& app, const std::string& command_line);
 void add_study(CLI::App& app, const std::string& command_line);
+void add_report(CLI::App& app);
 
 /// What the program does without a subcommand.
 void do_main_job(const std::string& command_line);
