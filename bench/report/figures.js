@@ -165,12 +165,12 @@ function stabilityFigures(file, table) {
       const panels = methods.map(([, of], k) => stabilityPanel(of, nus, ratios, k, colours));
       const legend = verdicts.map(([name, colour, symbol]) => ({type: "scatter", mode: "markers", name: symbol ? `${symbol} ${name}` : name, x: [null], y: [null],
                                                                 marker: {symbol: "square", size: 12, color: colour, line: {color: "#555555", width: 1}}}));
-      const height = 210 * lines + 110;
+      const height = 190 * lines + 110;
       const titles = methods.map(([name, of], k) => ({
         text: panels[k].failing.flat().every(Boolean) ? `${name}: predicted to fail everywhere` : name, showarrow: false, xref: `x${k ? k + 1 : ""} domain`,
         yref: `y${k ? k + 1 : ""} domain`, x: 0, y: 1, yanchor: "bottom", xanchor: "left", font: {size: 11, color: colours.text}}));
       const notes = [{text: "across: h k/d (∞: undamped); up: ν<sub>h</sub> = h² k/(ρ l²)", showarrow: false, xref: "paper", yref: "paper", x: 0, y: 1, yshift: 30, xanchor: "left", font: {size: 11, color: colours.text}}];
-      const layout = {...baseLayout(width, colours, 0), height, grid: {rows: lines, columns, pattern: "independent", xgap: 0.18, ygap: 0.4},
+      const layout = {...baseLayout(width, colours, 0), height, grid: {rows: lines, columns, pattern: "independent", xgap: 0.18, ygap: 0.3},
                       margin: {l: 40, r: 10, t: 60, b: 70}, legend: {orientation: "h", x: 0, y: -40 / (height - 130), yanchor: "top"}, annotations: [...titles, ...notes],
                       shapes: panels.flatMap((panel) => panel.shapes), ...Object.assign({}, ...panels.map((panel) => panel.axes))};
       return {data: [...panels.flatMap((panel) => panel.traces), ...legend], layout};

@@ -36,7 +36,7 @@ function baseLayout(width, colours, entries) {
   return {
     width, height: 430 + 20 * legendRows, showlegend: true, paper_bgcolor: colours.page, plot_bgcolor: colours.page,
     font: {family: "system-ui, Liberation Sans, sans-serif", size: narrow ? 11 : 13, color: colours.text},
-    margin: {l: 10, r: 10, t: 12, b: narrow ? 60 + 20 * legendRows : 10}, hovermode: "closest",
+    margin: {l: 10, r: 10, t: 34, b: narrow ? 60 + 20 * legendRows : 10}, hovermode: "closest",
     legend: narrow ? {orientation: "h", y: -0.22, yanchor: "top", x: 0} : {x: 1.02, y: 1, tracegroupgap: 4},
     hoverlabel: {align: "left", namelength: -1},
   };

@@ -66,20 +66,24 @@ function winnersCard() {
               element("div", {className: "scroll", tabIndex: 0, role: "region", "aria-label": "Who wins at which error"}, tableElement(table)));
 }
 
+/** What a row says beside its verdict. */
+const describeRow = (table, row) => visibleColumns(table).filter((column) => column.name !== "verdict" && row[column.name] !== "" && !Number.isNaN(row[column.name]))
+  .map((column) => (isNumeric(column) ? `${column.title || column.name} ${shortNumber(row[column.name])}` : row[column.name])).join(", ");
+
 /** Runs that failed and verdicts that are not as they should be, each with its reason. */
 function failuresCard() {
   const runs = files.flatMap((file) => file.runs);
   const failed = runs.filter((run) => run.outcome !== "success")
     .map((run) => `${run.method}, h = ${shortNumber(run.step)} s on ${runTitle(run)}: ${run.outcome} at ${shortNumber(toNumber(run.last_good_time))} s${run.message ? ` (${run.message})` : ""}`);
   const judged = files.flatMap((file) => file.tables.filter((table) => hasColumns(table, "verdict")).flatMap((table) => rowsOf(table).filter((row) => isBad(row.verdict)).map((row) => {
-    const what = table.columns.filter((column) => !isNumeric(column) && column.title && column.name !== "verdict").map((column) => row[column.name]).filter((text) => text).join(", ");
-    return `${table.name}: ${what}: ${row.verdict}`;
+    return `${table.name}: ${describeRow(table, row)}: ${row.verdict}`;
   })));
   const all = [...failed, ...judged], trials = files.flatMap((file) => file.tables).filter((table) => table.name.startsWith("trials: ")).flatMap(rowsOf);
   const outcomes = [...groupBy(trials.filter((row) => row.outcome !== "success"), (row) => row.outcome)].map(([outcome, of]) => `${of.length} trials: ${outcome}`);
   const lines = [...all, ...outcomes];
+  const counts = [failed.length ? `${failed.length} of ${runs.length} runs` : "", judged.length ? `${judged.length} ${judged.length > 1 ? "verdicts" : "verdict"}` : ""];
   const list = element("div", {className: "scroll", tabIndex: 0, role: "region", "aria-label": "Failures"}, element("ul", {}, ...lines.map((line) => element("li", {}, line))));
-  return card("What failed, and why", all.length ? `${failed.length} of ${runs.length} runs, ${judged.length} verdicts` : "nothing", all.length ? "bad" : "good", lines.length ? list : null);
+  return card("What failed, and why", counts.filter((text) => text).join(", ") || "nothing", all.length ? "bad" : "good", lines.length ? list : null);
 }
 
 function contentsElement() {
@@ -91,12 +95,21 @@ function contentsElement() {
 function showAll() {
   showHeader();
   document.getElementById("summary").append(element("div", {className: "cards"}, ...[ordersCard(), winnersCard(), failuresCard()].filter((any) => any)));
+  showMotions();
   const figures = files.flatMap((file) => [...figuresOfRuns(file), ...file.tables.flatMap((table) => figuresOfTable(file, table))]);
   document.getElementById("figures").append(...figures.map((figure, k) => figureElement(figure, `figure-${k + 1}`)));
   document.getElementById("figures").hidden = !figures.length;
   const tables = files.flatMap((file) => [...(file.runs_table ? [file.runs_table] : []), ...file.tables].map((table) => ({file, table})));
   document.getElementById("tables").append(...tables.map(({file, table}, k) => tableSection(file, table, `table-${k + 1}`)));
   document.getElementById("contents").append(contentsElement());
+}
+
+/** Motions are shown from half of their time on: the start is the same for all. */
+function showMotions() {
+  const players = files.flatMap(playersOf), section = document.getElementById("motion");
+  section.hidden = !players.length;
+  section.append(...players.map(({figure}) => figure));
+  for (const {player} of players) showTime(player, player.end / 2);
 }
 
 showAll();
