@@ -161,7 +161,7 @@ function stabilityFigures(file, table) {
     const methods = [...groupBy(rows, (row) => row.method)];
     const nus = unique(rows.map((row) => row.nu)).sort((a, b) => a - b), ratios = unique(rows.map((row) => row.to_damping)).sort((a, b) => a - b);
     const make = (width, colours) => {
-      const columns = Math.min(methods.length, Math.max(1, Math.floor(width / 230))), lines = Math.ceil(methods.length / columns);
+      const columns = Math.min(methods.length, Math.max(1, Math.min(4, Math.floor(width / 180)))), lines = Math.ceil(methods.length / columns);
       const panels = methods.map(([, of], k) => stabilityPanel(of, nus, ratios, k, colours));
       const legend = verdicts.map(([name, colour, symbol]) => ({type: "scatter", mode: "markers", name: symbol ? `${symbol} ${name}` : name, x: [null], y: [null],
                                                                 marker: {symbol: "square", size: 12, color: colour, line: {color: "#555555", width: 1}}}));

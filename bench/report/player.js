@@ -179,7 +179,7 @@ function makeCamera(player, grid) {
   const {center, radius} = bounds(player.views);
   player.camera = new THREE.PerspectiveCamera(35, 1, radius / 50, radius * 50);
   player.camera.up.set(0, 0, 1);
-  player.camera.position.copy(center).add(new THREE.Vector3(1.9, -2.6, 1.1).multiplyScalar(radius));
+  player.camera.position.copy(center).add(new THREE.Vector3(1.6, -2.3, 1).multiplyScalar(radius));
   player.controls = new THREE.OrbitControls(player.camera, grid);
   player.controls.target.copy(center);
   player.controls.enableKeys = false;
@@ -200,7 +200,7 @@ const alike = (a, b) => a.motion.nu === b.motion.nu && a.motion.nv === b.motion.
 function scaleElement(player) {
   const bar = element("div", {className: "scale", role: "img", "aria-label": "colours of distances"});
   bar.style.background = `linear-gradient(to right, ${viridis.join(", ")})`;
-  const labels = [0, 1, 2, 3, 4].map((k) => element("span", {}, `${k ? "" : "≤ "}${(player.scale.top * 10 ** (k - 4)).toExponential(1)} m`));
+  const labels = [0, 1, 2, 3, 4].map((k) => element("span", {}, `${k ? "" : "≤ "}${shortNumber(Number((player.scale.top * 10 ** (k - 4)).toPrecision(2)))} m`));
   return element("div", {}, bar, element("div", {className: "scale-labels"}, ...labels));
 }
 
@@ -225,7 +225,18 @@ function distanceRows(player) {
   }));
 }
 
-const distanceColumns = (player) => ["method", "step", "t", "rms", "maximum"].map((name) => ({name, cells: distanceRows(player).map((row) => row[name])}));
+/** The same as a figure. */
+function distanceFigure(file, name, player) {
+  const rows = distanceRows(player), truth = runLabel(player.truth.run);
+  const make = (width, colours) => {
+    const curves = [...groupBy(rows.filter((row) => row.rms > 0), runLabel)].map(([label, of], k) => ({
+      type: "scatter", mode: "lines+markers", name: label, x: of.map((row) => row.t), y: of.map((row) => row.rms),
+      hovertemplate: `${label}<br>t = %{x:.4g} s: %{y:.3e} m<extra></extra>`, line: {color: style(k).color, dash: style(k).dash}, marker: {symbol: style(k).symbol, size: 5}}));
+    return {data: curves, layout: {...baseLayout(width, colours, curves.length), xaxis: axis("t [s]", colours), yaxis: axis("RMS distance [m]", colours, {type: "log"})}};
+  };
+  return {file, make, title: `Distance from ${truth}: ${name}`, says: "Root mean square distance of the recorded positions, frame by frame.",
+          columns: () => ["method", "step", "t", "rms", "maximum"].map((column) => ({name: column, cells: rows.map((row) => row[column])}))};
+}
 
 /** The motions of compared runs as an article; undefined if less than one was recorded. */
 function playerElement(file, name, runs, id) {
@@ -241,10 +252,10 @@ function playerElement(file, name, runs, id) {
   const controls = makeControls(player);
   for (const view of views) view.canvas.addEventListener("pointermove", (event) => hover(player, view, event));
   new ResizeObserver(() => renderViews(player)).observe(grid);
-  const says = `Drag to turn, wheel to come nearer, point at a particle for its numbers. Colours are distances from ${runLabel(truth)}, which has the least error of these runs.`;
+  const says = `Drag to turn, wheel to come nearer, point at a particle for its numbers. Colours are distances from ${runLabel(truth.run)}, ${truth.run.error ? `which has the least error of these runs, ${shortNumber(truth.run.error.rms)} at the end` : "the one of the least step"}.`;
   const figure = element("figure", {id}, element("figcaption", {}, element("h3", {}, `Motion: ${name}`), element("p", {}, says)), grid, controls, scaleElement(player),
-                         element("div", {className: "actions"}, csvLink(`distance from ${runLabel(truth)}, ${name}`, () => distanceColumns(player))), commandLine(file));
-  return {figure, player};
+                         commandLine(file));
+  return {figure, player, more: views.length > 1 ? [distanceFigure(file, name, player)] : []};
 }
 
 /** All motions of a file. */

@@ -34,7 +34,7 @@ function baseLayout(width, colours, entries) {
   const narrow = isNarrow(width);
   const legendRows = narrow ? Math.ceil(entries / Math.max(1, Math.floor(width / 170))) : 0;
   return {
-    width, height: 430 + 20 * legendRows, showlegend: true, paper_bgcolor: colours.page, plot_bgcolor: colours.page,
+    width, height: narrow ? 430 + 20 * legendRows : Math.max(430, 70 + 21 * entries), showlegend: true, paper_bgcolor: colours.page, plot_bgcolor: colours.page,
     font: {family: "system-ui, Liberation Sans, sans-serif", size: narrow ? 11 : 13, color: colours.text},
     margin: {l: 10, r: 10, t: 34, b: narrow ? 60 + 20 * legendRows : 10}, hovermode: "closest",
     legend: narrow ? {orientation: "h", y: -0.22, yanchor: "top", x: 0} : {x: 1.02, y: 1, tracegroupgap: 4},

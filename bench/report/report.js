@@ -60,9 +60,12 @@ function winnersCard() {
   const column = (name, title, unit, description) => ({name, title, unit, description, cells: rows.map((row) => row[name] ?? null)});
   const table = {description: "Who wins at which error", columns: [
     column("error", "error ≤", "1", "over the scene's size"), column("best", "quickest", "", "of all that were run"), column("ms", "time", "ms", "median"),
-    column("peer", "SUNDIALS", "1", "time of the best of SUNDIALS over it"), column("scene", "scene", "", "and what was set differently")]};
+    column("peer", "SUNDIALS", "1", "time of the best of SUNDIALS over it")]};
+  const scenes = unique(rows.map((row) => row.scene));
+  if (scenes.length > 1) table.columns.unshift(column("scene", "scene", "", "and what was set differently"));
   const wins = [...groupBy(rows, (row) => row.best.split(/[ ,/]/)[0])].sort((a, b) => b[1].length - a[1].length)[0];
   return card("Who wins at which error", `${wins[0]}, ${wins[1].length} of ${rows.length} times`, "",
+              scenes.length > 1 ? null : element("p", {className: "quiet"}, `on ${scenes[0]}`),
               element("div", {className: "scroll", tabIndex: 0, role: "region", "aria-label": "Who wins at which error"}, tableElement(table)));
 }
 
@@ -108,7 +111,7 @@ function showAll() {
 function showMotions() {
   const players = files.flatMap(playersOf), section = document.getElementById("motion");
   section.hidden = !players.length;
-  section.append(...players.map(({figure}) => figure));
+  section.append(...players.flatMap(({figure, more}, k) => [figure, ...more.map((any, m) => figureElement(any, `distance-${k + 1}-${m + 1}`))]));
   for (const {player} of players) showTime(player, player.end / 2);
 }
 
