@@ -44,6 +44,19 @@ CLI::Validator not_empty() {
   return expect("a name", [](const std::string& text) { return !text.empty(); });
 }
 
+CLI::Validator every_seconds() {
+  return expect("every=SECONDS with a finite number above 0", [](const std::string& text) {
+    const double seconds = seconds_every(text);
+    return seconds > 0 && std::isfinite(seconds);
+  });
+}
+
+double seconds_every(const std::string& text) {
+  const std::string key = "every=";
+  double seconds = 0;
+  return text.starts_with(key) && CLI::detail::lexical_cast(text.substr(key.size()), seconds) ? seconds : 0;
+}
+
 std::string explanation(const CLI::App& app, const CLI::ParseError& error) {
   const auto is = [&](CLI::ExitCodes code) { return error.get_exit_code() == static_cast<int>(code); };
   if (is(CLI::ExitCodes::ValidationError)) return error.what();

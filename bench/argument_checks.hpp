@@ -14,6 +14,10 @@ CLI::Validator between(double least, double most);
 CLI::Validator between(int least, int most);
 CLI::Validator not_empty();
 
+/// A text "every=X" with X finite and above 0, and this X.
+CLI::Validator every_seconds();
+double seconds_every(const std::string& text);
+
 /// One line on what is wrong with the command line and what would be right.
 std::string explanation(const CLI::App& app, const CLI::ParseError& error);
 

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "bench/contact_record.hpp"
+#include "bench/trajectory_record.hpp"
 #include "model/energy_guard.hpp"
 #include "model/scene_file.hpp"
 #include "solver/threads.hpp"
@@ -107,7 +108,7 @@ void choose_method(Cell& cell, const std::string& name) {
     throw std::invalid_argument(fmt::format("method '{}': expected {}", name, expected(method)));
 }
 
-results::RunRecord record(const Cell& cell, const solver::Observer& look) {
+results::RunRecord record(const Cell& cell, const solver::Observer& look, std::optional<double> frames_every) {
   const model::Cloth cloth = model::compile(cell.scene);
   const solver::SplitOde& ode = cloth.ode;
   results::RunRecord run = describe(cell, cloth);
@@ -115,15 +116,19 @@ results::RunRecord record(const Cell& cell, const solver::Observer& look) {
   if (look) look({0, 0, 0, 0, integrator.state(), {}});
   ContactWatch watch(cell.scene, cloth);
   watch.see(0, cloth.start, solver::kinetic_energy(ode, cloth.start.v), ode.potential_energy(0, cloth.start.x));
+  std::optional<TrajectoryWatch> frames;
+  if (frames_every) frames.emplace(cell.scene, cloth, *frames_every);
   const model::EnergyGuard guard(cell.scene, cloth);
   const solver::RunResult result =
       integrate(integrator, ode, guard, cell.scene.end, cell.step, [&](const solver::StepReport& step) {
         const double kinetic = solver::kinetic_energy(ode, step.y.v), potential = ode.potential_energy(step.t, step.y.x);
         run.steps.push_back({step.t, step.h, step.updates, step.cg_iterations, kinetic, potential, step.contacts.constrained});
         watch.see(step.t, step.y, kinetic, potential);
+        if (frames) frames->see(step.t, step.y);
         if (look) look(step);
       });
   run.contact = watch.result();
+  if (frames) run.trajectory = frames->result();
   run.outcome = to_string(result.outcome);
   run.message = result.message;
   run.last_good_time = result.last_good_time;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,7 +29,8 @@ void choose_method(Cell& cell, const std::string& name);
 /// Cells that are compared with each other: repetitions are interleaved within a group and it is recorded as a whole.
 using Group = std::vector<Cell>;
 
-/// Runs a cell once and records everything but times and errors. `look` sees the start and every accepted step.
-results::RunRecord record(const Cell& cell, const solver::Observer& look = {});
+/// Runs a cell once and records everything but times and errors. `look` sees the start and every accepted step. `frames_every`:
+/// the motion is kept too, in frames so many simulated seconds apart.
+results::RunRecord record(const Cell& cell, const solver::Observer& look = {}, std::optional<double> frames_every = {});
 
 }  // namespace drape::bench

@@ -30,10 +30,20 @@ std::optional<results::ContactRecord> ContactWatch::result() const {
   return record_;
 }
 
+std::vector<bool> in_contact(const model::Scene& scene, const model::Cloth& cloth, double t, const solver::Vectors& x) {
+  std::vector<bool> touching;
+  if (!cloth.contacts) return touching;
+  for (const double distance : cloth.contacts->distances(t, x)) touching.push_back(distance <= 1.05 * scene.contact.distance);
+  return touching;
+}
+
 double contact_area(const model::Scene& scene, const model::Cloth& cloth, double t, const solver::Vectors& x) {
   const Eigen::VectorXd areas = scene.sheet.grid.cell_areas();
-  const Eigen::VectorXd distances = cloth.contacts->distances(t, x);
-  return (distances.array() <= 1.05 * scene.contact.distance).select(areas, 0).sum() / areas.sum();
+  const std::vector<bool> touching = in_contact(scene, cloth, t, x);
+  double area = 0;
+  for (std::size_t i = 0; i < touching.size(); ++i)
+    if (touching[i]) area += areas[static_cast<Eigen::Index>(i)];
+  return area / areas.sum();
 }
 
 }  // namespace drape::bench

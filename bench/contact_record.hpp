@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "model/cloth.hpp"
 #include "results/run_record.hpp"
 
@@ -24,7 +26,10 @@ class ContactWatch {
   bool begun_ = false;
 };
 
-/// Area of the particles in contact, over that of the sheet: those at most a twentieth of d away from the collision area.
+/// Which particles are in contact: at most a twentieth of d away from the collision area. Empty without obstacles.
+std::vector<bool> in_contact(const model::Scene& scene, const model::Cloth& cloth, double t, const solver::Vectors& x);
+
+/// Area of the particles in contact, over that of the sheet.
 double contact_area(const model::Scene& scene, const model::Cloth& cloth, double t, const solver::Vectors& x);
 
 }  // namespace drape::bench

@@ -11,7 +11,9 @@
 #include "bench/errors.hpp"
 #include "bench/progress.hpp"
 #include "bench/timing.hpp"
+#include "bench/trajectory_record.hpp"
 #include "results/run_file.hpp"
+#include "results/xdmf.hpp"
 
 namespace drape::bench {
 namespace {
@@ -51,10 +53,17 @@ void measure_error(const Cell& cell, results::RunRecord& run, const Truth& truth
     compare(run, *truth.reference, cell.scene, truth.cloth);
 }
 
+/// Before anything is computed.
+void require_trajectories(const std::vector<Group>& groups, const SweepOptions& options) {
+  for (const Group& group : groups) check_frames(*options.frames_every, group.front().scene.end);
+  results::require_creatable(results::xdmf_path(options.out));
+}
+
 }  // namespace
 
 std::vector<results::RunRecord> sweep(const std::vector<Group>& groups, const SweepOptions& options) {
   results::RunFile file(options.out, results::provenance(options.command_line));
+  if (options.frames_every) require_trajectories(groups, options);
   References references(options.agreement);
   int total = 0;
   for (const Group& group : groups)
@@ -72,7 +81,7 @@ std::vector<results::RunRecord> sweep(const std::vector<Group>& groups, const Sw
     std::vector<results::RunRecord> runs;
     for (const Cell& cell : group) {
       progress.show(title(cell));
-      runs.push_back(record(cell, options.look ? options.look(cell) : solver::Observer()));
+      runs.push_back(record(cell, options.look ? options.look(cell) : solver::Observer(), options.frames_every));
       if (options.reference) measure_error(cell, runs.back(), truth);
       progress.advance();
     }
@@ -83,6 +92,7 @@ std::vector<results::RunRecord> sweep(const std::vector<Group>& groups, const Sw
       file.add(runs[k]);
       all.push_back(std::move(runs[k]));
     }
+    if (options.frames_every) results::write_xdmf(options.out, all);
   }
   return all;
 }

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@ struct SweepOptions {
   double agreement = 1e-7;  ///< largest disagreement of the families behind a reference, over the size of the scene
   std::filesystem::path out;
   std::string command_line;
+  std::optional<double> frames_every;                 ///< [s] between the frames of trajectories; none are kept without
   std::function<solver::Observer(const Cell&)> look;  ///< what sees the run of a cell that is recorded; may be empty
 };
 

@@ -166,16 +166,17 @@ int read_integer(const Handle& object, const std::string& name) {
 
 namespace {
 
-/// A new dataset with its unit and description.
+/// A new dataset with its unit and description; `creation`: how it is laid out in the file.
 void write_dataset(const Handle& group, const std::string& name, Types types_of_values, const void* values,
-                   const std::vector<std::uint64_t>& shape, const std::string& unit, const std::string& description) {
+                   const std::vector<std::uint64_t>& shape, const std::string& unit, const std::string& description,
+                   hid_t creation = H5P_DEFAULT) {
   const std::vector<hsize_t> dimensions(shape.begin(), shape.end());
   const int rank = static_cast<int>(shape.size());
   const Handle space(rank == 0 ? H5Screate(H5S_SCALAR) : H5Screate_simple(rank, dimensions.data(), nullptr), name);
   const Handle links(H5Pcreate(H5P_LINK_CREATE), name);
   check(H5Pset_create_intermediate_group(links.id(), 1), name);
   const Handle dataset(
-      H5Dcreate2(group.id(), name.c_str(), types_of_values.file, space.id(), links.id(), H5P_DEFAULT, H5P_DEFAULT), name);
+      H5Dcreate2(group.id(), name.c_str(), types_of_values.file, space.id(), links.id(), creation, H5P_DEFAULT), name);
   check(H5Dwrite(dataset.id(), types_of_values.memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), name);
   write_text(dataset, "unit", unit);
   write_text(dataset, "description", description);
@@ -187,6 +188,19 @@ template <class Number>
 void write_numbers(const Handle& group, const std::string& name, const Number* values, std::vector<std::uint64_t> shape,
                    const std::string& unit, const std::string& description) {
   write_dataset(group, name, types<Number>(), values, shape, unit, description);
+}
+
+template <class Number>
+void write_frames(const Handle& group, const std::string& name, const Number* values, std::vector<std::uint64_t> shape,
+                  const std::string& unit, const std::string& description) {
+  constexpr unsigned level = 4;
+  std::vector<hsize_t> chunk(shape.begin(), shape.end());
+  chunk.front() = 1;
+  const Handle creation(H5Pcreate(H5P_DATASET_CREATE), name);
+  check(H5Pset_chunk(creation.id(), static_cast<int>(chunk.size()), chunk.data()), name);
+  check(H5Pset_shuffle(creation.id()), name);
+  check(H5Pset_deflate(creation.id(), level), name);
+  write_dataset(group, name, types<Number>(), values, shape, unit, description, creation.id());
 }
 
 void write_texts(const Handle& group, const std::string& name, const std::vector<std::string>& values,
@@ -249,8 +263,13 @@ template void write_numbers(const Handle&, const std::string&, const int*, std::
                             const std::string&);
 template void write_numbers(const Handle&, const std::string&, const std::int64_t*, std::vector<std::uint64_t>,
                             const std::string&, const std::string&);
+template void write_frames(const Handle&, const std::string&, const double*, std::vector<std::uint64_t>, const std::string&,
+                           const std::string&);
+template void write_frames(const Handle&, const std::string&, const int*, std::vector<std::uint64_t>, const std::string&,
+                           const std::string&);
 template std::vector<double> read_numbers(const Handle&, const std::string&);
 template std::vector<int> read_numbers(const Handle&, const std::string&);
+template int read_number(const Handle&, const std::string&);
 template double read_number(const Handle&, const std::string&);
 template std::int64_t read_number(const Handle&, const std::string&);
 

@@ -62,6 +62,11 @@ template <class Number>
 void write_numbers(const Handle& group, const std::string& name, const Number* values, std::vector<std::uint64_t> shape,
                    const std::string& unit, const std::string& description);
 
+/// The same, compressed (shuffle and deflate), each of the first dimension's rows a chunk of its own.
+template <class Number>
+void write_frames(const Handle& group, const std::string& name, const Number* values, std::vector<std::uint64_t> shape,
+                  const std::string& unit, const std::string& description);
+
 /// All numbers of a dataset, row by row.
 template <class Number>
 std::vector<Number> read_numbers(const Handle& group, const std::string& name);

@@ -11,6 +11,7 @@
 #include "results/hdf5.hpp"
 #include "results/schema.hpp"
 #include "results/table_in_file.hpp"
+#include "results/trajectory_in_file.hpp"
 
 namespace drape::results {
 namespace fs = std::filesystem;
@@ -107,6 +108,7 @@ void write_run(const Handle& runs, const std::string& name, const RunRecord& run
     write_fields(hdf5::create_group(group, "error", "distance of the final positions from a reference"), error_fields,
                  *run.error);
   if (run.contact) write_fields(hdf5::create_group(group, "contact", "what obstacles did"), contact_fields, *run.contact);
+  if (run.trajectory) write_trajectory(group, *run.trajectory);
 }
 
 RunRecord read_run(const Handle& group) {
@@ -121,10 +123,9 @@ RunRecord read_run(const Handle& group) {
   run.final_state = read_fields<solver::State>(hdf5::open_group(group, "final_state"), state_fields);
   if (hdf5::has(group, "error")) run.error = read_fields<ErrorRecord>(hdf5::open_group(group, "error"), error_fields);
   if (hdf5::has(group, "contact")) run.contact = read_fields<ContactRecord>(hdf5::open_group(group, "contact"), contact_fields);
+  if (hdf5::has(group, "trajectory")) run.trajectory = read_trajectory(group);
   return run;
 }
-
-std::string run_name(int run) { return fmt::format("{:03}", run); }
 
 Handle open_run_file(const fs::path& path) {
   std::error_code unknown;  // then it is no file to us
@@ -138,10 +139,12 @@ Handle open_run_file(const fs::path& path) {
 
 }  // namespace
 
+std::string run_name(std::size_t run) { return fmt::format("{:03}", run); }
+
 struct RunFile::Image {
   Handle file;
   Handle runs, tables;
-  int run_count = 0;
+  std::size_t run_count = 0;
   bool published = false;
 
   /// Writes a new member of a group and publishes the file; without the member, if that fails.
@@ -189,7 +192,7 @@ std::vector<RunRecord> read_runs(const fs::path& path) {
     const Handle file = open_run_file(path);
     const Handle runs = hdf5::open_group(file, "runs");
     std::vector<RunRecord> records;
-    for (int i = 0; hdf5::has(runs, run_name(i)); ++i) records.push_back(read_run(hdf5::open_group(runs, run_name(i))));
+    for (std::size_t i = 0; hdf5::has(runs, run_name(i)); ++i) records.push_back(read_run(hdf5::open_group(runs, run_name(i))));
     return records;
   });
 }

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "results/atomic_file.hpp"
@@ -34,6 +35,9 @@ class RunFile {
   std::filesystem::path path_;
   std::unique_ptr<Image> image_;
 };
+
+/// The name of a run's group in `/runs`, counted from 0: "000".
+std::string run_name(std::size_t run);
 
 /// All runs of a file, in the order they were added; their parameters and work counts are sorted by name.
 /// Throws FileError if the file cannot be read or is not such a file.

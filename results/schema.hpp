@@ -62,6 +62,15 @@ inline constexpr std::tuple state_fields{
     Field{"v", &solver::State::v, "m/s", "velocities, one row for each particle"},
 };
 
+/// Of `trajectory`, with a frame for each of the times t; the states' frames are written under the names of state_fields.
+inline constexpr std::tuple trajectory_fields{
+    Field{"nu", &TrajectoryRecord::nu, "1", "particles along u, the weft; the particle (a, b) is row a + nu b"},
+    Field{"nv", &TrajectoryRecord::nv, "1", "particles along v, the warp"},
+    Field{"t", &TrajectoryRecord::times, "s", "time of each frame"},
+    Field{"stretch", &TrajectoryRecord::stretch, "1", "mean strain of the edges that meet in a particle"},
+    Field{"constraint", &TrajectoryRecord::constraint, "1", "0 free, 1 pinned, 2 in contact"},
+};
+
 inline constexpr std::tuple error_fields{
     Field{"rms", &ErrorRecord::rms, "1",
           "root of the mean squared distance to the reference, divided by the size of the scene"},

@@ -63,6 +63,12 @@ RunRecord full_record() {
   run.final_state.v(1, 2) = nan;
   run.error = ErrorRecord{1e-5, 2e-5, "cvode-bdf + arkode-esdirk", 1e-11, 3e-10, 7, 1e-3, 1e-4, 1e-6, 1e-7};
   run.contact = results::ContactRecord{4e-3, 1e-9, 0.25, nan};
+  run.trajectory = TrajectoryRecord{.nu = 2,
+                                    .nv = 1,
+                                    .times = {0, 0.25, infinity},
+                                    .states = {run.final_state, {run.final_state.v, run.final_state.x}, run.final_state},
+                                    .stretch = {Eigen::Vector2d(1, 2), Eigen::Vector2d(nan, 3), Eigen::Vector2d(4, 1e-300)},
+                                    .constraint = {{0, 1}, {2, 0}, {1, 2}}};
   return run;
 }
 
@@ -92,6 +98,12 @@ std::string as_text(const RunRecord& run) {
   if (contact) {
     const auto& [clearance, rise, area, reference_area] = *contact;
     text += fmt::format("{} {} {} {}\n", clearance, rise, area, reference_area);
+  }
+  if (trajectory) {
+    const auto& [nu, nv, times, states, stretch, constraint] = *trajectory;
+    text += fmt::format("{} {} {} {}\n", nu, nv, times, constraint);
+    for (const auto& [x, v] : states) text += fmt::format("{} {}\n", as_text(x), as_text(v));
+    for (const Eigen::VectorXd& strains : stretch) text += fmt::format("{}\n", fmt::join(strains, " "));
   }
   if (!error) return text;
   const auto& [rms, maximum, reference, tolerance, reference_error, growth, energy, energy_spread, centre, centre_spread] =
@@ -375,6 +387,15 @@ TEST(ReadRuns, RefusesATruncatedFile) {
     EXPECT_THAT(complaint([&] { read_runs(file.path()); }), AllOf(HasSubstr("runs.h5"), HasSubstr("truncated")));
     EXPECT_THAT(complaint([&] { read_provenance(file.path()); }), HasSubstr("truncated"));
   }
+}
+
+TEST(ReadRuns, RefusesTrajectoriesWhoseFramesAreNotAllThere) {
+  const TemporaryFolder folder;
+  RunRecord run = full_record();
+  run.trajectory->times.push_back(1);
+  RunFile(folder / "runs.h5", {}).add(run);
+  EXPECT_THAT(complaint([&] { read_runs(folder / "runs.h5"); }),
+              HasSubstr("runs.h5: trajectory/stretch: expected 2 numbers in each of 4 frames"));
 }
 
 TEST(ReadRuns, RefusesForeignHdf5AndOtherVersions) {

@@ -6,6 +6,7 @@
 
 #include "bench/argument_checks.hpp"
 #include "results/runs_table.hpp"
+#include "results/xdmf.hpp"
 
 namespace drape::bench {
 namespace {
@@ -41,6 +42,8 @@ void sweep_and_print(const std::vector<Group>& groups, Output output, const std:
   output.sweep.out = out_file(output, job);
   print_table(results::to_table(sweep(groups, output.sweep)), output.format);
   say_where(output.sweep.out, output.format);
+  if (output.sweep.frames_every && output.format == "table")
+    fmt::print("motion for ParaView: {}\n", results::xdmf_path(output.sweep.out).string());
 }
 
 void add_output_options(CLI::App& command, Output& output) {
@@ -58,6 +61,12 @@ void add_output_options(CLI::App& command, Output& output) {
       ->capture_default_str();
   command.add_flag_callback(
       "--no-reference", [&] { output.sweep.reference = false; }, "measure no errors");
+  command
+      .add_option_function<std::string>(
+          "--trajectory", [&](const std::string& text) { output.sweep.frames_every = seconds_every(text); },
+          "keep the motion of every run in frames so far apart; ParaView opens FILE.h5.xdmf")
+      ->type_name("every=SECONDS")
+      ->check(every_seconds());
   command
       .add_option("--agreement", output.sweep.agreement,
                   "largest disagreement of the two solvers behind a reference, over the scene's size")

@@ -25,6 +25,10 @@ std::string of_any_scene() {
   return names_of(studies(), [](const Study& study) { return study.of_scene != nullptr; });
 }
 
+std::string of_runs() {
+  return names_of(studies(), [](const Study& study) { return study.groups != nullptr; });
+}
+
 void check_scene(const Study& chosen, const SceneChoice& choice) {
   if (!choice.scene.empty() && chosen.of_scene == nullptr)
     throw std::invalid_argument(
@@ -36,6 +40,8 @@ void run_study(const Study& chosen, const StudyArguments& a) {
   check_scene(chosen, a.choice);
   const std::string name(chosen.name);
   if (chosen.groups) return sweep_and_print(chosen.groups(a.quick), a.output, name);
+  if (a.output.sweep.frames_every)
+    throw std::invalid_argument(fmt::format("--trajectory: the study {} makes tables; runs make {}", name, of_runs()));
   const std::vector<TableJob> jobs =
       a.choice.scene.empty() ? chosen.tables(a.quick) : chosen.of_scene(a.choice.load(), a.quick);
   const std::filesystem::path out = out_file(a.output, name);

@@ -23,6 +23,12 @@ constexpr const char* few[] = {"bdf2", "midpoint", "sbdf2", "imex-midpoint"};
 
 bool tries_few(Search search) { return search == Search::quick || search == Search::large; }
 
+std::vector<Vectors> positions_of(std::vector<solver::State> states) {
+  std::vector<Vectors> positions;
+  for (solver::State& state : states) positions.push_back(std::move(state.x));
+  return positions;
+}
+
 std::vector<Vectors> solve_ours(const Cell& cell, const model::Cloth& cloth, std::span<const double> times) {
   solver::Integrator integrator(cloth.ode, *cell.method, cell.options, cloth.start);
   solver::DenseOutput output(times, integrator.time(), integrator.state());
@@ -30,16 +36,13 @@ std::vector<Vectors> solve_ours(const Cell& cell, const model::Cloth& cloth, std
   if (times.size() > 1) observer = [&](const solver::StepReport& report) { output.see(report.t, report.y); };
   const solver::RunResult run = integrate(integrator, times.back(), cell.step, observer);
   if (run.outcome != solver::Outcome::success) throw std::runtime_error(run.message);
-  if (!observer) output.positions.push_back(integrator.state().x);
-  return std::move(output.positions);
+  if (!observer) output.states.push_back(integrator.state());
+  return positions_of(std::move(output.states));
 }
 
 std::vector<Vectors> solve_by_peer(const reference::Family& family, const reference::SolveOptions& options,
                                    const model::Cloth& cloth, std::span<const double> times) {
-  std::vector<Vectors> positions;
-  for (solver::State& state : family.solve(cloth.ode, cloth.start, 0, times, options).states)
-    positions.push_back(std::move(state.x));
-  return positions;
+  return positions_of(family.solve(cloth.ode, cloth.start, 0, times, options).states);
 }
 
 std::vector<double> tolerances(int finest) {

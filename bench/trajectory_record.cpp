@@ -1,0 +1,80 @@
+#include "bench/trajectory_record.hpp"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+#include "bench/contact_record.hpp"
+
+namespace drape::bench {
+namespace {
+
+/// Multiples of `every` after the start.
+std::vector<double> frame_times(double every, double end) {
+  std::vector<double> times;
+  const double last = end / every * (1 + 1e-9);  // round-off, not intention
+  for (int k = 1; k <= last; ++k) times.push_back(k * every);
+  return times;
+}
+
+solver::State start_of(const model::Cloth& cloth) {
+  solver::State start = cloth.start;
+  solver::prescribe(cloth.ode.pins, start.v);
+  return start;
+}
+
+Eigen::VectorXd mean_strain(const model::Grid& grid, const solver::Vectors& x) {
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(grid.particles()), edges = sum;
+  const auto add = [&](int i, int j, double length) {
+    const double strain = (x.row(i) - x.row(j)).norm() / length - 1;
+    for (const int end : {i, j}) sum[end] += strain, edges[end] += 1;
+  };
+  for (int b = 0; b < grid.nv; ++b)
+    for (int a = 0; a < grid.nu; ++a) {
+      if (a + 1 < grid.nu) add(grid.index(a, b), grid.index(a + 1, b), grid.spacing_u());
+      if (b + 1 < grid.nv) add(grid.index(a, b), grid.index(a, b + 1), grid.spacing_v());
+    }
+  return sum.cwiseQuotient(edges);
+}
+
+std::vector<int> constraints(const model::Scene& scene, const model::Cloth& cloth, double t, const solver::Vectors& x) {
+  std::vector<int> kinds(static_cast<std::size_t>(cloth.ode.particles()), int(results::Constraint::free));
+  const std::vector<bool> touching = in_contact(scene, cloth, t, x);
+  for (std::size_t i = 0; i < touching.size(); ++i)
+    if (touching[i]) kinds[i] = int(results::Constraint::in_contact);
+  for (const solver::Pin& pin : cloth.ode.pins)
+    kinds[static_cast<std::size_t>(pin.particle)] = int(results::Constraint::pinned);
+  return kinds;
+}
+
+}  // namespace
+
+void check_frames(double every, double end) {
+  constexpr double most = 1e5;
+  if (!(end / every <= most))
+    throw std::invalid_argument(
+        fmt::format("--trajectory: expected at most {:g} frames to t = {:g} s, so every={:g} at least, not {:g}", most, end,
+                    end / most, every));
+}
+
+TrajectoryWatch::TrajectoryWatch(const model::Scene& scene, const model::Cloth& cloth, double every)
+    : scene_(scene),
+      cloth_(cloth),
+      start_(start_of(cloth)),
+      times_(frame_times(every, scene.end)),
+      output_(times_, 0, start_) {}
+
+results::TrajectoryRecord TrajectoryWatch::result() const {
+  const model::Grid& grid = scene_.sheet.grid;
+  results::TrajectoryRecord record{
+      .nu = grid.nu, .nv = grid.nv, .times = {0}, .states = {start_}, .stretch = {}, .constraint = {}};
+  record.times.insert(record.times.end(), times_.begin(), times_.begin() + std::ssize(output_.states));
+  record.states.insert(record.states.end(), output_.states.begin(), output_.states.end());
+  for (std::size_t k = 0; k < record.times.size(); ++k) {
+    record.stretch.push_back(mean_strain(grid, record.states[k].x));
+    record.constraint.push_back(constraints(scene_, cloth_, record.times[k], record.states[k].x));
+  }
+  return record;
+}
+
+}  // namespace drape::bench
