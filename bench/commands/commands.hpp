@@ -13,6 +13,7 @@ void add_inspect(CLI::App& app);
 
 /// Sets the program's exit code when it has compared.
 void add_compare(CLI::App& app, int& exit_code);
+void add_report(CLI::App& app);
 
 /// What the program does without a subcommand.
 void do_main_job(const std::string& command_line);

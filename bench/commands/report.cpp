@@ -1,0 +1,46 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <system_error>
+
+#include "bench/argument_checks.hpp"
+#include "bench/commands/commands.hpp"
+#include "bench/report/page.hpp"
+#include "results/atomic_file.hpp"
+
+namespace drape::bench {
+namespace {
+
+struct ReportArguments {
+  std::vector<std::string> files;
+  std::string out;
+};
+
+void report(const ReportArguments& a) {
+  const std::string page = report_page({a.files.begin(), a.files.end()});
+  const std::filesystem::path folder = a.out, file = folder / "index.html";
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw results::FileError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
+  results::publish(file, std::as_bytes(std::span(page)), results::Existing::replace);
+  fmt::print("{}\n", file.string());
+}
+
+}  // namespace
+
+void add_report(CLI::App& app) {
+  CLI::App& command = *app.add_subcommand("report", "one HTML page with tables, plots and motions of recorded results");
+  const auto a = std::make_shared<ReportArguments>();
+  command.add_option("FILE", a->files, "HDF5 files recorded by run and study")
+      ->required()
+      ->type_name("...")
+      ->check(not_empty());
+  command.add_option("--out", a->out, "folder for index.html; an older one is replaced")
+      ->required()
+      ->type_name("DIR")
+      ->check(not_empty());
+  command.callback([=] { report(*a); });
+}
+
+}  // namespace drape::bench

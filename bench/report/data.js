@@ -1,0 +1,93 @@
+"use strict";
+// What is in the page: the files, their tables by column, and the texts that numbers are shown as.
+
+const files = JSON.parse(document.getElementById("data").textContent);
+
+/** An element with properties and children; strings become text, never HTML. */
+function element(name, properties = {}, ...children) {
+  const made = document.createElement(name);
+  for (const [key, value] of Object.entries(properties)) {
+    if (key === "on") for (const [event, react] of Object.entries(value)) made.addEventListener(event, react);
+    else if (key in made) made[key] = value;
+    else made.setAttribute(key, value);
+  }
+  made.append(...children.filter((child) => child !== null && child !== undefined));
+  return made;
+}
+
+const fact = (file, name) => file.provenance.find((any) => any.name === name)?.value ?? "unknown";
+
+/** A number of the page's data, which has texts in place of infinities. */
+const toNumber = (cell) => (cell === null || cell === undefined ? NaN : cell === "inf" ? Infinity : cell === "-inf" ? -Infinity : cell);
+
+const isNumeric = (column) => column.unit !== "";
+
+/** Four digits, as in the program's own tables. */
+function shortNumber(value) {
+  if (value === null || Number.isNaN(value)) return "";
+  if (!Number.isFinite(value)) return value > 0 ? "∞" : "−∞";
+  if (Number.isInteger(value) && Math.abs(value) < 1e7) return String(value);
+  const text = value.toPrecision(4);
+  const [digits, exponent] = text.split("e");
+  const trimmed = digits.includes(".") ? digits.replace(/\.?0+$/, "") : digits;
+  if (exponent) return `${trimmed}e${exponent}`;
+  return Math.abs(value) < 1e-4 ? value.toExponential(3).replace(/\.?0+e/, "e") : trimmed;
+}
+
+/** The cells of a column of a table, numbers as numbers; undefined if there is none of that name. */
+function cellsOf(table, name) {
+  const column = table.columns.find((any) => any.name === name);
+  if (!column) return undefined;
+  return isNumeric(column) ? column.cells.map(toNumber) : column.cells.map((cell) => cell ?? "");
+}
+
+const hasColumns = (table, ...names) => names.every((name) => table.columns.some((column) => column.name === name));
+
+/** Rows of a table as objects. */
+function rowsOf(table) {
+  const columns = table.columns.map((column) => [column.name, cellsOf(table, column.name)]);
+  const length = table.columns[0]?.cells.length ?? 0;
+  return Array.from({length}, (_, k) => Object.fromEntries(columns.map(([name, cells]) => [name, cells[k]])));
+}
+
+/** A Map from key(item) to the items of that key, in order of appearance. */
+function groupBy(items, key) {
+  const groups = new Map();
+  for (const item of items) {
+    const name = key(item);
+    if (!groups.has(name)) groups.set(name, []);
+    groups.get(name).push(item);
+  }
+  return groups;
+}
+
+const unique = (items) => [...new Set(items)];
+
+/** A verdict that says that something is not as it should be has a NOT in it. */
+const isBad = (verdict) => /\bNOT\b/.test(verdict);
+
+/** Columns {name, unit, cells} as CSV [RFC 4180]: numbers read back as the same numbers. */
+function toCsv(columns) {
+  const quoted = (text) => (/[",\n\r]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
+  const cell = (value) => (value === null || value === undefined || Number.isNaN(value) ? "" : quoted(String(value)));
+  const text = (value) => (value === Infinity ? "inf" : value === -Infinity ? "-inf" : cell(value));
+  const lines = [columns.map((column) => quoted(column.name)).join(",")];
+  const length = Math.max(0, ...columns.map((column) => column.cells.length));
+  for (let k = 0; k < length; ++k) lines.push(columns.map((column) => text(column.cells[k])).join(","));
+  return lines.join("\n") + "\n";
+}
+
+/** A link that saves a table as CSV; columns() is asked when it is used. */
+function csvLink(name, columns) {
+  const link = element("a", {className: "action", href: "#", download: `${fileName(name)}.csv`}, "CSV");
+  link.addEventListener("click", () => {
+    URL.revokeObjectURL(link.href);
+    link.href = URL.createObjectURL(new Blob([toCsv(columns())], {type: "text/csv"}));
+  });
+  return link;
+}
+
+const fileName = (text) => text.replace(/[^\p{L}\p{N}.=-]+/gu, "-").replace(/^-|-$/g, "");
+
+const commandLine = (file) => element("p", {className: "command"}, "from ", element("code", {}, file.file), ", made by ",
+                                      element("code", {}, fact(file, "command_line")));

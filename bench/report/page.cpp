@@ -1,0 +1,50 @@
+#include "bench/report/page.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <string_view>
+
+#include "bench/report/embedded.hpp"
+#include "bench/report/page_data.hpp"
+
+namespace drape::bench {
+namespace {
+
+/// JSON inside a <script>: no text in it can end the element.
+std::string script_data(const nlohmann::ordered_json& data) {
+  std::string text = data.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace), safe;
+  for (const char c : text) c == '<' ? safe += "\\u003c" : safe += c;
+  return safe;
+}
+
+bool has_trajectory(const nlohmann::ordered_json& file) {
+  return std::ranges::any_of(file["runs"], [](const auto& run) { return run.contains("trajectory"); });
+}
+
+void add_script(std::string& page, std::string_view script) {
+  page.append("<script>\n").append(script).append("\n</script>\n");
+}
+
+}  // namespace
+
+std::string report_page(const std::vector<std::filesystem::path>& files) {
+  nlohmann::ordered_json data = nlohmann::ordered_json::array();
+  for (const std::filesystem::path& file : files) data.push_back(page_data(file));
+
+  std::string page(embedded::head_html);
+  page.append("<style>\n").append(embedded::style_css).append("</style>\n").append(embedded::body_html);
+  page.append(fmt::format("<script type=\"application/json\" id=\"data\">{}</script>\n", script_data(data)));
+  add_script(page, embedded::plotly_js);
+  if (std::ranges::any_of(data, has_trajectory)) {
+    add_script(page, embedded::three_js);
+    add_script(page, embedded::orbit_controls_js);
+  }
+  for (const std::string_view script : {embedded::data_js, embedded::tables_js, embedded::plots_js, embedded::figures_js,
+                                        embedded::run_figures_js, embedded::player_js, embedded::report_js})
+    add_script(page, script);
+  return page + "</html>\n";
+}
+
+}  // namespace drape::bench

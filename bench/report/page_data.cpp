@@ -1,0 +1,117 @@
+#include "bench/report/page_data.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "bench/report/base64.hpp"
+#include "results/run_file.hpp"
+#include "results/runs_table.hpp"
+#include "results/schema.hpp"
+
+namespace drape::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t most_steps_shown = 500;  // of a run: more than a figure has pixels for would only make the page larger
+
+Json json_value(double value) {
+  if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
+  return value;  // NaN becomes null
+}
+Json json_value(std::int64_t value) { return value; }
+Json json_value(int value) { return value; }
+Json json_value(const std::string& value) { return value; }
+Json json_value(std::monostate) { return nullptr; }
+Json json_value(const std::vector<double>& values) {
+  Json list = Json::array();
+  for (const double value : values) list.push_back(json_value(value));
+  return list;
+}
+
+template <class Fields, class Record>
+void put_fields(Json& object, const Fields& fields, const Record& record) {
+  results::for_each(fields, [&](const auto& field) { object[field.name] = json_value(record.*field.member); });
+}
+
+Json page_column(const results::Column& column) {
+  Json cells = Json::array();
+  for (const results::Cell& cell : column.cells)
+    cells.push_back(std::visit([](const auto& value) { return json_value(value); }, cell));
+  Json object{{"name", column.name}, {"title", column.title}, {"unit", column.unit}, {"description", column.description}};
+  object["cells"] = std::move(cells);
+  if (!column.shown.empty()) object["shown"] = column.shown;
+  return object;
+}
+
+Json page_table(const results::Table& table) {
+  Json columns = Json::array();
+  for (const results::Column& column : table.columns) columns.push_back(page_column(column));
+  return {{"name", table.name}, {"description", table.description}, {"columns", std::move(columns)}};
+}
+
+/// A list for each quantity; of long runs every so many steps, and the last.
+Json page_steps(const std::vector<results::StepRecord>& steps) {
+  const std::size_t stride = (steps.size() + most_steps_shown - 1) / most_steps_shown;
+  Json object{{"every", stride}};
+  results::for_each(results::step_fields, [&](const auto& field) {
+    Json list = Json::array();
+    for (std::size_t k = 0; k < steps.size(); k += stride) list.push_back(json_value(steps[k].*field.member));
+    if (stride > 1 && (steps.size() - 1) % stride > 0) list.push_back(json_value(steps.back().*field.member));
+    object[field.name] = std::move(list);
+  });
+  return object;
+}
+
+/// Positions frame by frame, particle by particle, x, y, z, as 32-bit numbers: the player needs no more.
+std::string packed_positions(const std::vector<solver::State>& states) {
+  std::vector<float> numbers;
+  for (const solver::State& state : states)
+    for (Eigen::Index i = 0; i < state.x.rows(); ++i)
+      for (Eigen::Index c = 0; c < state.x.cols(); ++c) numbers.push_back(static_cast<float>(state.x(i, c)));
+  return base64(std::as_bytes(std::span(numbers)));
+}
+
+Json page_trajectory(const results::TrajectoryRecord& trajectory) {
+  return {{"nu", trajectory.nu},
+          {"nv", trajectory.nv},
+          {"times", trajectory.times},
+          {"positions", packed_positions(trajectory.states)}};
+}
+
+Json page_run(const results::RunRecord& run) {
+  Json object;
+  put_fields(object, results::run_fields, run);
+  for (const results::WorkCount& work : run.work) object["work"][work.name] = work.count;
+  object["steps"] = page_steps(run.steps);
+  if (run.error) {
+    put_fields(object["error"], results::error_fields, *run.error);
+    object["error"]["comparable"] = results::comparable(*run.error);
+    object["error"]["resolved"] = results::resolved(*run.error);
+  }
+  if (run.contact) put_fields(object["contact"], results::contact_fields, *run.contact);
+  if (run.trajectory) object["trajectory"] = page_trajectory(*run.trajectory);
+  return object;
+}
+
+Json page_provenance(const results::Provenance& provenance) {
+  Json facts = Json::array();
+  for (const results::Fact& fact : provenance)
+    facts.push_back({{"name", fact.name}, {"value", fact.value}, {"description", fact.description}});
+  return facts;
+}
+
+}  // namespace
+
+Json page_data(const std::filesystem::path& file) {
+  Json data{{"file", file.filename().string()}, {"provenance", page_provenance(results::read_provenance(file))}};
+  data["tables"] = Json::array();
+  for (const results::Table& table : results::read_tables(file)) data["tables"].push_back(page_table(table));
+  const std::vector<results::RunRecord> runs = results::read_runs(file);
+  data["runs"] = Json::array();
+  for (const results::RunRecord& run : runs) data["runs"].push_back(page_run(run));
+  if (!runs.empty()) data["runs_table"] = page_table(results::to_table(runs));
+  return data;
+}
+
+}  // namespace drape::bench

@@ -1,0 +1,262 @@
+"use strict";
+// Motions side by side: one camera, one time, each run coloured by its distance from the one chosen as the truth.
+
+// Viridis [van der Walt, Smith 2015] at ninths: even steps of lightness, for the colour-blind, too.
+const viridis = ["#440154", "#482878", "#3e4a89", "#31688e", "#26828e", "#1f9e89", "#35b779", "#6ece58", "#b5de2b", "#fde725"];
+
+/** The positions of a trajectory, unpacked once: Float32Array, frame by frame. */
+function unpack(trajectory) {
+  const bytes = Uint8Array.from(atob(trajectory.positions), (character) => character.charCodeAt(0));
+  return {...trajectory, particles: trajectory.nu * trajectory.nv, positions: new Float32Array(bytes.buffer)};
+}
+
+/** Positions at a time, between frames linearly, written to `to`; those of the last frame after the end. */
+function positionsAt(motion, t, to) {
+  const {times, positions, particles} = motion, size = 3 * particles;
+  let k = times.findIndex((time) => time > t);
+  if (k < 0) k = times.length;
+  const below = Math.max(k - 1, 0), above = Math.min(k, times.length - 1);
+  const share = above > below ? (t - times[below]) / (times[above] - times[below]) : 0;
+  for (let i = 0; i < size; ++i) to[i] = (1 - share) * positions[below * size + i] + share * positions[above * size + i];
+}
+
+/** The distance of each particle from that of the truth. */
+function distances(positions, truth) {
+  return Array.from({length: positions.length / 3}, (_, i) => Math.hypot(...[0, 1, 2].map((c) => positions[3 * i + c] - truth[3 * i + c])));
+}
+
+const rootMeanSquare = (numbers) => Math.sqrt(numbers.reduce((sum, x) => sum + x * x, 0) / numbers.length);
+
+const runLabel = (run) => `${run.method}, h = ${shortNumber(run.step)} s`;
+
+/** Distances from the truth, all that a colour means: share(distance) in [0, 1] on a log scale of four powers of ten. */
+function colourScale(views, truth, end) {
+  let largest = 0;
+  const mine = new Float32Array(3 * truth.motion.particles), its = mine.slice();
+  for (const view of views)
+    for (let k = 0; k <= 20; ++k) {
+      positionsAt(view.motion, end * k / 20, mine), positionsAt(truth.motion, end * k / 20, its);
+      largest = Math.max(largest, ...distances(mine, its));
+    }
+  const top = largest || 1;
+  return {top, low: 1e-4 * top, share: (distance) => Math.min(1, Math.max(0, 1 + Math.log10(distance / top) / 4))};
+}
+
+function colourAt(share) {
+  const at = share * (viridis.length - 1), below = Math.min(Math.floor(at), viridis.length - 2);
+  return new THREE.Color(viridis[below]).lerp(new THREE.Color(viridis[below + 1]), at - below);
+}
+
+/** Two triangles for every cell; none for a chain. */
+function cellTriangles({nu, nv}) {
+  const triangles = [];
+  for (let b = 0; b + 1 < nv; ++b)
+    for (let a = 0; a + 1 < nu; ++a) {
+      const i = a + nu * b;
+      triangles.push(i, i + 1, i + nu + 1, i, i + nu + 1, i + nu);
+    }
+  return triangles;
+}
+
+/** What three.js draws of one run. */
+function makeScene(motion) {
+  const geometry = new THREE.BufferGeometry(), count = 3 * motion.particles;
+  geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(count), 3));
+  geometry.setAttribute("color", new THREE.BufferAttribute(new Float32Array(count).fill(0.6), 3));
+  const scene = new THREE.Scene(), sun = new THREE.DirectionalLight(0xffffff, 0.7);
+  sun.position.set(1, -2, 3);
+  scene.add(new THREE.AmbientLight(0xffffff, 0.6), sun);
+  const chain = motion.nu === 1 || motion.nv === 1;
+  if (!chain) geometry.setIndex(cellTriangles(motion));
+  const cloth = chain ? new THREE.Line(geometry, new THREE.LineBasicMaterial({vertexColors: THREE.VertexColors}))
+                      : new THREE.Mesh(geometry, new THREE.MeshLambertMaterial({vertexColors: THREE.VertexColors, side: THREE.DoubleSide}));
+  cloth.frustumCulled = false;
+  scene.add(cloth);
+  if (!chain) {
+    const lines = new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({color: 0x000000, wireframe: true, transparent: true, opacity: 0.12}));
+    lines.frustumCulled = false;
+    scene.add(lines);
+  }
+  return {scene, cloth, geometry, chain};
+}
+
+/** A run's canvas with its name and, below it, how far it is off. */
+function makeView(run) {
+  const motion = unpack(run.trajectory), canvas = element("canvas", {role: "img", "aria-label": `Motion of ${runLabel(run)}`});
+  const says = element("p", {className: "quiet"}, "\u00a0");
+  const box = element("div", {className: "view"}, element("p", {}, element("strong", {}, run.method), ` h = ${shortNumber(run.step)} s`), canvas, says);
+  return {run, motion, canvas, says, box, ...makeScene(motion)};
+}
+
+/** The box around all that moves, over all frames. */
+function bounds(views) {
+  const box = new THREE.Box3(), point = new THREE.Vector3();
+  for (const {motion} of views)
+    for (let i = 0; i < motion.positions.length; i += 3) box.expandByPoint(point.set(...motion.positions.subarray(i, i + 3)));
+  return box.getBoundingSphere(new THREE.Sphere());
+}
+
+/** Writes positions and colours of time t into a view. */
+function updateView(view, player) {
+  const {geometry, motion} = view, {position, color} = geometry.attributes;
+  positionsAt(motion, player.t, position.array);
+  positionsAt(player.truth.motion, player.t, player.true_positions);
+  view.off = distances(position.array, player.true_positions);
+  view.off.forEach((off, i) => colourAt(player.scale.share(off)).toArray(color.array, 3 * i));
+  position.needsUpdate = color.needsUpdate = true;
+  if (!view.chain) geometry.computeVertexNormals();
+  geometry.computeBoundingSphere();
+  const ended = player.t > motion.times[motion.times.length - 1] + 1e-9 ? `; ended at ${shortNumber(motion.times[motion.times.length - 1])} s` : "";
+  view.says.textContent = (view === player.truth ? "the others are measured from this one" : `RMS ${rootMeanSquare(view.off).toExponential(2)} m off`) + ended;
+}
+
+/** One renderer draws all the views and hands each its picture: browsers allow but few at a time. */
+function renderViews(player) {
+  const {renderer, camera} = player;
+  for (const {canvas, scene} of player.views) {
+    const size = Math.round(canvas.clientWidth * devicePixelRatio);
+    if (!size) continue;
+    if (canvas.width !== size) canvas.width = canvas.height = size;
+    renderer.setSize(size, size, false);
+    renderer.render(scene, camera);
+    const context = canvas.getContext("2d");
+    context.clearRect(0, 0, size, size);
+    context.drawImage(renderer.domElement, 0, 0);
+  }
+}
+
+function showTime(player, t) {
+  player.t = t;
+  player.slider.value = t;
+  player.clock.textContent = `t = ${t.toFixed(3)} s`;
+  for (const view of player.views) updateView(view, player);
+  renderViews(player);
+}
+
+/** Plays from the time shown to the end, so many times slower or faster than it happened. */
+function play(player) {
+  if (player.playing) return void (player.playing = false);
+  player.playing = true;
+  player.button.textContent = "Pause";
+  let last = performance.now(), t = player.t >= player.end ? 0 : player.t;
+  const step = (now) => {
+    t = Math.min(player.end, t + (now - last) / 1000 * Number(player.speed.value));
+    last = now;
+    showTime(player, t);
+    if (t >= player.end) player.playing = false;
+    if (player.playing) requestAnimationFrame(step);
+    else player.button.textContent = "Play";
+  };
+  requestAnimationFrame(step);
+}
+
+/** The particle below the pointer with its numbers. */
+function hover(player, view, event) {
+  const area = view.canvas.getBoundingClientRect(), ray = new THREE.Raycaster();
+  const at = new THREE.Vector2(2 * (event.clientX - area.left) / area.width - 1, 1 - 2 * (event.clientY - area.top) / area.height);
+  ray.setFromCamera(at, player.camera);
+  const [hit] = view.chain ? [] : ray.intersectObject(view.cloth);
+  if (!hit) return void (view.canvas.title = "");
+  const {array} = view.geometry.attributes.position;
+  const far = (i) => hit.point.distanceToSquared(new THREE.Vector3(...array.subarray(3 * i, 3 * i + 3)));
+  const i = [hit.face.a, hit.face.b, hit.face.c].sort((p, q) => far(p) - far(q))[0], {nu} = view.motion;
+  const place = [...array.subarray(3 * i, 3 * i + 3)].map((x) => x.toFixed(4)).join(", ");
+  view.canvas.title = view.says.textContent = `particle (${i % nu}, ${Math.floor(i / nu)}): (${place}) m, ${view.off[i].toExponential(2)} m off`;
+}
+
+/** The arrow keys turn the camera. */
+function turn(player, event) {
+  const turns = {ArrowLeft: [-0.1, 0], ArrowRight: [0.1, 0], ArrowUp: [0, -0.1], ArrowDown: [0, 0.1]}[event.key];
+  if (!turns) return;
+  event.preventDefault();
+  const {camera, controls} = player, from = camera.position.clone().sub(controls.target);
+  from.applyAxisAngle(camera.up, turns[0]).applyAxisAngle(new THREE.Vector3().crossVectors(camera.up, from).normalize(), turns[1]);
+  camera.position.copy(controls.target).add(from);
+  controls.update();
+}
+
+function makeCamera(player, grid) {
+  const {center, radius} = bounds(player.views);
+  player.camera = new THREE.PerspectiveCamera(35, 1, radius / 50, radius * 50);
+  player.camera.up.set(0, 0, 1);
+  player.camera.position.copy(center).add(new THREE.Vector3(1.6, -2.3, 1).multiplyScalar(radius));
+  player.controls = new THREE.OrbitControls(player.camera, grid);
+  player.controls.target.copy(center);
+  player.controls.enableKeys = false;
+  player.controls.update();
+  player.controls.saveState();
+  player.controls.addEventListener("change", () => renderViews(player));
+  grid.addEventListener("keydown", (event) => turn(player, event));
+}
+
+/** The run with the least error that is known, else with the least step. */
+function mostAccurate(views) {
+  const error = (view) => view.run.error?.rms ?? Infinity;
+  return [...views].sort((a, b) => error(a) - error(b) || a.run.step - b.run.step)[0];
+}
+
+const alike = (a, b) => a.motion.nu === b.motion.nu && a.motion.nv === b.motion.nv;
+
+function scaleElement(player) {
+  const bar = element("div", {className: "scale", role: "img", "aria-label": "colours of distances"});
+  bar.style.background = `linear-gradient(to right, ${viridis.join(", ")})`;
+  const labels = [0, 1, 2, 3, 4].map((k) => element("span", {}, `${k ? "" : "≤ "}${shortNumber(Number((player.scale.top * 10 ** (k - 4)).toPrecision(2)))} m`));
+  return element("div", {}, bar, element("div", {className: "scale-labels"}, ...labels));
+}
+
+function makeControls(player) {
+  player.button = element("button", {type: "button", on: {click: () => play(player)}}, "Play");
+  player.slider = element("input", {type: "range", className: "time", min: 0, max: player.end, step: player.end / 1000, value: 0, "aria-label": "time"});
+  player.slider.addEventListener("input", () => showTime(player, Number(player.slider.value)));
+  player.clock = element("output", {});
+  player.speed = element("select", {"aria-label": "speed"}, ...[0.1, 0.25, 0.5, 1, 2].map((speed) => element("option", {value: speed}, `${speed} ×`)));
+  player.speed.value = 0.5;
+  const reset = element("button", {type: "button", on: {click: () => player.controls.reset()}}, "Reset view");
+  return element("div", {className: "actions"}, player.button, player.slider, player.clock, player.speed, reset);
+}
+
+/** How far each run is off over time, as columns for the CSV and as a figure. */
+function distanceRows(player) {
+  const mine = new Float32Array(3 * player.truth.motion.particles), its = mine.slice();
+  return player.views.filter((view) => view !== player.truth).flatMap((view) => view.motion.times.map((t) => {
+    positionsAt(view.motion, t, mine), positionsAt(player.truth.motion, t, its);
+    const off = distances(mine, its);
+    return {method: view.run.method, step: view.run.step, t, rms: rootMeanSquare(off), maximum: Math.max(...off)};
+  }));
+}
+
+/** The same as a figure. */
+function distanceFigure(file, name, player) {
+  const rows = distanceRows(player), truth = runLabel(player.truth.run);
+  const make = (width, colours) => {
+    const curves = [...groupBy(rows.filter((row) => row.rms > 0), runLabel)].map(([label, of], k) => ({
+      type: "scatter", mode: "lines+markers", name: label, x: of.map((row) => row.t), y: of.map((row) => row.rms),
+      hovertemplate: `${label}<br>t = %{x:.4g} s: %{y:.3e} m<extra></extra>`, line: {color: style(k).color, dash: style(k).dash}, marker: {symbol: style(k).symbol, size: 5}}));
+    return {data: curves, layout: {...baseLayout(width, colours, curves.length), xaxis: axis("t [s]", colours), yaxis: axis("RMS distance [m]", colours, {type: "log"})}};
+  };
+  return {file, make, title: `Distance from ${truth}: ${name}`, says: "Root mean square distance of the recorded positions, frame by frame.",
+          columns: () => ["method", "step", "t", "rms", "maximum"].map((column) => ({name: column, cells: rows.map((row) => row[column])}))};
+}
+
+/** The motions of compared runs as an article; undefined if less than one was recorded. */
+function playerElement(file, name, runs, id) {
+  const all = runs.filter((run) => run.trajectory?.times.length).map(makeView);
+  if (!all.length) return undefined;
+  const truth = mostAccurate(all), views = all.filter((view) => alike(view, truth));
+  const player = {views, truth, t: 0, playing: false, end: Math.max(...views.map((view) => view.motion.times[view.motion.times.length - 1]))};
+  player.scale = colourScale(views, truth, player.end);
+  player.true_positions = new Float32Array(3 * truth.motion.particles);
+  player.renderer = new THREE.WebGLRenderer({antialias: true, alpha: true, preserveDrawingBuffer: true});
+  const grid = element("div", {className: "player", tabIndex: 0, role: "group", "aria-label": "Motions; drag or use the arrow keys to turn them"}, ...views.map((view) => view.box));
+  makeCamera(player, grid);
+  const controls = makeControls(player);
+  for (const view of views) view.canvas.addEventListener("pointermove", (event) => hover(player, view, event));
+  new ResizeObserver(() => renderViews(player)).observe(grid);
+  const says = `Drag to turn, wheel to come nearer, point at a particle for its numbers. Colours are distances from ${runLabel(truth.run)}, ${truth.run.error ? `which has the least error of these runs, ${shortNumber(truth.run.error.rms)} at the end` : "the one of the least step"}.`;
+  const figure = element("figure", {id}, element("figcaption", {}, element("h3", {}, `Motion: ${name}`), element("p", {}, says)), grid, controls, scaleElement(player),
+                         commandLine(file));
+  return {figure, player, more: views.length > 1 ? [distanceFigure(file, name, player)] : []};
+}
+
+/** All motions of a file. */
+const playersOf = (file) => comparedRuns(file).map(([name, runs], k) => playerElement(file, name, runs, `motion-${files.indexOf(file) + 1}-${k + 1}`)).filter((any) => any);

@@ -1,0 +1,108 @@
+"use strict";
+// Figures around Plotly: colours of the page, its width, and what is saved from them.
+
+// Okabe and Ito's colours, which the colour-blind tell apart; marks and dashes tell apart what shares one.
+const palette = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#888888"];
+const marks = ["circle", "square", "diamond", "triangle-up", "triangle-down", "x", "cross", "star"];
+const dashes = ["solid", "dash", "dot", "dashdot"];
+
+/** The look of the k-th curve: no two of the first 56 are alike. */
+function style(k) {
+  const color = palette[k % palette.length], turn = Math.floor(k / palette.length);
+  return {color, symbol: marks[(k + turn) % marks.length], dash: dashes[turn % dashes.length]};
+}
+
+const paper = {text: "#000000", line: "#cccccc", band: "rgba(120, 130, 140, 0.16)", page: "#ffffff"};
+
+function pageColours() {
+  const css = getComputedStyle(document.documentElement);
+  const colour = (name) => css.getPropertyValue(`--${name}`).trim();
+  return {text: colour("text"), line: colour("line"), band: colour("band"), page: colour("page")};
+}
+
+const isNarrow = (width) => width < 600;
+
+/** An axis with a title; more wins over what all axes share. */
+function axis(title, colours, more = {}) {
+  const exponents = more.type === "log" ? {dtick: 1, exponentformat: "power", minor: {}} : {exponentformat: "power"};
+  return {title: {text: title, standoff: 8}, gridcolor: colours.line, zeroline: false, linecolor: colours.line, ticks: "outside",
+          tickcolor: colours.line, automargin: true, ...exponents, ...more};
+}
+
+/** The layout that all figures share: legend beside the plot, or below it where there is no room. */
+function baseLayout(width, colours, entries) {
+  const narrow = isNarrow(width);
+  const least = matchMedia("print").matches ? 340 : 430;  // so that two fit on a page
+  const legendRows = narrow ? Math.ceil(entries / Math.max(1, Math.floor(width / 170))) : 0;
+  return {
+    width, height: narrow ? least + 20 * legendRows : Math.max(least, 70 + 21 * entries), showlegend: true, paper_bgcolor: colours.page, plot_bgcolor: colours.page,
+    font: {family: "system-ui, Liberation Sans, sans-serif", size: narrow ? 11 : 13, color: colours.text},
+    margin: {l: 10, r: 10, t: 34, b: narrow ? 60 + 20 * legendRows : 10}, hovermode: "closest",
+    legend: narrow ? {orientation: "h", y: -0.22, yanchor: "top", x: 0} : {x: 1.02, y: 1, tracegroupgap: 4},
+    hoverlabel: {align: "left", namelength: -1},
+  };
+}
+
+/** Where errors are beyond what the reference can tell. */
+function uncertainBand(limit, lowest, colours) {
+  if (!(limit > lowest)) return [];
+  return [{type: "rect", xref: "x", yref: "paper", x0: lowest, x1: limit, y0: 0, y1: 1, fillcolor: colours.band, line: {width: 0}, layer: "below"}];
+}
+
+/** Powers of ten around positive numbers as a range of a log axis. */
+function logRange(numbers, reversed = false) {
+  const logs = numbers.filter((number) => number > 0 && Number.isFinite(number)).map(Math.log10);
+  const low = Math.min(...logs), high = Math.max(...logs), edge = 0.05 * (high - low) + 0.1;
+  return reversed ? [high + edge, low - edge] : [low - edge, high + edge];
+}
+
+const plots = [];  // every plot that was made: {div, make}
+
+function drawPlot(plot) {
+  const width = plot.div.clientWidth || 700;
+  const {data, layout} = plot.make(width, pageColours());
+  plot.width = width;
+  return Plotly.react(plot.div, data, layout, {displaylogo: false, modeBarButtonsToRemove: ["lasso2d", "select2d", "toImage"]});
+}
+
+/** Saves a plot as a file for papers: on white, of a set size. */
+async function savePlot(plot, format, name) {
+  const {data, layout} = plot.make(900, paper);
+  const shown = plot.div.data ?? data;
+  const visible = data.map((trace, k) => ({...trace, visible: shown[k]?.visible ?? true}));
+  const figure = {data: visible, layout};
+  const url = await Plotly.toImage(figure, {format, width: 900, height: layout.height, scale: format === "png" ? 3 : 1});
+  const link = element("a", {href: url, download: `${fileName(name)}.${format}`});
+  link.click();
+  return url;
+}
+
+/**
+ * A figure: {title, says (one sentence), make(width, colours) -> {data, layout}, columns() for the CSV, file, controls}.
+ * Drawn when drawAll() is called, and again when colours or widths change.
+ */
+function figureElement(figure, id) {
+  const plot = {div: element("div", {className: "plot", role: "img", "aria-label": `${figure.title}. ${figure.says}`}), make: figure.make};
+  plots.push(plot);
+  for (const control of figure.controls ?? []) control.addEventListener("change", () => drawPlot(plot));
+  const save = (format) => element("button", {type: "button", on: {click: () => savePlot(plot, format, figure.title)}}, format.toUpperCase());
+  return element("figure", {id}, element("figcaption", {}, element("h3", {}, figure.title), element("p", {}, figure.says)),
+                 figure.controls ? element("div", {className: "actions"}, ...figure.controls.map((control) => control.parentElement ?? control)) : null,
+                 plot.div,
+                 element("div", {className: "actions"}, csvLink(figure.title, figure.columns), save("svg"), save("png")), commandLine(figure.file));
+}
+
+/** Draws all figures, one after the other so that the page answers meanwhile. */
+async function drawAll() {
+  for (const plot of plots) {
+    await drawPlot(plot);
+    await new Promise((resolve) => setTimeout(resolve));
+  }
+}
+
+const redrawAll = () => plots.forEach(drawPlot);
+matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redrawAll);
+matchMedia("print").addEventListener("change", redrawAll);
+new ResizeObserver(() => plots.forEach((plot) => {
+  if (plot.width && plot.div.clientWidth && plot.width !== plot.div.clientWidth) drawPlot(plot);
+})).observe(document.body);

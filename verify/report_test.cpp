@@ -1,0 +1,239 @@
+// bench_integrators report: the page in a browser.
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "results/run_file.hpp"
+#include "results/table_builder.hpp"
+#include "verify/bench_integrators.hpp"
+#include "verify/browser.hpp"
+
+namespace drape::verify::report_test {
+namespace {
+
+using nlohmann::json;
+using results::Table;
+using results::TableBuilder;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+using testing::StartsWith;
+
+/// Errors of two methods at five steps: one of the order that is declared, one not.
+Table orders() {
+  TableBuilder table("orders-sheet", "Order in time on a sheet");
+  for (const auto& [method, order] : {std::pair{"bdf2", 2.0}, {"euler", 0.5}})
+    for (int k = 0; k < 5; ++k) {
+      table.row();
+      table.text("scene", "scene", "", "sheet");
+      table.text("method", "method", "", method);
+      table.number("step", "h", "s", "", std::pow(2.0, -k) / 30);
+      table.number("error", "rms error", "1", "", 0.1 * std::pow(2.0, -order * k));
+      table.number("uncertainty", "", "1", "", 1e-5);
+      if (k > 0) table.number("order", "order", "1", "", order);
+      if (k < 4) continue;
+      table.text("verdict", "verdict", "", order == 2 ? "2 as declared" : "NOT 1");
+      table.number("fitted_order", "fitted", "1", "", order);
+    }
+  return table.finish();
+}
+
+Table trials() {
+  TableBuilder table("trials: sheet", "All that was tried on sheet");
+  for (const auto& [code, slowness] : {std::pair{"drape", 1.0}, {"cvode-bdf", 5.0}})
+    for (int k = 1; k <= 3; ++k) {
+      table.row();
+      table.text("code", "", "", code);
+      table.text("family", "", "", fmt::format("{}, \"as it is\"", code));
+      table.text("method", "", "", "");
+      table.text("control", "", "", "step");
+      table.number("value", "", "1", "", 0.1 / k);
+      table.text("outcome", "", "", k == 3 ? "unstable" : "success");
+      table.number("uncertainty", "", "1", "", 1e-9);
+      table.count("steps", "", "", 10 * k);
+      if (k == 3) continue;
+      table.number("error", "", "1", "", std::pow(10.0, -k));
+      for (const char* time : {"time", "lower", "upper"}) table.number(time, "", "ms", "", slowness * k);
+    }
+  return table.finish();
+}
+
+Table atlas() {
+  TableBuilder table("stability-atlas", "Verdicts");
+  for (const double nu : {1.0, 1e5})
+    for (const double ratio : {1.0, std::numeric_limits<double>::infinity()}) {
+      table.row();
+      table.count("n", "n", "", 6);
+      table.number("step", "h", "s", "", 0.02);
+      table.text("method", "method", "", "bdf2");
+      table.number("nu", "ν_h", "1", "", nu);
+      table.number("to_damping", "h k/d", "1", "", ratio);
+      table.text("predicted", "predicted", "", nu > 1 ? "unstable" : "stable");
+      table.text("verdict", "verdict", "", nu > 1 ? "unstable" : "accurate");
+    }
+  return table.finish();
+}
+
+/// What would end the script that the data are in, or become an element, if the page were careless.
+Table hostile() {
+  TableBuilder table("hostile", "</script><script>console.error('from the data')</script>");
+  for (const char* text : {"b <img src=x onerror=console.error(1)>", "a & b"}) {
+    table.row();
+    table.text("text", "text", "", text);
+  }
+  return table.finish();
+}
+
+/// What the scripts of the tests below see of one page, in one go: a browser takes seconds to start.
+constexpr const char* look = R"(
+  const all = (selector, from = document) => [...from.querySelectorAll(selector)];
+  const csv = async (link) => {
+    link.addEventListener("click", (event) => event.preventDefault());
+    link.click();
+    return (await fetch(link.href)).text();
+  };
+  const picture = (canvas) => {
+    const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext("2d", {willReadFrequently: true});
+    copy.drawImage(canvas, 0, 0);
+    return copy.getImageData(0, 0, canvas.width, canvas.height).data;
+  };
+  const drawn = (pixels) => pixels.filter((value, k) => k % 4 === 3 && value > 0).length / (pixels.length / 4);
+  const seen = {
+    fetched: performance.getEntriesByType("resource").map((any) => any.name).filter((name) => !name.startsWith("blob:")),
+    summary: document.getElementById("summary").innerText,
+    figures: {}, csv: {}, titles: all("article h3").map((title) => title.textContent), views: [],
+  };
+  for (const figure of all("figure")) {
+    const plot = figure.querySelector(".plot");
+    if (plot) seen.figures[figure.querySelector("h3").textContent] = all(".point, .js-line, .heatmaplayer image, .textpoint", plot).length;
+  }
+  for (const table of all("article.table")) seen.csv[table.querySelector("h3").textContent] = await csv(table.querySelector("a[download]"));
+  const canvases = all(".view canvas"), slider = document.querySelector(".time"), before = canvases.map(picture);
+  if (slider) slider.value = slider.max, slider.dispatchEvent(new Event("input"));
+  canvases.forEach((canvas, k) => {
+    const after = picture(canvas);
+    seen.views.push({drawn: drawn(before[k]), changed: after.some((value, i) => value !== before[k][i])});
+  });
+  const figure = plots[0];
+  seen.svg = await savePlot(figure, "svg", "a figure"), seen.png = (await savePlot(figure, "png", "a figure")).slice(0, 30);
+  const sorted = all("article.table").find((table) => table.textContent.includes("from the data")), head = sorted.querySelector("thead button");
+  const order = () => all("tbody th", sorted).map((cell) => cell.textContent);
+  head.click();
+  seen.up = order(), seen.aria = head.parentElement.getAttribute("aria-sort");
+  head.click();
+  seen.down = order();
+  see(JSON.stringify(seen));
+)";
+
+void expect_marks_in_every_figure(const json& seen) {
+  std::string titles;
+  for (const auto& [title, marks] : seen.at("figures").get<std::map<std::string, int>>()) {
+    EXPECT_GT(marks, 0) << title;
+    titles += title + "\n";
+  }
+  for (const char* title : {"Distance from", "Work–precision of runs: hung-corners", "Energy: hung-corners",
+                            "Updates: hung-corners", "Convergence: sheet", "Work–precision: sheet", "Stability: 6 × 6"})
+    EXPECT_THAT(titles, HasSubstr(title));
+}
+
+void expect_csv_of(const Table& table, const json& seen) {
+  const std::vector<Row> shown = parse_csv(seen.at("csv").at(table.description)), recorded = parse_csv(to_csv(table));
+  ASSERT_THAT(shown, SizeIs(recorded.size()));
+  for (std::size_t k = 0; k < shown.size(); ++k)
+    for (const results::Column& column : table.columns) {
+      const std::string &a = shown[k].at(column.name), &b = recorded[k].at(column.name);
+      if (column.unit.empty() || b.empty())
+        EXPECT_EQ(a, b) << column.name;
+      else
+        EXPECT_EQ(std::stod(a), std::stod(b)) << column.name;
+    }
+}
+
+void expect_motions(const json& seen, std::size_t count) {
+  ASSERT_THAT(seen.at("views"), SizeIs(count));
+  for (const json& view : seen.at("views")) {
+    EXPECT_GT(view.at("drawn"), 0.02);
+    EXPECT_LT(view.at("drawn"), 0.9);
+    EXPECT_TRUE(view.at("changed"));
+  }
+}
+
+void expect_pictures(const json& seen) {
+  EXPECT_THAT(seen.at("svg").get<std::string>(), StartsWith("data:image/svg+xml,"));
+  EXPECT_THAT(seen.at("svg").get<std::string>(), HasSubstr("scatterlayer"));
+  EXPECT_THAT(seen.at("png").get<std::string>(), StartsWith("data:image/png;base64,"));
+}
+
+void expect_summary(const json& seen) {
+  const std::string summary = seen.at("summary");
+  for (const char* text : {"1 of 2 as declared", "sheet, euler: 0.5, NOT 1", "Who wins at which error", "2 trials: unstable"})
+    EXPECT_THAT(summary, HasSubstr(text));
+}
+
+void expect_sorting(const json& seen) {
+  const std::vector<std::string> up{"a & b", "b <img src=x onerror=console.error(1)>"};
+  EXPECT_EQ(seen.at("up"), up);
+  EXPECT_EQ(seen.at("aria"), "ascending");
+  EXPECT_EQ(seen.at("down"), (std::vector{up[1], up[0]}));
+}
+
+/// The report of some files beside all kinds of tables.
+std::filesystem::path page(const BenchIntegrators& program, const Words& files) {
+  {
+    results::RunFile file(program.folder() / "tables.h5", results::provenance("bench_integrators study all"));
+    for (const Table& table : {orders(), trials(), atlas(), hostile()}) file.add(table);
+  }
+  EXPECT_EQ(program.output(Words{"report"} + files + Words{"tables.h5", "--out", "page"}), "page/index.html\n");
+  return program.folder() / "page/index.html";
+}
+
+TEST(Report, ShowsAllThereIs) {  // one test, since a browser takes seconds to start
+  const BenchIntegrators program;
+  program.output({"run", "--scene", "hung-corners", "--set", "grid.n=6", "--until", "0.1", "--method", "bdf2,sbdf2", "--step",
+                  "0.02,0.01", "--trajectory", "every=0.02", "--out", "runs.h5"});
+  const Browsed browsed = browse(page(program, {"runs.h5"}), look, 1280);
+  EXPECT_THAT(browsed.console, IsEmpty());
+  const json seen = json::parse(browsed.seen);
+  EXPECT_THAT(seen.at("fetched"), IsEmpty());
+  expect_marks_in_every_figure(seen);
+  expect_csv_of(orders(), seen);
+  expect_csv_of(atlas(), seen);
+  EXPECT_THAT(seen.at("csv").at("All that was tried on sheet"), HasSubstr("\"cvode-bdf, \"\"as it is\"\"\""));
+  expect_motions(seen, 4);
+  expect_pictures(seen);
+  expect_summary(seen);
+  expect_sorting(seen);
+  EXPECT_THAT(seen.at("titles"), Contains(hostile().description));
+}
+
+TEST(Report, FitsAPhone) {
+  const BenchIntegrators program;
+  const Browsed browsed = browse(page(program, {}), "see(document.documentElement.scrollWidth - innerWidth);", 500);
+  EXPECT_EQ(browsed.seen, "0");
+  EXPECT_THAT(browsed.console, IsEmpty());
+}
+
+TEST(Report, AScriptThatFailsWouldBeSeen) {
+  const BenchIntegrators program;
+  const std::filesystem::path broken = page(program, {});
+  std::ofstream(broken, std::ios::app) << "<script>no_such_function();</script>";
+  EXPECT_THAT(browse(broken, "see('');", 1280).console, Contains(HasSubstr("no_such_function")));
+}
+
+TEST(Report, OfNothingSaysWhatIsWrongAndLeavesNothing) {
+  const BenchIntegrators program;
+  const ProgramResult result = program.run({"report", "none.h5", "--out", "page"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("none.h5"));
+  EXPECT_THAT(program.files(), IsEmpty());
+}
+
+}  // namespace
+}  // namespace drape::verify::report_test
