@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <hdf5.h>
 
+#include <atomic>
 #include <concepts>
 #include <type_traits>
 #include <utility>
@@ -68,6 +69,14 @@ void read_attribute(const Handle& object, const std::string& name, hid_t type, v
   check(H5Aread(attribute.id(), type, value), name);
 }
 
+/// Access to files that are in memory and stay there.
+Handle in_memory() {
+  constexpr std::size_t growth = 1 << 20;  // [bytes]
+  Handle access(H5Pcreate(H5P_FILE_ACCESS), "file");
+  check(H5Pset_fapl_core(access.id(), growth, /*backing_store=*/false), "file");
+  return access;
+}
+
 std::string description_of(const std::string& name) { return name + ".description"; }
 
 /// For the library's iterations: appends a name to a list.
@@ -87,17 +96,23 @@ Handle::~Handle() {
 
 Handle create_in_memory(const std::filesystem::path& name) {
   be_silent();
-  constexpr std::size_t growth = 1 << 20;  // [bytes]
   const Handle creation(H5Pcreate(H5P_FILE_CREATE), "file");
   check(H5Pset_attr_creation_order(creation.id(), H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED), "file");
-  const Handle access(H5Pcreate(H5P_FILE_ACCESS), "file");
-  check(H5Pset_fapl_core(access.id(), growth, /*backing_store=*/false), "file");
-  return {H5Fcreate(name.c_str(), H5F_ACC_TRUNC, creation.id(), access.id()), "file"};
+  return {H5Fcreate(name.c_str(), H5F_ACC_TRUNC, creation.id(), in_memory().id()), "file"};
 }
 
 Handle open_for_reading(const std::filesystem::path& path) {
   be_silent();
   return {H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), "cannot be opened"};
+}
+
+Handle open_image(std::span<const std::byte> bytes) {
+  be_silent();
+  static std::atomic<int> count = 0;  // files of the same name would be the same file to the library
+  const Handle access = in_memory();
+  std::vector<std::byte> copy(bytes.begin(), bytes.end());  // the library asks for one that it may change, and copies it
+  check(H5Pset_file_image(access.id(), copy.data(), copy.size()), "file image");
+  return {H5Fopen(fmt::format("image {}", count++).c_str(), H5F_ACC_RDWR, access.id()), "cannot be opened"};
 }
 
 std::vector<std::byte> image(const Handle& file) {
@@ -133,6 +148,12 @@ void write_described_text(const Handle& object, const std::string& name, const s
                           const std::string& description) {
   write_text(object, name, value);
   write_text(object, description_of(name), description);
+}
+
+void rewrite_text(const Handle& object, const std::string& name, const std::string& value) {
+  const Handle attribute(H5Aopen(object.id(), name.c_str(), H5P_DEFAULT), name), type = text_type();
+  const char* text = value.c_str();
+  check(H5Awrite(attribute.id(), type.id(), &text), name);
 }
 
 std::string read_text(const Handle& object, const std::string& name) {

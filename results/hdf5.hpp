@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -36,6 +37,9 @@ class Handle {
 Handle create_in_memory(const std::filesystem::path& name);
 Handle open_for_reading(const std::filesystem::path& path);
 
+/// A file in memory, to be read and changed there, that is what image() gave.
+Handle open_image(std::span<const std::byte> bytes);
+
 /// What the file would be on disk.
 std::vector<std::byte> image(const Handle& file);
 
@@ -47,6 +51,9 @@ void remove(const Handle& parent, const std::string& name);
 void write_text(const Handle& object, const std::string& name, const std::string& value);
 void write_described_text(const Handle& object, const std::string& name, const std::string& value,
                           const std::string& description);
+
+/// Writes another value to a text that is there; it keeps its place among the attributes.
+void rewrite_text(const Handle& object, const std::string& name, const std::string& value);
 std::string read_text(const Handle& object, const std::string& name);
 std::string read_description(const Handle& object, const std::string& name);
 

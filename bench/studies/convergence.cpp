@@ -186,12 +186,12 @@ std::string conclusion(const Experiment& experiment, const std::optional<results
 
 /// The curve of one experiment, and its order.
 results::Table figure(const std::string& name, const std::string& title, const std::vector<Experiment>& experiments,
-                      const std::vector<int>& resolutions, Progress& progress) {
+                      const std::vector<int>& resolutions, Units& units) {
   results::TableBuilder table(name, title);
   for (const Experiment& experiment : experiments) {
     std::vector<double> spacings, rms;
     for (const int n : resolutions) {
-      progress.show(fmt::format("{}, {}, {} × {}", experiment.name, experiment.form, n, n));
+      units.show(fmt::format("{}, {}, {} × {}", experiment.name, experiment.form, n, n));
       table.row();
       table.text("experiment", "experiment", "which, with what differs from the scene of that name", experiment.name);
       table.text("form", "form", "of the forces: consistent, or as the algorithms of the thesis print them", experiment.form);
@@ -211,7 +211,7 @@ results::Table figure(const std::string& name, const std::string& title, const s
           table.text("remark", "remark", "why there is no number", error.what());
         }
       table.number("uncertainty", "", "m", "of the exact solution", experiment.uncertainty);
-      progress.advance();
+      units.advance();
     }
     const auto fit = results::fit_order(spacings, rms, experiment.uncertainty);
     results::add_fit(table, fit, conclusion(experiment, fit, rms.empty() ? NAN : rms.back()));
@@ -224,9 +224,9 @@ results::Table figure(const std::string& name, const std::string& title, const s
 std::vector<TableJob> convergence(bool quick) {
   const std::vector<int> resolutions = quick ? std::vector{20, 28, 36, 48} : std::vector{5, 10, 20, 40, 80, 160};
   const auto job = [&](const char* name, const char* title, int experiments, auto make) {
-    return TableJob{experiments * static_cast<int>(resolutions.size()), [=](Progress& progress) {
-                      progress.show(fmt::format("exact solution of {}", name));
-                      return figure(name, title, make(), resolutions, progress);
+    return TableJob{experiments * static_cast<int>(resolutions.size()), [=](Units& units) {
+                      units.show(fmt::format("exact solution of {}", name));
+                      return figure(name, title, make(), resolutions, units);
                     }};
   };
   return {job("figure-2.11a", "Figure 2.11 (a), tension: error of the equilibrium against the resolution", 2, tension),

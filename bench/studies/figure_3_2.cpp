@@ -110,15 +110,15 @@ constexpr const char* dampings[] = {"0.2", "0.02", "0.002"};
 constexpr const char* methods[] = {"implicit-euler", "bdf2", "verlet"};
 using Flutters = std::array<Flutter, 3>;
 
-Flutters compare(const char* damping, bool quick, Progress& progress) {
+Flutters compare(const char* damping, bool quick, Units& units) {
   std::vector<model::Override> overrides{{"material.damping", damping}};
   if (quick) overrides.insert(overrides.end(), {{"grid.n", "8"}, {"end.time", "1.5"}});
   const model::Scene scene = model::load_scene("wind", overrides);
   Flutters all;
   for (std::size_t k = 0; k < all.size(); ++k) {
-    progress.show(fmt::format("{}, d = {}, {}", scene.name, damping, methods[k]));
+    units.show(fmt::format("{}, d = {}, {}", scene.name, damping, methods[k]));
     all[k] = flutter(scene, methods[k]);
-    progress.advance();
+    units.advance();
   }
   return all;
 }
@@ -194,11 +194,11 @@ results::Table spectrum(const Runs& runs) {
 std::vector<TableJob> figure_3_2(bool quick) {
   const auto runs = std::make_shared<Runs>();  // of the first table, for the second
   return {{static_cast<int>(std::size(dampings) * std::size(methods)),
-           [=](Progress& progress) {
-             for (const char* damping : dampings) runs->push_back(compare(damping, quick, progress));
+           [=](Units& units) {
+             for (const char* damping : dampings) runs->push_back(compare(damping, quick, units));
              return swings(*runs);
            }},
-          {0, [=](Progress&) { return spectrum(*runs); }}};
+          {0, [=](Units&) { return spectrum(*runs); }}};
 }
 
 }  // namespace drape::bench

@@ -69,11 +69,11 @@ void add_verdict(results::TableBuilder& table, const std::string& verdict) {
 }
 
 /// The running step against its characteristic polynomial, mode by mode.
-results::Table amplification(bool quick, Progress& progress) {
+results::Table amplification(bool quick, Units& units) {
   results::TableBuilder table("amplification", "Amplification by the running code against the characteristic polynomials");
   constexpr double agreement = 1e-10, far_outside = 1e3;
   for (const Method& method : solver::thesis_methods()) {
-    progress.show(fmt::format("amplification of {}", method.name));
+    units.show(fmt::format("amplification of {}", method.name));
     for (const NamedMode& named : modes_of_the_sheet())
       for (const double nu : stiffnesses(quick)) {
         const Mode mode = at_step(named.mode, std::sqrt(nu / named.mode.kappa));
@@ -88,16 +88,16 @@ results::Table amplification(bool quick, Progress& progress) {
                      distance);
         add_verdict(table, distance <= agreement ? "as in theory" : "NOT as in theory");
       }
-    progress.advance();
+    units.advance();
   }
   return table.finish();
 }
 
 /// Where methods become unstable: bisection on the spectral radius of the running step.
-results::Table stability(bool, Progress& progress) {
+results::Table stability(bool, Units& units) {
   results::TableBuilder table("stability", "Largest stable W = h² ω² by bisection, for shares ω²/κ of the implicit part");
   for (const Method& method : solver::thesis_methods()) {
-    progress.show(fmt::format("stability limit of {}", method.name));
+    units.show(fmt::format("stability limit of {}", method.name));
     for (const double share : {2.5, 1.5, 1.0, 0.1, 1e-3}) {
       const double h = reference::stability_limit(method, {1 / share, 1, 0}), W = h * h;
       const double bound = reference::stability_bound(method.name, W / share, 0);
@@ -109,17 +109,17 @@ results::Table stability(bool, Progress& progress) {
       const bool equal = std::isinf(W) ? bound > 1e6 : std::abs(W - bound) <= 1e-6 * bound || (W == 0 && bound == 0);
       add_verdict(table, equal ? "as in theory" : "NOT as in theory");
     }
-    progress.advance();
+    units.advance();
   }
   return table.finish();
 }
 
 /// How transverse motion lags and is damped: figure 3.3 as numbers.
-results::Table artificial(bool quick, Progress& progress) {
+results::Table artificial(bool quick, Units& units) {
   results::TableBuilder table("artificial", "Artificial inertia and damping of a transverse mode, h ω = 0.01, undamped");
   constexpr double W = 1e-4, tolerance = 1e-3;
   for (const Method& method : solver::thesis_methods()) {
-    progress.show(fmt::format("artificial inertia of {}", method.name));
+    units.show(fmt::format("artificial inertia of {}", method.name));
     for (const double nu : stiffnesses(quick)) {
       if (nu < W) continue;
       const Mode mode{nu, W, 0};
@@ -141,7 +141,7 @@ results::Table artificial(bool quick, Progress& progress) {
       const double distance = std::hypot(measured.frequency - predicted.frequency, measured.decay - predicted.decay);
       add_verdict(table, distance <= tolerance * scale ? "as predicted" : "NOT as predicted");
     }
-    progress.advance();
+    units.advance();
   }
   return table.finish();
 }
@@ -152,7 +152,7 @@ std::vector<TableJob> modes(bool quick) {
   const int parts = static_cast<int>(solver::thesis_methods().size());
   std::vector<TableJob> jobs;
   for (auto* compute : {amplification, stability, artificial})
-    jobs.push_back({parts, [=](Progress& progress) { return compute(quick, progress); }});
+    jobs.push_back({parts, [=](Units& units) { return compute(quick, units); }});
   return jobs;
 }
 

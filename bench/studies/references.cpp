@@ -66,7 +66,7 @@ void add_row(results::TableBuilder& table, const model::Scene& scene, const std:
   table.text("verdict", "verdict", "whether it agrees with CVODE to 1e-8", apart <= closest ? "agrees" : "NOT in agreement");
 }
 
-results::Table compare(bool quick, Progress& progress) {
+results::Table compare(bool quick, Units& units) {
   results::TableBuilder table(
       "references", fmt::format("Three families of solvers on the same equation of motion, rtol = {:g}", reference_rtol));
   for (const std::string& name : scenes)
@@ -76,9 +76,9 @@ results::Table compare(bool quick, Progress& progress) {
       const model::Scene scene = model::load_scene(name, overrides);
       std::vector<Solution> solutions;
       for (const std::string& family : family_names) {
-        progress.show(fmt::format("{}, d = {}, {}", name, damping, family));
+        units.show(fmt::format("{}, d = {}, {}", name, damping, family));
         solutions.push_back(solve(family, scene));
-        progress.advance();
+        units.advance();
       }
       for (std::size_t k = 0; k < family_names.size(); ++k)
         add_row(table, scene, family_names[k], solutions[k], solutions.front());
@@ -90,7 +90,7 @@ results::Table compare(bool quick, Progress& progress) {
 
 std::vector<TableJob> references(bool quick) {
   const auto parts = static_cast<int>(scenes.size() * reference_dampings.size() * family_names.size());
-  return {{parts, [quick](Progress& progress) { return compare(quick, progress); }}};
+  return {{parts, [quick](Units& units) { return compare(quick, units); }}};
 }
 
 }  // namespace drape::bench

@@ -104,18 +104,18 @@ double add_steps(results::TableBuilder& table, int n, int threads, const std::st
 
 }  // namespace
 
-results::Table steps(bool quick, Progress& progress) {
+results::Table steps(bool quick, Units& units) {
   results::TableBuilder table("scaling",
                               fmt::format("A step of {:g} s of the sheet hung by its edge, by size; all solvers: auto", step));
   std::vector<std::vector<double>> times(methods.size());
   for (const int n : sizes(quick))
     for (std::size_t k = 0; k < methods.size(); ++k) {
-      progress.show(fmt::format("{} x {}, {}", n, n, methods[k]));
+      units.show(fmt::format("{} x {}, {}", n, n, methods[k]));
       with_threads(n, [&](int threads) {
         const double time = add_steps(table, n, threads, methods[k]);
         if (threads == 1) times[k].push_back(time);
       });
-      progress.advance();
+      units.advance();
     }
   for (std::size_t k = 0; k < methods.size(); ++k) {
     table.row();
@@ -129,9 +129,9 @@ results::Table steps(bool quick, Progress& progress) {
 
 std::vector<TableJob> scaling(bool quick) {
   const int count = static_cast<int>(scaling_study::sizes(quick).size());
-  return {{2 * count, [quick](Progress& progress) { return scaling_study::steps(quick, progress); }},
-          {count, [quick](Progress& progress) { return scaling_study::iterations(quick, progress); }},
-          {2, [quick](Progress& progress) { return scaling_study::bars(quick, progress); }}};
+  return {{2 * count, [quick](Units& units) { return scaling_study::steps(quick, units); }},
+          {count, [quick](Units& units) { return scaling_study::iterations(quick, units); }},
+          {2, [quick](Units& units) { return scaling_study::bars(quick, units); }}};
 }
 
 }  // namespace drape::bench

@@ -142,12 +142,12 @@ void add_iteration(results::TableBuilder& table, int n, int threads, const std::
 
 }  // namespace
 
-results::Table iterations(bool quick, Progress& progress) {
+results::Table iterations(bool quick, Units& units) {
   constexpr int count = 11;
   results::TableBuilder table("scaling-iterations",
                               "An iteration of conjugate gradients, by size, in turns with the triad a = b + 3 c");
   for (const int n : sizes(quick)) {
-    progress.show(fmt::format("{} x {}, conjugate gradients", n, n));
+    units.show(fmt::format("{} x {}, conjugate gradients", n, n));
     const model::Cloth cloth = hung_sheet(n);
     const SparseMatrix A = stage_matrix(cloth.ode);
     Triad triad(n * n);
@@ -157,7 +157,7 @@ results::Table iterations(bool quick, Progress& progress) {
         if (name != std::string_view("cholesky") || n <= 316)
           add_iteration(table, n, threads, name, turns(count, triad, Iterations(A, *cloth.ode.work, name)));
     });
-    progress.advance();
+    units.advance();
   }
   return table.finish();
 }

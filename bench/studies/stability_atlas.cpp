@@ -140,13 +140,13 @@ void add_cell(results::TableBuilder& table, const AtlasCell& cell, bool shown) {
 }
 
 /// All runs: for the file.
-results::Table explore(Atlas& atlas, Progress& progress) {
+results::Table explore(Atlas& atlas, Units& units) {
   results::TableBuilder table("stability-atlas", "Every run of the atlas");
   Predictions predict;
   for (const Sheet& sheet : atlas.sheets)
     for (const double nu : sheet.stiffnesses)
       for (const double ratio : sheet.ratios) {
-        progress.show(fmt::format("{0} x {0}, h = {1}, ν = {2:g}, h k/d = {3:g}", sheet.n, sheet.step, nu, ratio));
+        units.show(fmt::format("{0} x {0}, h = {1}, ν = {2:g}, h k/d = {3:g}", sheet.n, sheet.step, nu, ratio));
         const double l = 0.8 / (sheet.n - 1), h = sheet.step, k = nu * l * l / (h * h);
         const Specimen specimen = hung_by_corners(sheet.n, k, h * k / ratio);
         const Yardstick yardstick(specimen, horizon, sheet.effort);
@@ -160,7 +160,7 @@ results::Table explore(Atlas& atlas, Progress& progress) {
                       yardstick)});
           add_cell(table, atlas.cells.back(), false);
         }
-        progress.advance();
+        units.advance();
       }
   return table.finish();
 }
@@ -230,9 +230,9 @@ std::vector<TableJob> stability_atlas(bool quick) {
   const auto atlas = std::make_shared<Atlas>(Atlas{sheets(quick), rows(), {}});
   int cells = 0;
   for (const Sheet& sheet : atlas->sheets) cells += static_cast<int>(sheet.stiffnesses.size() * sheet.ratios.size());
-  std::vector<TableJob> jobs{{cells, [=](Progress& progress) { return explore(*atlas, progress); }}};
+  std::vector<TableJob> jobs{{cells, [=](Units& units) { return explore(*atlas, units); }}};
   for (auto* summarise : {count_verdicts, check_bar, list_surprises})
-    jobs.push_back({0, [=](Progress&) { return summarise(*atlas); }});
+    jobs.push_back({0, [=](Units&) { return summarise(*atlas); }});
   return jobs;
 }
 

@@ -70,7 +70,7 @@ void add_step(results::TableBuilder& table, const char* name, const char* title,
 TableJob largest_steps(bool quick) {
   const std::vector<Softness> sheets =
       quick ? std::vector<Softness>{{1e4, 50}} : std::vector<Softness>{{1e4, 50}, {1e4, 5}, {1e4, 0.5}, {1e6, 5}};
-  return {static_cast<int>(sheets.size()), [=](Progress& progress) {
+  return {static_cast<int>(sheets.size()), [=](Units& units) {
             results::TableBuilder table(
                 "stability-steps",
                 fmt::format("The largest usable step of every method by bisection, at least {:.2g} s, to {} s",
@@ -79,7 +79,7 @@ TableJob largest_steps(bool quick) {
               const Specimen specimen = hung_by_corners(quick ? 6 : particles, k, d);
               const Yardstick yardstick(specimen, horizon);
               for (const solver::Method& method : solver::methods()) {
-                progress.show(fmt::format("largest step of {}, k = {}, d = {}", method.name, k, d));
+                units.show(fmt::format("largest step of {}, k = {}, d = {}", method.name, k, d));
                 FewestSteps search(specimen, yardstick, method);
                 table.row();
                 table.number("tension", "k", "N/m", "tension modulus", k);
@@ -91,7 +91,7 @@ TableJob largest_steps(bool quick) {
                          search.fewest([](const Judged& run) { return uncut(run) && run.stable(); }));
                 table.number("uncertainty", "±", "1", "how far the two reference methods differ", yardstick.uncertainty());
               }
-              progress.advance();
+              units.advance();
             }
             return table.finish();
           }};

@@ -102,10 +102,10 @@ TableJob stress_cases(bool quick) {
   std::vector<const solver::Method*> chosen;
   for (const solver::Method& method : solver::methods())
     if (!quick || method.name == "bdf2" || method.name == "verlet") chosen.push_back(&method);
-  return {static_cast<int>(std::size(stresses)), [=](Progress& progress) {
+  return {static_cast<int>(std::size(stresses)), [=](Units& units) {
             results::TableBuilder table("stability-stress", "What no scene should do to a solver, h = 0.01 s");
             for (const Stress& stress : stresses) {
-              progress.show(stress.name);
+              units.show(stress.name);
               const auto run = [&](const Conditions& conditions) { return endure(stress, n, conditions); };
               const Yardstick yardstick(stress.make(n), horizon, run);
               for (const solver::Method* method : chosen) {
@@ -116,7 +116,7 @@ TableJob stress_cases(bool quick) {
                             judged(run({method, {}, stress_step, horizon, method->implicit() ? 4'000 : 100'000}), yardstick),
                             true);
               }
-              progress.advance();
+              units.advance();
             }
             return table.finish();
           }};

@@ -106,14 +106,14 @@ void find_explicit_truth(Problem& problem) {
 /// What the tables of all scenes are made from.
 using All = std::vector<SceneTrials>;
 
-results::Table try_scene(const Entry& entry, All& all, Progress& progress) {
-  progress.show("reference of " + entry.name);
+results::Table try_scene(const Entry& entry, All& all, Units& units) {
+  units.show("reference of " + entry.name);
   SceneTrials& scene = all.emplace_back(SceneTrials{problem(entry), {}, {}});
   Problem& problem = scene.problem;
   entry.scene.name == "peer-edge" ? find_explicit_truth(problem) : find_truth(problem);
   scene.families = families(problem.scene, entry.search);
-  scene.trials = try_all(problem, scene.families, entry.effort, progress);
-  progress.show("timing " + entry.name);
+  scene.trials = try_all(problem, scene.families, entry.effort, units);
+  units.show("timing " + entry.name);
   time_fronts(problem, scene.trials, entry.effort);
   return trials_table(scene);
 }
@@ -124,9 +124,9 @@ std::vector<TableJob> jobs(const std::vector<Entry>& list) {
   all->reserve(list.size());  // trials point into what is in it
   for (const Entry& entry : list)
     jobs.push_back({static_cast<int>(families(entry.scene, entry.search).size()),
-                    [=](Progress& progress) { return try_scene(entry, *all, progress); }});
+                    [=](Units& units) { return try_scene(entry, *all, units); }});
   for (auto* table : {winners_table, defaults_table, bars_table, peers_table})
-    jobs.push_back({0, [=](Progress&) { return table(*all); }});
+    jobs.push_back({0, [=](Units&) { return table(*all); }});
   return jobs;
 }
 

@@ -129,13 +129,12 @@ std::vector<double> asked(const Problem& problem) {
   return all;
 }
 
-std::vector<Trial> try_all(const Problem& problem, const std::vector<Family>& families, const Effort& effort,
-                           Progress& progress) {
+std::vector<Trial> try_all(const Problem& problem, const std::vector<Family>& families, const Effort& effort, Units& units) {
   std::vector<Trial> trials;
   for (const Family& family : families) {
-    progress.show(fmt::format("{}: {}", problem.name, family.name));
+    units.show(fmt::format("{}: {}", problem.name, family.name));
     add_family(problem, family, effort.cap, trials);
-    progress.advance();
+    units.advance();
   }
   return trials;
 }

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "bench/progress.hpp"
 #include "bench/studies/work_precision_candidates.hpp"
+#include "bench/units.hpp"
 #include "results/work_precision.hpp"
 
 namespace drape::bench {
@@ -44,8 +44,7 @@ struct Effort {
 };
 
 /// Runs every candidate once, from coarse to fine until it takes too long or is more exact than the truth.
-std::vector<Trial> try_all(const Problem& problem, const std::vector<Family>& families, const Effort& effort,
-                           Progress& progress);
+std::vector<Trial> try_all(const Problem& problem, const std::vector<Family>& families, const Effort& effort, Units& units);
 
 /// Whose results are compared: a name and the trials that belong to it.
 struct Contender {
