@@ -246,6 +246,71 @@ Number read_number(const Handle& group, const std::string& name) {
   return values.front();
 }
 
+namespace {
+
+std::string name_of(const Handle& type) {
+  const auto is = [&](hid_t other) { return H5Tequal(type.id(), other) > 0; };
+  if (is(text_type().id())) return "text";
+  if (is(H5T_IEEE_F64LE)) return "float64";
+  if (is(H5T_STD_I32LE)) return "int32";
+  if (is(H5T_STD_I64LE)) return "int64";
+  return "other";
+}
+
+std::vector<std::uint64_t> shape_of(const Handle& space, const std::string& name) {
+  std::vector<hsize_t> shape(static_cast<std::size_t>(check(H5Sget_simple_extent_ndims(space.id()), name)));
+  check(H5Sget_simple_extent_dims(space.id(), shape.data(), nullptr), name);
+  return {shape.begin(), shape.end()};
+}
+
+using Inventory = std::map<std::string, Item>;
+
+void list_attributes(const Handle& object, const std::string& path, Inventory& all) {
+  std::vector<std::string> names;
+  check(H5Aiterate2(object.id(), H5_INDEX_NAME, H5_ITER_INC, nullptr, append_name<H5A_info_t>, &names), "attributes");
+  for (const std::string& name : names) {
+    const Handle attribute(H5Aopen(object.id(), name.c_str(), H5P_DEFAULT), name);
+    const Handle type(H5Aget_type(attribute.id()), name), space(H5Aget_space(attribute.id()), name);
+    all[fmt::format("{}@{}", path, name)] = {name_of(type), shape_of(space, name), {}};
+  }
+}
+
+Item describe_dataset(const Handle& dataset, const std::string& path, const Inventory& all) {
+  const Handle type(H5Dget_type(dataset.id()), path), space(H5Dget_space(dataset.id()), path);
+  const auto unit = all.find(path + "@unit");
+  const bool readable = unit != all.end() && unit->second.type == "text" && unit->second.shape.empty();
+  return {name_of(type), shape_of(space, path), readable ? read_text(dataset, "unit") : ""};
+}
+
+void list_members(const Handle& group, const std::string& path, int depth, Inventory& all) {
+  constexpr int deepest = 8;  // groups of a damaged file may contain themselves
+  std::vector<std::string> names;
+  check(H5Literate(group.id(), H5_INDEX_NAME, H5_ITER_INC, nullptr, append_name<H5L_info_t>, &names), "members");
+  for (const std::string& name : names) {
+    const std::string where = fmt::format("{}/{}", path, name);
+    all[where].type = "other";
+    H5L_info_t link;
+    check(H5Lget_info(group.id(), name.c_str(), &link, H5P_DEFAULT), name);
+    if (link.type != H5L_TYPE_HARD) continue;
+    const Handle object(H5Oopen(group.id(), name.c_str(), H5P_DEFAULT), where);
+    list_attributes(object, where, all);
+    if (H5Iget_type(object.id()) == H5I_DATASET) all[where] = describe_dataset(object, where, all);
+    if (H5Iget_type(object.id()) == H5I_GROUP) {
+      all[where].type = "group";
+      if (depth < deepest) list_members(object, where, depth + 1, all);
+    }
+  }
+}
+
+}  // namespace
+
+std::map<std::string, Item> inventory(const Handle& file) {
+  Inventory all;
+  list_attributes(file, "", all);
+  list_members(file, "", 0, all);
+  return all;
+}
+
 std::vector<std::string> groups(const Handle& group) {
   std::vector<std::string> names;
   check(H5Literate(group.id(), H5_INDEX_NAME, H5_ITER_INC, nullptr, append_name<H5L_info_t>, &names), "list of groups");

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -89,6 +90,17 @@ struct DatasetInfo {
   std::string unit;
   std::string description;
 };
+
+/// An object as the file has it. `type` is one of those that are written here, "text", "float64", "int32" or "int64"; "group";
+/// or "other". The shape {} is a single value; `unit` is the attribute of a dataset, if there is one.
+struct Item {
+  std::string type;
+  std::vector<std::uint64_t> shape;
+  std::string unit;
+};
+
+/// All that is in a file, by path; the attribute `a` of an object is `path@a`. Links that lead elsewhere are "other".
+std::map<std::string, Item> inventory(const Handle& file);
 
 /// Names of all groups in a group, sorted.
 std::vector<std::string> groups(const Handle& group);
