@@ -152,11 +152,13 @@ void hold_still(std::vector<solver::Pin>& pins, int particles, int coordinate) {
 
 /// Distances [m] of the equilibrium from the exact one.
 struct Errors {
-  double rms, maximum;  ///< the mean weighted with dual cells: the L2 norm
-  double residual;      ///< [N]
+  double rms = 0, maximum = 0;  ///< the mean weighted with dual cells: the L2 norm
+  double residual = 0;          ///< [N]
+  std::string remark = {};      ///< why there is no number
 };
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Errors, rms, maximum, residual, remark)
 
-Errors errors(const Experiment& experiment, int n) {
+Errors find_errors(const Experiment& experiment, int n) {
   const model::Scene scene = scene_of(experiment, n);
   model::Cloth cloth = model::compile(scene);
   hold_still(cloth.ode.pins, cloth.ode.particles(), experiment.still);
@@ -174,6 +176,14 @@ Errors errors(const Experiment& experiment, int n) {
     area += weight;
   }
   return {std::sqrt(sum / area), std::sqrt(squares.maxCoeff()), found.residual};
+}
+
+Errors errors(const Experiment& experiment, int n) {
+  try {
+    return find_errors(experiment, n);
+  } catch (const reference::ReferenceError& error) {
+    return {.remark = error.what()};
+  }
 }
 
 /// What all rows of a table have in common, in words of a verdict.
@@ -196,8 +206,10 @@ results::Table figure(const std::string& name, const std::string& title, const s
       table.text("experiment", "experiment", "which, with what differs from the scene of that name", experiment.name);
       table.text("form", "form", "of the forces: consistent, or as the algorithms of the thesis print them", experiment.form);
       table.count("n", "n", "particles in one direction", n);
-      if (n <= experiment.finest) try {
-          const Errors e = errors(experiment, n);
+      if (n <= experiment.finest) {
+        const Errors e =
+            units(fmt::format("{} {} {}", experiment.name, experiment.form, n), [&] { return errors(experiment, n); });
+        if (e.remark.empty()) {
           table.number("rms", "rms error", "m", "root mean square distance of the nodes from the exact equilibrium (L2)",
                        e.rms);
           table.number("maximum", "maximum", "m", "largest distance", e.maximum);
@@ -207,9 +219,10 @@ results::Table figure(const std::string& name, const std::string& title, const s
           table.number("residual", "", "N", "largest force that was left", e.residual);
           rms.push_back(e.rms);
           spacings.push_back(1.0 / (n - 1));
-        } catch (const reference::ReferenceError& error) {
-          table.text("remark", "remark", "why there is no number", error.what());
+        } else {
+          table.text("remark", "remark", "why there is no number", e.remark);
         }
+      }
       table.number("uncertainty", "", "m", "of the exact solution", experiment.uncertainty);
       units.advance();
     }

@@ -71,6 +71,7 @@ struct Flutter {
   std::vector<double> swing;         ///< mean of the free edge's distance from the plane of the start, step by step [m]
   double wrinkles = 0;               ///< root mean square distance of the free edge from this mean [m]
   Eigen::VectorXd bending, kinetic;  ///< wave by wave [J]
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE(Flutter, run, swing, wrinkles, bending, kinetic)
 
   double peak_to_peak() const {
     const auto [low, high] = std::ranges::minmax(swing);
@@ -117,7 +118,7 @@ Flutters compare(const char* damping, bool quick, Units& units) {
   Flutters all;
   for (std::size_t k = 0; k < all.size(); ++k) {
     units.show(fmt::format("{}, d = {}, {}", scene.name, damping, methods[k]));
-    all[k] = flutter(scene, methods[k]);
+    all[k] = units(fmt::format("{} {}", damping, methods[k]), [&] { return flutter(scene, methods[k]); });
     units.advance();
   }
   return all;

@@ -168,7 +168,8 @@ std::vector<TableJob> figure_3_3(bool quick) {
              for (const double nu : stiffnesses)
                for (const double ratio : ratios) {
                  units.show(fmt::format("ν = {}, h k/d = {}", nu, ratio));
-                 add_row(table, nu, ratio);
+                 units.rows(table, fmt::format("{} {}", nu, ratio),
+                            [&](results::TableBuilder& row) { add_row(row, nu, ratio); });
                  units.advance();
                }
              return table.finish();

@@ -92,6 +92,19 @@ void add_bar(results::TableBuilder& table, const RunRecord& run, const char* wha
   table.text("verdict", "verdict", "whether it keeps below the bar", verdict);
 }
 
+/// All bars of a method, from its cells with and without box.
+void add_bars(results::TableBuilder& table, const Group& group, int repetitions) {
+  const RunRecord with = record(group[0]), without = record(group[1]);
+  const auto times = time_group(group, repetitions, [] {});
+  const double time = results::quantile(times[0], 0.5) / results::quantile(times[1], 0.5);
+  const Steps all = with.steps, rest = all.last(std::min(all.size(), at_rest));
+  add_bar(table, with, "CG iterations a step, at rest over before the first contact",
+          iterations(rest) / iterations(before_contact(with)), most_iterations);
+  add_bar(table, with, "time, with over without box", time, most_time);
+  add_bar(table, with, "time a CG iteration, with over without box", time * iterations(without.steps) / iterations(all),
+          most_time);
+}
+
 results::Table bars(bool quick, Units& units) {
   results::TableBuilder table("figure-4.3-bars", "Figure 4.3: what contact costs; the sheet swings with and without the box");
   const model::Scene scene = swing(quick);
@@ -101,15 +114,7 @@ results::Table bars(bool quick, Units& units) {
     if (!method.implicit()) continue;
     units.show(fmt::format("cost of contact, {}", method.name));
     const Group group{cell(scene, method.name), cell(without_box, method.name)};
-    const RunRecord with = record(group[0]), without = record(group[1]);
-    const auto times = time_group(group, quick ? 1 : 5, [] {});
-    const double time = results::quantile(times[0], 0.5) / results::quantile(times[1], 0.5);
-    const Steps all = with.steps, rest = all.last(std::min(all.size(), at_rest));
-    add_bar(table, with, "CG iterations a step, at rest over before the first contact",
-            iterations(rest) / iterations(before_contact(with)), most_iterations);
-    add_bar(table, with, "time, with over without box", time, most_time);
-    add_bar(table, with, "time a CG iteration, with over without box", time * iterations(without.steps) / iterations(all),
-            most_time);
+    units.rows(table, std::string(method.name), [&](results::TableBuilder& rows) { add_bars(rows, group, quick ? 1 : 5); });
     units.advance();
   }
   return table.finish();
@@ -124,7 +129,7 @@ std::vector<TableJob> figure_4_3(bool quick) {
            [=](Units& units) {
              for (const char* method : {"bdf2", "sbdf2"}) {
                units.show(fmt::format("{} against the box", method));
-               runs->push_back(record(cell(swing(quick), method)));
+               runs->push_back(units(method, [&] { return record(cell(swing(quick), method)); }));
                units.advance();
              }
              return over_time("figure-4.3", "Figure 4.3: a sheet swings against a box; means over five steps", *runs, window);

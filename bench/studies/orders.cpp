@@ -102,7 +102,9 @@ results::Table orders_on(const Setting& setting, bool quick, Units& units) {
                                                                   scene.end, reference.name, reference.witness));
   for (const Method& method : solver::methods()) {
     units.show(fmt::format("{} on {}", method.name, scene.name));
-    Refinement(scene, cloth, reference, method).add_rows(table, quick ? 0.5 : 8);
+    units.rows(table, std::string(method.name), [&](results::TableBuilder& rows) {
+      Refinement(scene, cloth, reference, method).add_rows(rows, quick ? 0.5 : 8);
+    });
     units.advance();
   }
   return table.finish();

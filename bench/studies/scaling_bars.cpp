@@ -45,11 +45,11 @@ results::Table bars(bool quick, Units& units) {
   results::TableBuilder table("scaling-bars", "What was asked for, one thread");
   units.show("bars: a step");
   add_bar(table, fmt::format("BDF(2) step: time per particle, {0} x {0} over {1} x {1}", large, small), {3, false},
-          growth(large, small));
+          units("step", [&] { return growth(large, small); }));
   units.advance();
   units.show("bars: conjugate gradients");
   add_bar(table, fmt::format("fused CG and stencil: bandwidth over the triad's, {0} x {0}", large), {0.6, true},
-          bandwidth_of_bare_iterations(large, 31));
+          units("iteration", [&] { return bandwidth_of_bare_iterations(large, 31); }));
   units.advance();
   return table.finish();
 }

@@ -70,7 +70,7 @@ results::Table compute(bool quick, Units& units) {
       for (const int j : {0, 1}) {
         units.show(fmt::format("tablecloth, k = {}, d = {}", block.k[i], block.d[j]));
         const model::Scene cloth = scene(block.k[i], block.d[j], quick);
-        runs[i][j] = run_bdf2(cloth);
+        runs[i][j] = units(fmt::format("{} {} {}", block.name, i, j), [&] { return run_bdf2(cloth); });
         table.row();
         table.text("rows", "rows", "the thesis' parameters, or such that the cloth drapes within the time", block.name);
         table.number("tension", "k", "N/m", "tension modulus", block.k[i]);

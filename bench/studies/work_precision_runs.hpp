@@ -7,6 +7,12 @@
 #include "bench/units.hpp"
 #include "results/work_precision.hpp"
 
+namespace drape::results {
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Measured, error, times)
+
+}  // namespace drape::results
+
 namespace drape::bench {
 
 /// A scene of the study with the positions at the times at which errors are measured.
@@ -57,7 +63,7 @@ struct Contender {
 std::vector<Contender> contenders(const std::vector<Trial>& trials);
 
 /// Times what is near the front of any contender, all interleaved.
-void time_fronts(const Problem& problem, std::vector<Trial>& trials, const Effort& effort);
+void time_fronts(const Problem& problem, std::vector<Trial>& trials, const Effort& effort, Units& units);
 
 /// The trials of a contender as they were measured repeatedly; the others count as failed.
 std::vector<results::Measured> timed(const Contender& contender, const std::vector<Trial>& trials);
