@@ -30,7 +30,8 @@ std::string identity(const Cell& cell, const SweepOptions& options) {
 }
 
 std::string identity(const std::vector<Group>& groups, const SweepOptions& options) {
-  std::string all = fmt::format("{} times\n", options.repetitions);
+  std::string all =
+      fmt::format("{} times, {} s, {} MB\n", options.repetitions, options.limits.seconds, options.limits.megabytes);
   for (const Group& group : groups) {
     for (const Cell& cell : group) all += identity(cell, options) + ' ';
     all += '\n';

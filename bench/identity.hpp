@@ -14,7 +14,7 @@ std::string hash_of(std::string_view text);
 /// files where the same was asked for: scene, method, solvers with their options, step, and whether errors are measured.
 std::string identity(const Cell& cell, const SweepOptions& options);
 
-/// Identity of a list of groups with their repetitions.
+/// Identity of a list of groups with their repetitions and limits.
 std::string identity(const std::vector<Group>& groups, const SweepOptions& options);
 
 }  // namespace drape::bench

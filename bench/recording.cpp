@@ -7,6 +7,7 @@ void record_in_file(const SweepOptions& options, const std::string& sweep, int p
   results::Journal journal(options.out, facts, options.start);
   results::RunFile file(options.out, facts, options.start);
   if (!file.finished()) {
+    if (file.begun() || !journal.empty()) file.note_resumption();
     Units units(journal, parts);
     try {
       work(file, units);

@@ -51,6 +51,19 @@ void measure_error(const Cell& cell, results::RunRecord& run, const Truth& truth
     compare(run, *truth.reference, cell.scene, truth.cloth);
 }
 
+/// Times those runs of a group that have kept their limits.
+void time_all(const Group& group, int repetitions, std::vector<results::RunRecord>& runs, Units& units) {
+  Group timed;
+  std::vector<results::RunRecord*> places;
+  for (std::size_t k = 0; k < group.size(); ++k) {
+    if (runs[k].outcome == out_of_time || runs[k].outcome == out_of_memory) continue;
+    timed.push_back(group[k]);
+    places.push_back(&runs[k]);
+  }
+  auto times = time_group(timed, repetitions, [&] { units.advance(); });
+  for (std::size_t k = 0; k < timed.size(); ++k) places[k]->times_ms = std::move(times[k]);
+}
+
 /// Runs a group and records it as a whole. Each cell is a unit of work, their repetitions are not: they must be interleaved.
 void run_group(const Group& group, const SweepOptions& options, References& references, results::RunFile& file, Units& units) {
   std::optional<Truth> truth;
@@ -68,7 +81,8 @@ void run_group(const Group& group, const SweepOptions& options, References& refe
     const std::string id = identity(cell, options);
     runs.push_back(units(id, [&] {
       units.show(title(cell));
-      results::RunRecord run = measured(cell, record(cell, options.look ? options.look(cell) : solver::Observer()));
+      results::RunRecord run =
+          measured(cell, record(cell, options.look ? options.look(cell) : solver::Observer(), options.limits));
       run.cell = id;
       return run;
     }));
@@ -76,8 +90,7 @@ void run_group(const Group& group, const SweepOptions& options, References& refe
   }
   if (options.reference) units.advance();
   units.show("timing " + group.front().scene.name);
-  const auto times = time_group(group, options.repetitions, [&] { units.advance(); });
-  for (std::size_t k = 0; k < runs.size(); ++k) runs[k].times_ms = times[k];
+  time_all(group, options.repetitions, runs, units);
   file.add(runs);
 }
 

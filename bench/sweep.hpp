@@ -15,6 +15,7 @@ struct SweepOptions {
   int repetitions = 3;      ///< timed runs of every cell, besides the one that is recorded
   bool reference = true;    ///< whether errors are measured
   double agreement = 1e-7;  ///< largest disagreement of the families behind a reference, over the size of the scene
+  Limits limits;            ///< of every cell; repetitions have none, and cells that exceeded them are not repeated
   std::filesystem::path out;
   results::Start start = results::Start::fresh;  ///< whether a file that is there is continued
   std::string command_line;

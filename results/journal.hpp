@@ -28,6 +28,8 @@ class Journal {
   Journal(const Journal&) = delete;
   Journal& operator=(const Journal&) = delete;
 
+  bool empty() const { return units_.empty(); }
+
   /// What was recorded of a unit, null if nothing was.
   const Bytes* find(const std::string& id) const;
 

@@ -163,7 +163,7 @@ Handle begin(const fs::path& path, const Provenance& provenance) {
   return file;
 }
 
-/// What a process before this one has left; noted in it.
+/// What a process before this one has left.
 Handle go_on(const fs::path& path, const Provenance& provenance) {
   std::ifstream stream(path, std::ios::binary);
   if (!stream) throw hdf5::Error("cannot be read");
@@ -172,9 +172,6 @@ Handle go_on(const fs::path& path, const Provenance& provenance) {
   require_version(file);
   if (const std::string why = why_not_resumed(facts_of(file), provenance); !why.empty())
     throw hdf5::Error(fmt::format("cannot be continued: {}; choose another --out", why));
-  const std::string before = hdf5::read_text(file, "resumed");
-  if (hdf5::read_text(file, "finished").empty())
-    hdf5::rewrite_text(file, "resumed", before + (before.empty() ? "" : ", ") + time_of_day());
   return file;
 }
 
@@ -241,6 +238,15 @@ void RunFile::add(const Table& table) {
         if (hdf5::has(tables, table.name)) hdf5::remove(tables, table.name);
       });
 }
+
+void RunFile::note_resumption() {
+  with_file_named(path_, [&] {
+    const std::string before = hdf5::read_text(image_->file, "resumed");
+    hdf5::rewrite_text(image_->file, "resumed", before + (before.empty() ? "" : ", ") + time_of_day());
+  });
+}
+
+bool RunFile::begun() const { return image_->published; }
 
 void RunFile::finish() {
   const Handle& file = image_->file;

@@ -31,9 +31,13 @@ class RunFile {
   /// On return the table is on disk, as `/tables/<name>`. Throws like the other.
   void add(const Table& table);
 
+  /// Adds this moment to the times at which the file was continued; on disk with what is added next.
+  void note_resumption();
+
   /// On return the file says, on disk, that nothing is missing. Throws like the others.
   void finish();
 
+  bool begun() const;  ///< on disk
   std::size_t run_count() const;
   bool has_table(const std::string& name) const;
   bool finished() const;

@@ -62,6 +62,15 @@ void add_output_options(CLI::App& command, Output& output) {
       ->type_name("table|csv|json")
       ->check(CLI::IsMember({"table", "csv", "json"}).description(""))
       ->capture_default_str();
+  command
+      .add_option("--time-limit", output.sweep.limits.seconds, "wall time of a run, which ends as out of time beyond it [none]")
+      ->type_name("SECONDS")
+      ->check(positive());
+  command
+      .add_option("--memory-limit", output.sweep.limits.megabytes,
+                  "memory of a run, which ends as out of memory beyond it [none]")
+      ->type_name("MB")
+      ->check(positive());
   command.add_flag_callback(
       "--no-reference", [&] { output.sweep.reference = false; }, "measure no errors");
   command

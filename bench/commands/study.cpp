@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "bench/argument_checks.hpp"
 #include "bench/choices.hpp"
 #include "bench/commands/commands.hpp"
@@ -34,6 +36,14 @@ void check_scene(const Study& chosen, const SceneChoice& choice) {
   if (choice.scene.empty() && !choice.sets.empty()) throw std::invalid_argument("--set: expected --scene beside it");
 }
 
+/// Limits are for runs.
+void check_limits(const Study& chosen, const Limits& limits) {
+  if (std::isfinite(limits.seconds) || std::isfinite(limits.megabytes))
+    throw std::invalid_argument(fmt::format("--time-limit, --memory-limit: expected run, or one of the studies {}, not {}",
+                                            names_of(studies(), [](const Study& s) { return s.groups != nullptr; }),
+                                            chosen.name));
+}
+
 /// Of the tables that a study makes.
 std::string identity(const StudyArguments& a) {
   const std::string scene = a.choice.scene.empty() ? "" : model::to_toml(a.choice.load());
@@ -44,6 +54,7 @@ void run_study(const Study& chosen, const StudyArguments& a) {
   check_scene(chosen, a.choice);
   const std::string name(chosen.name);
   if (chosen.groups) return sweep_and_print(chosen.groups(a.quick), a.output, name);
+  check_limits(chosen, a.output.sweep.limits);
   const std::vector<TableJob> jobs =
       a.choice.scene.empty() ? chosen.tables(a.quick) : chosen.of_scene(a.choice.load(), a.quick);
   SweepOptions options = a.output.sweep;

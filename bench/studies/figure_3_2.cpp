@@ -78,7 +78,8 @@ struct Flutter {
     return high - low;
   }
   double rms() const {
-    const Eigen::Map<const Eigen::ArrayXd> s(swing.data(), static_cast<Eigen::Index>(swing.size()));
+    // a copy, since sums over foreign memory are rounded as it happens to be aligned
+    const Eigen::ArrayXd s = Eigen::Map<const Eigen::ArrayXd>(swing.data(), static_cast<Eigen::Index>(swing.size()));
     return std::sqrt((s - s.mean()).square().mean());
   }
 };
