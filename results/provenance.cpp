@@ -39,7 +39,7 @@ std::string program_hash() {
   return fmt::format("{:016x}", XXH3_64bits(bytes.data(), bytes.size()));
 }
 
-constexpr std::array<std::string_view, 4> of_a_start{"started", "command_line", "cores", "host_os"};
+constexpr std::array<std::string_view, 6> of_a_start{"started", "command_line", "cores", "host_os", "resumed", "finished"};
 
 }  // namespace
 
