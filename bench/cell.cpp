@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <new>
+#include <optional>
 #include <span>
 #include <sstream>
 #include <stdexcept>
@@ -66,21 +69,40 @@ bool knows(std::span<const Row> table, std::string_view name) {
   return std::ranges::find(table, name, &Row::name) != table.end();
 }
 
-results::RunRecord describe(const Cell& cell, const model::Cloth& cloth) {
+/// What is known of a run before it begins, but for its plan.
+results::RunRecord describe(const Cell& cell) {
   results::RunRecord run;
   run.scene = cell.scene.name;
   run.scene_toml = model::to_toml(cell.scene);
   run.overrides = cell.overrides;
-  run.plan = model::to_string(cloth.plan);
   run.method = cell.method_name();
   run.stage_solver = stage_solver(cell);
   run.linear_solver = cell.method->implicit() ? cell.options.linear_solver->name : "none";
   run.step = cell.step;
   run.until = cell.scene.end;
-  run.parameters = parameters(cell, cloth.ode.particles());
+  run.parameters = parameters(cell, cell.scene.sheet.grid.particles());
   run.numerical_stiffness = model::numerical_stiffness(cell.scene, cell.step);
   run.stiffness_to_damping = model::stiffness_to_damping(cell.scene, cell.step);
   return run;
+}
+
+/// Takes a run as far as its limits allow.
+template <class Go>
+void go_within(const Limits& limits, results::RunRecord& run, const Go& go) {
+  const auto stop = [&run](const char* outcome, std::string message) {
+    run.outcome = outcome;
+    run.message = std::move(message);
+    run.last_good_time = run.steps.empty() ? 0 : run.steps.back().t;
+  };
+  try {
+    const MemoryLimit memory(limits.megabytes);
+    go();
+  } catch (const OutOfTime& error) {
+    stop(out_of_time, error.what());
+  } catch (const std::bad_alloc&) {
+    if (!std::isfinite(limits.megabytes)) throw;  // it is the machine's
+    stop(out_of_memory, fmt::format("more than {:g} MB", limits.megabytes));
+  }
 }
 
 }  // namespace
@@ -108,32 +130,41 @@ void choose_method(Cell& cell, const std::string& name) {
     throw std::invalid_argument(fmt::format("method '{}': expected {}", name, expected(method)));
 }
 
-results::RunRecord record(const Cell& cell, const solver::Observer& look, std::optional<double> frames_every) {
-  const model::Cloth cloth = model::compile(cell.scene);
-  const solver::SplitOde& ode = cloth.ode;
-  results::RunRecord run = describe(cell, cloth);
-  solver::Integrator integrator(ode, *cell.method, cell.options, cloth.start);
-  if (look) look({0, 0, 0, 0, integrator.state(), {}});
-  ContactWatch watch(cell.scene, cloth);
-  watch.see(0, cloth.start, solver::kinetic_energy(ode, cloth.start.v), ode.potential_energy(0, cloth.start.x));
+results::RunRecord record(const Cell& cell, const solver::Observer& look, std::optional<double> frames_every,
+                          const Limits& limits) {
+  results::RunRecord run = describe(cell);
+  std::optional<model::Cloth> cloth;
+  std::optional<ContactWatch> contact;
   std::optional<TrajectoryWatch> frames;
-  if (frames_every) frames.emplace(cell.scene, cloth, *frames_every);
-  const model::EnergyGuard guard(cell.scene, cloth);
-  const solver::RunResult result =
-      integrate(integrator, ode, guard, cell.scene.end, cell.step, [&](const solver::StepReport& step) {
-        const double kinetic = solver::kinetic_energy(ode, step.y.v), potential = ode.potential_energy(step.t, step.y.x);
-        run.steps.push_back({step.t, step.h, step.updates, step.cg_iterations, kinetic, potential, step.contacts.constrained});
-        watch.see(step.t, step.y, kinetic, potential);
-        if (frames) frames->see(step.t, step.y);
-        if (look) look(step);
-      });
-  run.contact = watch.result();
+  std::optional<solver::Integrator> integrator;
+  go_within(limits, run, [&] {
+    cloth = model::compile(cell.scene);
+    watch(cloth->ode, limits.seconds);
+    const solver::SplitOde& ode = cloth->ode;
+    run.plan = model::to_string(cloth->plan);
+    integrator.emplace(ode, *cell.method, cell.options, cloth->start);
+    if (look) look({0, 0, 0, 0, integrator->state(), {}});
+    contact.emplace(cell.scene, *cloth);
+    contact->see(0, cloth->start, solver::kinetic_energy(ode, cloth->start.v), ode.potential_energy(0, cloth->start.x));
+    if (frames_every) frames.emplace(cell.scene, *cloth, *frames_every);
+    const model::EnergyGuard guard(cell.scene, *cloth);
+    const auto see = [&](const solver::StepReport& step) {
+      const double kinetic = solver::kinetic_energy(ode, step.y.v), potential = ode.potential_energy(step.t, step.y.x);
+      run.steps.push_back({step.t, step.h, step.updates, step.cg_iterations, kinetic, potential, step.contacts.constrained});
+      contact->see(step.t, step.y, kinetic, potential);
+      if (frames) frames->see(step.t, step.y);
+      if (look) look(step);
+    };
+    const solver::RunResult result = integrate(*integrator, ode, guard, cell.scene.end, cell.step, see);
+    run.outcome = to_string(result.outcome);
+    run.message = result.message;
+    run.last_good_time = result.last_good_time;
+  });
+  if (contact) run.contact = contact->result();
   if (frames) run.trajectory = frames->result();
-  run.outcome = to_string(result.outcome);
-  run.message = result.message;
-  run.last_good_time = result.last_good_time;
-  run.final_state = integrator.state();
-  for (const solver::Work::Kind& kind : ode.work->kinds()) run.work.push_back({kind.name, kind.description, kind.count});
+  if (integrator) run.final_state = integrator->state();
+  if (cloth)
+    for (const auto& [name, description, count] : cloth->ode.work->kinds()) run.work.push_back({name, description, count});
   return run;
 }
 

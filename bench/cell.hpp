@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/limits.hpp"
 #include "model/cloth.hpp"
 #include "results/run_record.hpp"
 #include "solver/integrator.hpp"
@@ -29,8 +30,14 @@ void choose_method(Cell& cell, const std::string& name);
 /// Cells that are compared with each other: repetitions are interleaved within a group and it is recorded as a whole.
 using Group = std::vector<Cell>;
 
+/// Outcomes of runs that exceed their limits.
+inline constexpr const char* out_of_time = "out of time";
+inline constexpr const char* out_of_memory = "out of memory";
+
 /// Runs a cell once and records everything but times and errors. `look` sees the start and every accepted step. `frames_every`:
-/// the motion is kept too, in frames so many simulated seconds apart.
-results::RunRecord record(const Cell& cell, const solver::Observer& look = {}, std::optional<double> frames_every = {});
+/// the motion is kept too, in frames so many simulated seconds apart. A run that exceeds the limits ends there, out of time or
+/// out of memory, with what it has reached. Throws Interrupted.
+results::RunRecord record(const Cell& cell, const solver::Observer& look = {}, std::optional<double> frames_every = {},
+                          const Limits& limits = {});
 
 }  // namespace drape::bench

@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <system_error>
 
 #include "bench/argument_checks.hpp"
 #include "bench/commands/commands.hpp"
+#include "bench/interruption.hpp"
 #include "model/scene_file.hpp"
 #include "results/atomic_file.hpp"
 
@@ -25,6 +27,14 @@ void flush_output() {
 int complain(const std::string& message, int exit_code = bad_input) {
   fmt::print(stderr, "bench_integrators: {}\n", message);
   return exit_code;
+}
+
+std::string farewell(const Interrupted& interrupted) {
+  const std::string how =
+      interrupted.out.empty()
+          ? "nothing is recorded"
+          : fmt::format("what is done is kept; continue by the same command with --resume --out {}", interrupted.out.string());
+  return fmt::format("interrupted by {}; {}", interrupted.signal == SIGINT ? "SIGINT" : "SIGTERM", how);
 }
 
 }  // namespace
@@ -50,6 +60,7 @@ int run_command_line(int argc, const char* const* argv) {
       "  bench_integrators study hung-sheets --out hung-sheets.h5 --format csv\n"
       "  bench_integrators compare before.h5 after.h5\n"
       "  bench_integrators run --help\n");  // after the subcommands, which would inherit it
+  note_interruptions();
   try {
     app.parse(argc, argv);
     if (app.get_subcommands().empty()) do_main_job(command_line);
@@ -64,6 +75,8 @@ int run_command_line(int argc, const char* const* argv) {
     return complain(error.what());
   } catch (const results::FileError& error) {
     return complain(error.what());
+  } catch (const Interrupted& interrupted) {
+    return complain(farewell(interrupted), 128 + interrupted.signal);  // as a shell has it
   } catch (const std::exception& error) {  // no fault of the input: no memory, no place for the output
     return complain(error.what(), failure);
   }

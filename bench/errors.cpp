@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "bench/interruption.hpp"
+#include "bench/limits.hpp"
 #include "model/scene_file.hpp"
 
 namespace drape::bench {
@@ -31,6 +33,19 @@ double centre_distance(const model::Cloth& cloth, const State& a, const State& b
   return (cloth.ode.mass.asDiagonal() * (a.x - b.x)).colwise().sum().norm() / cloth.ode.mass.sum();
 }
 
+reference::Reference compute_reference(const model::Cloth& cloth, const std::vector<double>& times,
+                                       const reference::SolveOptions& options) {
+  solver::SplitOde ode = cloth.ode;
+  watch(ode, Limits().seconds);
+  try {
+    return ode.contacts ? reference::contact_reference(ode, cloth.start, 0, times, options)
+                        : reference::reference(ode, cloth.start, 0, times, options);
+  } catch (const reference::ReferenceError&) {
+    check_interruption();  // it may have been the reason
+    throw;
+  }
+}
+
 }  // namespace
 
 References::~References() {
@@ -43,10 +58,7 @@ reference::Reference References::operator()(const model::Scene& scene, const mod
   for (int k = 1; k <= outputs; ++k) times.push_back(scene.end * k / outputs);
   const reference::SolveOptions options{.rtol = rtol_, .size = model::size(scene)};
   const auto key = reference::cache_key(model::to_toml(scene), 0, times, options);
-  reference::Reference reference = reference::cached(cache_, key, [&] {
-    return cloth.ode.contacts ? reference::contact_reference(cloth.ode, cloth.start, 0, times, options)
-                              : reference::reference(cloth.ode, cloth.start, 0, times, options);
-  });
+  reference::Reference reference = reference::cached(cache_, key, [&] { return compute_reference(cloth, times, options); });
   if (cloth.ode.contacts) return reference;  // of first order: its uncertainty decides what is shown
   try {
     reference::certify(reference, agreement_, results::comparable_growth, options.size);

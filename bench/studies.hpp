@@ -8,15 +8,16 @@
 #include <vector>
 
 #include "bench/cell.hpp"
-#include "bench/progress.hpp"
+#include "bench/units.hpp"
 #include "results/table.hpp"
 
 namespace drape::bench {
 
-/// A table to be computed in `parts` pieces of work; `compute` says what it does and calls progress.advance() after each.
+/// A table to be computed in `parts` pieces of work; `compute` says what it does and calls units.advance() after each. What
+/// takes seconds is a unit, which a process that was killed does not lose.
 struct TableJob {
   int parts;
-  std::function<results::Table(Progress& progress)> compute;
+  std::function<results::Table(Units& units)> compute;
 };
 
 /// A study: a fixed question, answered by a list of runs or by tables. A row of the table, in a file of its own under

@@ -9,10 +9,10 @@
 
 #include "bench/contact_record.hpp"
 #include "bench/errors.hpp"
-#include "bench/progress.hpp"
+#include "bench/identity.hpp"
+#include "bench/recording.hpp"
 #include "bench/timing.hpp"
 #include "bench/trajectory_record.hpp"
-#include "results/run_file.hpp"
 #include "results/xdmf.hpp"
 
 namespace drape::bench {
@@ -56,44 +56,70 @@ void measure_error(const Cell& cell, results::RunRecord& run, const Truth& truth
 /// Before anything is computed.
 void require_trajectories(const std::vector<Group>& groups, const SweepOptions& options) {
   for (const Group& group : groups) check_frames(*options.frames_every, group.front().scene.end);
-  results::require_creatable(results::xdmf_path(options.out));
+  if (options.start == results::Start::fresh) results::require_creatable(results::xdmf_path(options.out));
+}
+
+/// Times those runs of a group that have kept their limits.
+void time_all(const Group& group, int repetitions, std::vector<results::RunRecord>& runs, Units& units) {
+  Group timed;
+  std::vector<results::RunRecord*> places;
+  for (std::size_t k = 0; k < group.size(); ++k) {
+    if (runs[k].outcome == out_of_time || runs[k].outcome == out_of_memory) continue;
+    timed.push_back(group[k]);
+    places.push_back(&runs[k]);
+  }
+  auto times = time_group(timed, repetitions, [&] { units.advance(); });
+  for (std::size_t k = 0; k < timed.size(); ++k) places[k]->times_ms = std::move(times[k]);
+}
+
+/// Runs a group and records it as a whole. Each cell is a unit of work, their repetitions are not: they must be interleaved.
+void run_group(const Group& group, const SweepOptions& options, References& references, results::RunFile& file, Units& units) {
+  std::optional<Truth> truth;
+  const auto measured = [&](const Cell& cell, results::RunRecord run) {
+    if (!options.reference) return run;
+    if (!truth) {
+      units.show("reference of " + group.front().scene.name);
+      truth = find_reference(group.front().scene, references);
+    }
+    measure_error(cell, run, *truth);
+    return run;
+  };
+  std::vector<results::RunRecord> runs;
+  for (const Cell& cell : group) {
+    const std::string id = identity(cell, options);
+    runs.push_back(units(id, [&] {
+      units.show(title(cell));
+      results::RunRecord run = measured(
+          cell, record(cell, options.look ? options.look(cell) : solver::Observer(), options.frames_every, options.limits));
+      run.cell = id;
+      return run;
+    }));
+    units.advance();
+  }
+  if (options.reference) units.advance();
+  units.show("timing " + group.front().scene.name);
+  time_all(group, options.repetitions, runs, units);
+  file.add(runs);
 }
 
 }  // namespace
 
 std::vector<results::RunRecord> sweep(const std::vector<Group>& groups, const SweepOptions& options) {
-  results::RunFile file(options.out, results::provenance(options.command_line));
   if (options.frames_every) require_trajectories(groups, options);
-  References references(options.agreement);
-  int total = 0;
+  int parts = 0;
   for (const Group& group : groups)
-    total += static_cast<int>(group.size()) * (1 + options.repetitions) + (options.reference ? 1 : 0);
-  Progress progress(total);
-
-  std::vector<results::RunRecord> all;
-  for (const Group& group : groups) {
-    Truth truth;
-    if (options.reference) {
-      progress.show("reference of " + group.front().scene.name);
-      truth = find_reference(group.front().scene, references);
-      progress.advance();
+    parts += static_cast<int>(group.size()) * (1 + options.repetitions) + (options.reference ? 1 : 0);
+  record_in_file(options, identity(groups, options), parts, [&](results::RunFile& file, Units& units) {
+    References references(options.agreement);
+    const std::size_t recorded = file.run_count();
+    std::size_t before = 0;  // runs of the groups before this one
+    for (const Group& group : groups) {
+      if (before >= recorded) run_group(group, options, references, file, units);
+      before += group.size();
     }
-    std::vector<results::RunRecord> runs;
-    for (const Cell& cell : group) {
-      progress.show(title(cell));
-      runs.push_back(record(cell, options.look ? options.look(cell) : solver::Observer(), options.frames_every));
-      if (options.reference) measure_error(cell, runs.back(), truth);
-      progress.advance();
-    }
-    progress.show("timing " + group.front().scene.name);
-    const auto times = time_group(group, options.repetitions, [&] { progress.advance(); });
-    for (std::size_t k = 0; k < runs.size(); ++k) {
-      runs[k].times_ms = times[k];
-      file.add(runs[k]);
-      all.push_back(std::move(runs[k]));
-    }
-    if (options.frames_every) results::write_xdmf(options.out, all);
-  }
+  });
+  std::vector<results::RunRecord> all = results::read_runs(options.out);
+  if (options.frames_every) results::write_xdmf(options.out, all);
   return all;
 }
 

@@ -1,18 +1,24 @@
 #include "bench/table_jobs.hpp"
 
-#include "results/run_file.hpp"
+#include <fmt/format.h>
+
+#include "bench/recording.hpp"
 
 namespace drape::bench {
 
-std::vector<results::Table> compute(const std::vector<TableJob>& jobs, const std::filesystem::path& out,
-                                    const std::string& command_line) {
-  results::RunFile file(out, results::provenance(command_line));
+std::vector<results::Table> compute(const std::vector<TableJob>& jobs, const std::string& identity,
+                                    const SweepOptions& options) {
   int parts = 0;
   for (const TableJob& job : jobs) parts += job.parts;
-  Progress progress(parts);
   std::vector<results::Table> tables;
-  for (const TableJob& job : jobs) file.add(tables.emplace_back(job.compute(progress)));
-  return tables;
+  record_in_file(options, identity, parts, [&](results::RunFile& file, Units& units) {
+    for (std::size_t k = 0; k < jobs.size(); ++k) {
+      units.begin(fmt::format("table {}", k));
+      tables.push_back(jobs[k].compute(units));  // also if the file has it: later tables may be made from what this one saw
+      if (!file.has_table(tables.back().name)) file.add(tables.back());
+    }
+  });
+  return tables.empty() ? results::read_tables(options.out) : tables;
 }
 
 }  // namespace drape::bench

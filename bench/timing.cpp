@@ -4,6 +4,8 @@
 
 #include <string>
 
+#include "bench/interruption.hpp"
+
 namespace drape::bench {
 namespace {
 
@@ -28,7 +30,7 @@ Prepare prepared(const Cell& cell) {
   return [&cell] {
     return [&cell, cloth = model::compile(cell.scene)] {
       solver::Integrator integrator(cloth.ode, *cell.method, cell.options, cloth.start);
-      integrate(integrator, cell.scene.end, cell.step);
+      integrate(integrator, cell.scene.end, cell.step, [](const solver::StepReport&) { check_interruption(); });
     };
   };
 }
@@ -48,12 +50,14 @@ void interleave_repetitions() {
 
 std::vector<std::vector<double>> time_runs(const std::vector<Prepare>& runs, int repetitions,
                                            const std::function<void()>& done) {
+  if (runs.empty()) return {};
   interleave_repetitions();
   std::vector<std::vector<double>> times(runs.size());
   benchmark::ClearRegisteredBenchmarks();
   for (std::size_t k = 0; k < runs.size(); ++k)
     benchmark::RegisterBenchmark(std::to_string(k).c_str(),
                                  [&prepare = runs[k], &done](benchmark::State& state) {
+                                   check_interruption();
                                    const std::function<void()> run = prepare();
                                    for (auto _ : state) run();
                                    done();

@@ -11,6 +11,7 @@ namespace drape::bench {
 using Prepare = std::function<std::function<void()>()>;
 
 /// Wall times [ms] of runs: `repetitions` each, interleaved in random order by Google Benchmark. `done` is called after each.
+/// Throws Interrupted.
 std::vector<std::vector<double>> time_runs(const std::vector<Prepare>& runs, int repetitions,
                                            const std::function<void()>& done);
 

@@ -4,9 +4,22 @@
 #include <functional>
 #include <string>
 
+#include "bench/unit_json.hpp"
 #include "model/cloth.hpp"
 #include "results/verdict.hpp"
 #include "solver/integrator.hpp"
+
+namespace drape::solver {
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RunResult, outcome, message, last_good_time, steps, rejected_steps)
+
+}  // namespace drape::solver
+
+namespace drape::results {
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(UncertainError, error, uncertainty)
+
+}  // namespace drape::results
 
 /// Short runs whose only question is what becomes of them.
 namespace drape::bench {
@@ -41,6 +54,9 @@ struct Attempt {
   /// Why it did not; empty if it did.
   std::string reason() const;
 };
+
+/// As a unit of work it is kept without the state at its end.
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Attempt, run, finished, evaluations, newton_matrices, cpu_ms)
 
 Attempt attempt(const Specimen& specimen, const Conditions& conditions);
 

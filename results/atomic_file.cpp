@@ -7,32 +7,17 @@
 #include <cerrno>
 #include <cstdio>
 #include <string>
-#include <string_view>
 #include <system_error>
+
+#include "results/descriptor.hpp"
 
 namespace drape::results {
 namespace fs = std::filesystem;
 namespace {
 
-[[noreturn]] void fail(const fs::path& file, std::string_view what) {
-  throw FileError(fmt::format("{}: {} ({})", file.string(), what, std::generic_category().message(errno)));
-}
-
 [[noreturn]] void refuse_existing(const fs::path& file) {
   throw FileError(fmt::format("{} exists; choose another --out or remove it", file.string()));
 }
-
-fs::path folder_of(const fs::path& file) { return file.has_parent_path() ? file.parent_path() : "."; }
-
-struct Descriptor {
-  int fd;
-  explicit Descriptor(int opened) : fd(opened) {}
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  ~Descriptor() {
-    if (fd >= 0) close(fd);
-  }
-};
 
 /// The file under another name in the same folder (only within a file system can it be renamed), removed at the end.
 struct Temporary {
@@ -41,22 +26,12 @@ struct Temporary {
   explicit Temporary(const fs::path& file)
       : path(fmt::format("{}.tmp-{}", file.string(), getpid())),
         out(open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
-    if (out.fd < 0) fail(file, fmt::format("cannot create files in the folder {}", folder_of(file).string()));
+    if (out.fd < 0) fail_to_create_beside(file);
   }
   Temporary(const Temporary&) = delete;
   Temporary& operator=(const Temporary&) = delete;
   ~Temporary() { unlink(path.c_str()); }
 };
-
-void write_all(const fs::path& file, int fd, std::span<const std::byte> content) {
-  while (!content.empty()) {
-    const ssize_t written = write(fd, content.data(), content.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) fail(file, "cannot be written");
-    content = content.subspan(static_cast<std::size_t>(written));
-  }
-  if (fsync(fd) != 0) fail(file, "cannot be written");
-}
 
 }  // namespace
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <hdf5.h>
 
+#include <atomic>
 #include <concepts>
 #include <type_traits>
 #include <utility>
@@ -68,6 +69,14 @@ void read_attribute(const Handle& object, const std::string& name, hid_t type, v
   check(H5Aread(attribute.id(), type, value), name);
 }
 
+/// Access to files that are in memory and stay there.
+Handle in_memory() {
+  constexpr std::size_t growth = 1 << 20;  // [bytes]
+  Handle access(H5Pcreate(H5P_FILE_ACCESS), "file");
+  check(H5Pset_fapl_core(access.id(), growth, /*backing_store=*/false), "file");
+  return access;
+}
+
 std::string description_of(const std::string& name) { return name + ".description"; }
 
 /// For the library's iterations: appends a name to a list.
@@ -87,17 +96,23 @@ Handle::~Handle() {
 
 Handle create_in_memory(const std::filesystem::path& name) {
   be_silent();
-  constexpr std::size_t growth = 1 << 20;  // [bytes]
   const Handle creation(H5Pcreate(H5P_FILE_CREATE), "file");
   check(H5Pset_attr_creation_order(creation.id(), H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED), "file");
-  const Handle access(H5Pcreate(H5P_FILE_ACCESS), "file");
-  check(H5Pset_fapl_core(access.id(), growth, /*backing_store=*/false), "file");
-  return {H5Fcreate(name.c_str(), H5F_ACC_TRUNC, creation.id(), access.id()), "file"};
+  return {H5Fcreate(name.c_str(), H5F_ACC_TRUNC, creation.id(), in_memory().id()), "file"};
 }
 
 Handle open_for_reading(const std::filesystem::path& path) {
   be_silent();
   return {H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), "cannot be opened"};
+}
+
+Handle open_image(std::span<const std::byte> bytes) {
+  be_silent();
+  static std::atomic<int> count = 0;  // files of the same name would be the same file to the library
+  const Handle access = in_memory();
+  std::vector<std::byte> copy(bytes.begin(), bytes.end());  // the library asks for one that it may change, and copies it
+  check(H5Pset_file_image(access.id(), copy.data(), copy.size()), "file image");
+  return {H5Fopen(fmt::format("image {}", count++).c_str(), H5F_ACC_RDWR, access.id()), "cannot be opened"};
 }
 
 std::vector<std::byte> image(const Handle& file) {
@@ -133,6 +148,12 @@ void write_described_text(const Handle& object, const std::string& name, const s
                           const std::string& description) {
   write_text(object, name, value);
   write_text(object, description_of(name), description);
+}
+
+void rewrite_text(const Handle& object, const std::string& name, const std::string& value) {
+  const Handle attribute(H5Aopen(object.id(), name.c_str(), H5P_DEFAULT), name), type = text_type();
+  const char* text = value.c_str();
+  check(H5Awrite(attribute.id(), type.id(), &text), name);
 }
 
 std::string read_text(const Handle& object, const std::string& name) {
@@ -237,6 +258,71 @@ Number read_number(const Handle& group, const std::string& name) {
   const auto values = read_numbers<Number>(group, name);
   if (values.size() != 1) throw Error(name + " must be a single number");
   return values.front();
+}
+
+namespace {
+
+std::string name_of(const Handle& type) {
+  const auto is = [&](hid_t other) { return H5Tequal(type.id(), other) > 0; };
+  if (is(text_type().id())) return "text";
+  if (is(H5T_IEEE_F64LE)) return "float64";
+  if (is(H5T_STD_I32LE)) return "int32";
+  if (is(H5T_STD_I64LE)) return "int64";
+  return "other";
+}
+
+std::vector<std::uint64_t> shape_of(const Handle& space, const std::string& name) {
+  std::vector<hsize_t> shape(static_cast<std::size_t>(check(H5Sget_simple_extent_ndims(space.id()), name)));
+  check(H5Sget_simple_extent_dims(space.id(), shape.data(), nullptr), name);
+  return {shape.begin(), shape.end()};
+}
+
+using Inventory = std::map<std::string, Item>;
+
+void list_attributes(const Handle& object, const std::string& path, Inventory& all) {
+  std::vector<std::string> names;
+  check(H5Aiterate2(object.id(), H5_INDEX_NAME, H5_ITER_INC, nullptr, append_name<H5A_info_t>, &names), "attributes");
+  for (const std::string& name : names) {
+    const Handle attribute(H5Aopen(object.id(), name.c_str(), H5P_DEFAULT), name);
+    const Handle type(H5Aget_type(attribute.id()), name), space(H5Aget_space(attribute.id()), name);
+    all[fmt::format("{}@{}", path, name)] = {name_of(type), shape_of(space, name), {}};
+  }
+}
+
+Item describe_dataset(const Handle& dataset, const std::string& path, const Inventory& all) {
+  const Handle type(H5Dget_type(dataset.id()), path), space(H5Dget_space(dataset.id()), path);
+  const auto unit = all.find(path + "@unit");
+  const bool readable = unit != all.end() && unit->second.type == "text" && unit->second.shape.empty();
+  return {name_of(type), shape_of(space, path), readable ? read_text(dataset, "unit") : ""};
+}
+
+void list_members(const Handle& group, const std::string& path, int depth, Inventory& all) {
+  constexpr int deepest = 8;  // groups of a damaged file may contain themselves
+  std::vector<std::string> names;
+  check(H5Literate(group.id(), H5_INDEX_NAME, H5_ITER_INC, nullptr, append_name<H5L_info_t>, &names), "members");
+  for (const std::string& name : names) {
+    const std::string where = fmt::format("{}/{}", path, name);
+    all[where].type = "other";
+    H5L_info_t link;
+    check(H5Lget_info(group.id(), name.c_str(), &link, H5P_DEFAULT), name);
+    if (link.type != H5L_TYPE_HARD) continue;
+    const Handle object(H5Oopen(group.id(), name.c_str(), H5P_DEFAULT), where);
+    list_attributes(object, where, all);
+    if (H5Iget_type(object.id()) == H5I_DATASET) all[where] = describe_dataset(object, where, all);
+    if (H5Iget_type(object.id()) == H5I_GROUP) {
+      all[where].type = "group";
+      if (depth < deepest) list_members(object, where, depth + 1, all);
+    }
+  }
+}
+
+}  // namespace
+
+std::map<std::string, Item> inventory(const Handle& file) {
+  Inventory all;
+  list_attributes(file, "", all);
+  list_members(file, "", 0, all);
+  return all;
 }
 
 std::vector<std::string> groups(const Handle& group) {

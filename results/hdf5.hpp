@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <map>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -36,6 +38,9 @@ class Handle {
 Handle create_in_memory(const std::filesystem::path& name);
 Handle open_for_reading(const std::filesystem::path& path);
 
+/// A file in memory, to be read and changed there, that is what image() gave.
+Handle open_image(std::span<const std::byte> bytes);
+
 /// What the file would be on disk.
 std::vector<std::byte> image(const Handle& file);
 
@@ -47,6 +52,9 @@ void remove(const Handle& parent, const std::string& name);
 void write_text(const Handle& object, const std::string& name, const std::string& value);
 void write_described_text(const Handle& object, const std::string& name, const std::string& value,
                           const std::string& description);
+
+/// Writes another value to a text that is there; it keeps its place among the attributes.
+void rewrite_text(const Handle& object, const std::string& name, const std::string& value);
 std::string read_text(const Handle& object, const std::string& name);
 std::string read_description(const Handle& object, const std::string& name);
 
@@ -87,6 +95,17 @@ struct DatasetInfo {
   std::string unit;
   std::string description;
 };
+
+/// An object as the file has it. `type` is one of those that are written here, "text", "float64", "int32" or "int64"; "group";
+/// or "other". The shape {} is a single value; `unit` is the attribute of a dataset, if there is one.
+struct Item {
+  std::string type;
+  std::vector<std::uint64_t> shape;
+  std::string unit;
+};
+
+/// All that is in a file, by path; the attribute `a` of an object is `path@a`. Links that lead elsewhere are "other".
+std::map<std::string, Item> inventory(const Handle& file);
 
 /// Names of all groups in a group, sorted.
 std::vector<std::string> groups(const Handle& group);

@@ -3,9 +3,14 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <sys/utsname.h>
+#include <xxhash.h>
 
+#include <algorithm>
+#include <array>
 #include <ctime>
 #include <fstream>
+#include <iterator>
+#include <string_view>
 #include <thread>
 #include <utility>
 
@@ -26,19 +31,50 @@ std::string operating_system() {
   return uname(&host) == 0 ? fmt::format("{} {} {}", host.sysname, host.release, host.machine) : "unknown";
 }
 
+/// Of the file that this process runs: what was changed without a commit shows here.
+std::string program_hash() {
+  std::ifstream file("/proc/self/exe", std::ios::binary);
+  if (!file) return "unknown";
+  const std::string bytes(std::istreambuf_iterator<char>(file), {});
+  return fmt::format("{:016x}", XXH3_64bits(bytes.data(), bytes.size()));
+}
+
+constexpr std::array<std::string_view, 6> of_a_start{"started", "command_line", "cores", "host_os", "resumed", "finished"};
+
 }  // namespace
 
-Provenance provenance(std::string command_line) {
+std::string time_of_day() { return fmt::format("{:%FT%TZ}", fmt::gmtime(std::time(nullptr))); }
+
+Provenance lasting(const Provenance& provenance) {
+  Provenance facts = provenance;
+  std::erase_if(facts, [](const Fact& fact) { return std::ranges::find(of_a_start, fact.name) != of_a_start.end(); });
+  return facts;
+}
+
+std::string why_not_resumed(const Provenance& theirs, const Provenance& ours) {
+  for (const auto& [name, value, description] : lasting(ours)) {
+    const auto fact = std::ranges::find(theirs, name, &Fact::name);
+    const std::string other = fact == theirs.end() ? "unknown" : fact->value;
+    if (other == value) continue;
+    if (name == "sweep") return "it holds something else than what is asked for";
+    return fmt::format("it was written by another program or machine: {} is {} there and {} here", name, other, value);
+  }
+  return {};
+}
+
+Provenance provenance(std::string command_line, std::string sweep) {
   Provenance facts{
 // Both are written by CMake: rows {name, value, description}.
 #include "results/build_facts.inc"
 #include "results/git_commit.inc"
   };
+  facts.push_back({"program_hash", program_hash(), "hash of the program file"});
   facts.push_back({"cpu", cpu_model(), "model of the processor"});
   facts.push_back({"cores", std::to_string(std::thread::hardware_concurrency()), "number of cores this program may use"});
   facts.push_back({"host_os", operating_system(), "operating system, release and architecture of the host"});
-  facts.push_back({"started", fmt::format("{:%FT%TZ}", fmt::gmtime(std::time(nullptr))), "UTC time of the start (ISO 8601)"});
+  facts.push_back({"started", time_of_day(), "UTC time of the start (ISO 8601)"});
   facts.push_back({"command_line", std::move(command_line), "command line of the program that wrote this"});
+  facts.push_back({"sweep", std::move(sweep), "identity of what was asked for: hash of all that determines it"});
   return facts;
 }
 

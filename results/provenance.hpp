@@ -16,7 +16,21 @@ struct Fact {
 using Provenance = std::vector<Fact>;
 
 /// What this program was built from and with, the machine it runs on, the time of this call and the command line it was
-/// started with. What cannot be found out is "unknown".
-Provenance provenance(std::string command_line);
+/// started with. What cannot be found out is "unknown". `sweep`: identity of what is computed, so that a file is continued by
+/// nothing else.
+Provenance provenance(std::string command_line, std::string sweep = "none");
+
+/// Whether a sweep begins anew or continues what a process before it has recorded, if there is something.
+enum class Start { fresh, resumed };
+
+/// The facts that all processes share which may write parts of the same sweep: all but time and command line of the start and
+/// what a reboot may change.
+Provenance lasting(const Provenance& provenance);
+
+/// Says which of these facts differs: then results must not be mixed. Empty if none does.
+std::string why_not_resumed(const Provenance& theirs, const Provenance& ours);
+
+/// UTC, ISO 8601.
+std::string time_of_day();
 
 }  // namespace drape::results

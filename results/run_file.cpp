@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <fstream>
 #include <iterator>
 #include <string>
 #include <system_error>
@@ -127,13 +128,51 @@ RunRecord read_run(const Handle& group) {
   return run;
 }
 
+// --- Files ---------------------------------------------------------------------------------------------------------------
+
+void require_version(const Handle& file) {
+  const int version = hdf5::read_integer(file, "schema_version");
+  if (version != schema_version)
+    throw hdf5::Error(fmt::format("its schema_version is {}, this program reads {}", version, schema_version));
+}
+
 Handle open_run_file(const fs::path& path) {
   std::error_code unknown;  // then it is no file to us
   if (!fs::is_regular_file(path, unknown)) throw hdf5::Error("there is no such file");
   Handle file = hdf5::open_for_reading(path);
-  const int version = hdf5::read_integer(file, "schema_version");
-  if (version != schema_version)
-    throw hdf5::Error(fmt::format("its schema_version is {}, this program reads {}", version, schema_version));
+  require_version(file);
+  return file;
+}
+
+Provenance facts_of(const Handle& file) {
+  Provenance facts;
+  for (const std::string& name : hdf5::described_texts(file))
+    facts.push_back({name, hdf5::read_text(file, name), hdf5::read_description(file, name)});
+  return facts;
+}
+
+/// An empty file.
+Handle begin(const fs::path& path, const Provenance& provenance) {
+  Handle file = hdf5::create_in_memory(path);
+  hdf5::write_text(file, "description", "Runs of drape, a harness for time integrators of cloth");
+  hdf5::write_integer(file, "schema_version", schema_version);
+  for (const Fact& fact : provenance) hdf5::write_described_text(file, fact.name, fact.value, fact.description);
+  hdf5::write_described_text(file, "resumed", "", "UTC times of later starts that continued this file");
+  hdf5::write_described_text(file, "finished", "", "UTC time of the end; empty: more was to come");
+  hdf5::create_group(file, "runs", "one group for each run, in the order of the sweep");
+  hdf5::create_group(file, "tables", "one group for each table of a study, one dataset for each column");
+  return file;
+}
+
+/// What a process before this one has left.
+Handle go_on(const fs::path& path, const Provenance& provenance) {
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) throw hdf5::Error("cannot be read");
+  const std::string bytes(std::istreambuf_iterator<char>(stream), {});
+  Handle file = hdf5::open_image(std::as_bytes(std::span(bytes)));
+  require_version(file);
+  if (const std::string why = why_not_resumed(facts_of(file), provenance); !why.empty())
+    throw hdf5::Error(fmt::format("cannot be continued: {}; choose another --out", why));
   return file;
 }
 
@@ -147,44 +186,95 @@ struct RunFile::Image {
   std::size_t run_count = 0;
   bool published = false;
 
-  /// Writes a new member of a group and publishes the file; without the member, if that fails.
-  void add(const fs::path& path, const Handle& group, const std::string& name, const auto& write) {
+  explicit Image(Handle&& opened)
+      : file(std::move(opened)), runs(hdf5::open_group(file, "runs")), tables(hdf5::open_group(file, "tables")) {
+    while (hdf5::has(runs, run_name(run_count))) ++run_count;
+  }
+
+  /// Changes the file and publishes it; if that fails, undoes the change.
+  void change(const fs::path& path, const auto& apply, const auto& undo) {
     with_file_named(path, [&] {
       try {
-        write();
+        apply();
         publish(path, hdf5::image(file), published ? Existing::replace : Existing::refuse);
         published = true;
       } catch (...) {
-        if (hdf5::has(group, name)) hdf5::remove(group, name);
+        undo();
         throw;
       }
     });
   }
 };
 
-RunFile::RunFile(fs::path path, const Provenance& provenance) : path_(std::move(path)) {
-  require_creatable(path_);
+RunFile::RunFile(fs::path path, const Provenance& provenance, Start start) : path_(std::move(path)) {
+  std::error_code unknown;  // left to require_creatable
+  const bool goes_on = start == Start::resumed && fs::exists(path_, unknown);
+  if (!goes_on) require_creatable(path_);
   with_file_named(path_, [&] {
-    Handle file = hdf5::create_in_memory(path_);
-    hdf5::write_text(file, "description", "Runs of drape, a harness for time integrators of cloth");
-    hdf5::write_integer(file, "schema_version", schema_version);
-    for (const Fact& fact : provenance) hdf5::write_described_text(file, fact.name, fact.value, fact.description);
-    Handle runs = hdf5::create_group(file, "runs", "one group for each run, in the order they finished");
-    Handle tables = hdf5::create_group(file, "tables", "one group for each table of a study, one dataset for each column");
-    image_ = std::make_unique<Image>(Image{std::move(file), std::move(runs), std::move(tables)});
+    image_ = std::make_unique<Image>(goes_on ? go_on(path_, provenance) : begin(path_, provenance));
+    image_->published = goes_on;
   });
 }
 
 RunFile::~RunFile() = default;
 
-void RunFile::add(const RunRecord& run) {
-  const std::string name = run_name(image_->run_count);
-  image_->add(path_, image_->runs, name, [&] { write_run(image_->runs, name, run); });
-  ++image_->run_count;
+void RunFile::add(std::span<const RunRecord> runs) {
+  Image& image = *image_;
+  const auto name = [&](std::size_t k) { return run_name(image.run_count + k); };
+  image.change(
+      path_,
+      [&] {
+        for (std::size_t k = 0; k < runs.size(); ++k) write_run(image.runs, name(k), runs[k]);
+      },
+      [&] {
+        for (std::size_t k = 0; k < runs.size(); ++k)
+          if (hdf5::has(image.runs, name(k))) hdf5::remove(image.runs, name(k));
+      });
+  image.run_count += runs.size();
 }
 
 void RunFile::add(const Table& table) {
-  image_->add(path_, image_->tables, table.name, [&] { write_table(image_->tables, table); });
+  const Handle& tables = image_->tables;
+  image_->change(
+      path_, [&] { write_table(tables, table); },
+      [&] {
+        if (hdf5::has(tables, table.name)) hdf5::remove(tables, table.name);
+      });
+}
+
+void RunFile::note_resumption() {
+  with_file_named(path_, [&] {
+    const std::string before = hdf5::read_text(image_->file, "resumed");
+    hdf5::rewrite_text(image_->file, "resumed", before + (before.empty() ? "" : ", ") + time_of_day());
+  });
+}
+
+bool RunFile::begun() const { return image_->published; }
+
+void RunFile::finish() {
+  const Handle& file = image_->file;
+  image_->change(
+      path_, [&] { hdf5::rewrite_text(file, "finished", time_of_day()); }, [&] { hdf5::rewrite_text(file, "finished", ""); });
+}
+
+std::size_t RunFile::run_count() const { return image_->run_count; }
+
+bool RunFile::has_table(const std::string& name) const { return hdf5::has(image_->tables, name); }
+
+bool RunFile::finished() const {
+  return with_file_named(path_, [&] { return !hdf5::read_text(image_->file, "finished").empty(); });
+}
+
+std::vector<std::byte> to_bytes(const RunRecord& run) {
+  return with_file_named("a run", [&] {
+    const Handle file = hdf5::create_in_memory("run");
+    write_run(file, run_name(0), run);
+    return hdf5::image(file);
+  });
+}
+
+RunRecord run_of(std::span<const std::byte> bytes) {
+  return with_file_named("a run", [&] { return read_run(hdf5::open_group(hdf5::open_image(bytes), run_name(0))); });
 }
 
 std::vector<RunRecord> read_runs(const fs::path& path) {
@@ -208,13 +298,7 @@ std::vector<Table> read_tables(const fs::path& path) {
 }
 
 Provenance read_provenance(const fs::path& path) {
-  return with_file_named(path, [&] {
-    const Handle file = open_run_file(path);
-    Provenance facts;
-    for (const std::string& name : hdf5::described_texts(file))
-      facts.push_back({name, hdf5::read_text(file, name), hdf5::read_description(file, name)});
-    return facts;
-  });
+  return with_file_named(path, [&] { return facts_of(open_run_file(path)); });
 }
 
 }  // namespace drape::results

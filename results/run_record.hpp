@@ -89,6 +89,7 @@ inline bool resolved(const ErrorRecord& error) { return error.rms >= resolution 
 
 /// All that is kept of one run: plain data, filled by whoever runs, written by whoever records.
 struct RunRecord {
+  std::string cell;  ///< identity of what was run: equal in all files where the same was asked for; empty outside of sweeps
   std::string scene;
   std::string scene_toml;  ///< the complete scene, defaults and overrides included
   std::string overrides;   ///< what was set differently from the scene, for example "material.damping=0.5"

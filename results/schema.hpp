@@ -7,7 +7,7 @@
 namespace drape::results {
 
 /// The layout of a run in the file: this one list serves writing and reading. results/README.md shows it for people.
-inline constexpr int schema_version = 3;
+inline constexpr int schema_version = 4;
 
 /// A member of a record under its name in the file. Text has no unit; numbers have one, "1" if they have no dimension.
 template <class Record, class Value>
@@ -21,6 +21,7 @@ template <class Record, class Value>
 Field(const char*, Value Record::*, const char*, const char*) -> Field<Record, Value>;
 
 inline constexpr std::tuple run_fields{
+    Field{"cell", &RunRecord::cell, "", "identity of what was run: hash of all that determines the result"},
     Field{"scene", &RunRecord::scene, "", "name of the scene"},
     Field{"scene_toml", &RunRecord::scene_toml, "", "the complete scene, defaults and overrides included"},
     Field{"overrides", &RunRecord::overrides, "", "what was set differently from the scene"},

@@ -19,11 +19,15 @@ class TableBuilder {
   void number(const char* name, const char* title, const char* unit, const char* description, double value);
   void count(const char* name, const char* title, const char* description, std::int64_t value);
 
+  /// The rows of another table, as if they had been built here.
+  void append(const Table& rows);
+
   /// The table, all columns filled up to the same length.
   Table finish();
 
  private:
-  void put(const char* name, const char* title, const char* unit, const char* description, Cell value);
+  void put(const std::string& name, const std::string& title, const std::string& unit, const std::string& description,
+           Cell value);
 
   Table table_;
   std::size_t rows_ = 0;

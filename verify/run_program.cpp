@@ -16,6 +16,7 @@
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 namespace drape::verify {
@@ -98,6 +99,28 @@ ProgramResult run_program(const Command& command) {
   if (!command.output.empty()) elsewhere.emplace(open(command.output.c_str(), O_WRONLY | O_CLOEXEC), command.output);
   const int code = exit_code(spawn(command, elsewhere ? elsewhere->fd : out.fd, err.fd));
   return {code, content(out), content(err)};
+}
+
+struct RunningProgram::Process {
+  Descriptor out = memory(), err = memory();
+  pid_t pid = 0;  ///< 0 once it has ended
+};
+
+RunningProgram::RunningProgram(const Command& command) : process_(std::make_unique<Process>()) {
+  process_->pid = spawn(command, process_->out.fd, process_->err.fd);
+}
+
+RunningProgram::~RunningProgram() {
+  if (process_->pid == 0) return;
+  send(SIGKILL);
+  wait();
+}
+
+void RunningProgram::send(int signal) const { kill(process_->pid, signal); }
+
+ProgramResult RunningProgram::wait() {
+  const int code = exit_code(std::exchange(process_->pid, 0));
+  return {code, content(process_->out), content(process_->err)};
 }
 
 ProgramResult run_on_terminal(const Command& command, unsigned short columns, std::string_view until) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,6 +26,22 @@ struct ProgramResult {
 
 /// Runs a program to its end; its standard error is no terminal.
 ProgramResult run_program(const Command& command);
+
+/// A program that runs beside us, but not longer than this object lives.
+class RunningProgram {
+ public:
+  explicit RunningProgram(const Command& command);
+  RunningProgram(const RunningProgram&) = delete;
+  RunningProgram& operator=(const RunningProgram&) = delete;
+  ~RunningProgram();
+
+  void send(int signal) const;
+  ProgramResult wait();
+
+ private:
+  struct Process;
+  std::unique_ptr<Process> process_;
+};
 
 /// Runs a program with its standard error on a terminal of so many columns: to its end, or until the terminal has shown a text,
 /// when it is terminated.

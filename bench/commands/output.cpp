@@ -49,13 +49,28 @@ void add_output_options(CLI::App& command, Output& output) {
       ->check(between(1, 1000))
       ->capture_default_str();
   command
-      .add_option("--out", output.sweep.out, "HDF5 file to record in; must not exist [results/runs/<time>-<job>-<process>.h5]")
+      .add_option("--out", output.sweep.out,
+                  "HDF5 file to record in; must not exist, but for --resume [results/runs/<time>-<job>-<process>.h5]")
       ->type_name("FILE.h5")
       ->check(not_empty());
+  command
+      .add_flag_callback(
+          "--resume", [&] { output.sweep.start = results::Start::resumed; },
+          "continue FILE.h5 where a process before this one was killed; without one, begin it")
+      ->needs("--out");
   command.add_option("--format", output.format, "what is printed")
       ->type_name("table|csv|json")
       ->check(CLI::IsMember({"table", "csv", "json"}).description(""))
       ->capture_default_str();
+  command
+      .add_option("--time-limit", output.sweep.limits.seconds, "wall time of a run, which ends as out of time beyond it [none]")
+      ->type_name("SECONDS")
+      ->check(positive());
+  command
+      .add_option("--memory-limit", output.sweep.limits.megabytes,
+                  "memory of a run, which ends as out of memory beyond it [none]")
+      ->type_name("MB")
+      ->check(positive());
   command.add_flag_callback(
       "--no-reference", [&] { output.sweep.reference = false; }, "measure no errors");
   command

@@ -78,6 +78,8 @@ void run(const RunArguments& a) {
   const std::vector<Group> groups{run_group(a)};
   Output output = a.output;
   if (!a.frames.folder.empty()) {
+    if (output.sweep.start == results::Start::resumed)
+      throw std::invalid_argument("--frames: expected no --resume beside it, frames of finished runs are not written again");
     output.sweep.out = out_file(output, "run");
     results::require_creatable(output.sweep.out);  // before a folder is made
     make_folder(a.frames);

@@ -1,14 +1,18 @@
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "bench/argument_checks.hpp"
 #include "bench/choices.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/names_of.hpp"
 #include "bench/commands/output.hpp"
 #include "bench/commands/scene_choice.hpp"
+#include "bench/identity.hpp"
 #include "bench/plot.hpp"
 #include "bench/studies.hpp"
 #include "bench/table_jobs.hpp"
+#include "model/scene_file.hpp"
 
 namespace drape::bench {
 namespace {
@@ -36,19 +40,35 @@ void check_scene(const Study& chosen, const SceneChoice& choice) {
   if (choice.scene.empty() && !choice.sets.empty()) throw std::invalid_argument("--set: expected --scene beside it");
 }
 
+/// Limits are for runs.
+void check_limits(const Study& chosen, const Limits& limits) {
+  if (std::isfinite(limits.seconds) || std::isfinite(limits.megabytes))
+    throw std::invalid_argument(fmt::format("--time-limit, --memory-limit: expected run, or one of the studies {}, not {}",
+                                            names_of(studies(), [](const Study& s) { return s.groups != nullptr; }),
+                                            chosen.name));
+}
+
+/// Of the tables that a study makes.
+std::string identity(const StudyArguments& a) {
+  const std::string scene = a.choice.scene.empty() ? "" : model::to_toml(a.choice.load());
+  return hash_of(fmt::format("{}{}\n{}", a.name, a.quick ? " quick" : "", scene));
+}
+
 void run_study(const Study& chosen, const StudyArguments& a) {
   check_scene(chosen, a.choice);
   const std::string name(chosen.name);
   if (chosen.groups) return sweep_and_print(chosen.groups(a.quick), a.output, name);
   if (a.output.sweep.frames_every)
     throw std::invalid_argument(fmt::format("--trajectory: the study {} makes tables; runs make {}", name, of_runs()));
+  check_limits(chosen, a.output.sweep.limits);
   const std::vector<TableJob> jobs =
       a.choice.scene.empty() ? chosen.tables(a.quick) : chosen.of_scene(a.choice.load(), a.quick);
-  const std::filesystem::path out = out_file(a.output, name);
-  print_tables(compute(jobs, out, a.output.sweep.command_line), a.output.format);
-  say_where(out, a.output.format);
+  SweepOptions options = a.output.sweep;
+  options.out = out_file(a.output, name);
+  print_tables(compute(jobs, identity(a), options), a.output.format);
+  say_where(options.out, a.output.format);
   if (chosen.plot.empty()) return;
-  const std::string said = plot(chosen.plot, out);
+  const std::string said = plot(chosen.plot, options.out);
   if (a.output.format == "table") fmt::print("{}", said);
 }
 

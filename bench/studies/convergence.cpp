@@ -152,11 +152,13 @@ void hold_still(std::vector<solver::Pin>& pins, int particles, int coordinate) {
 
 /// Distances [m] of the equilibrium from the exact one.
 struct Errors {
-  double rms, maximum;  ///< the mean weighted with dual cells: the L2 norm
-  double residual;      ///< [N]
+  double rms = 0, maximum = 0;  ///< the mean weighted with dual cells: the L2 norm
+  double residual = 0;          ///< [N]
+  std::string remark = {};      ///< why there is no number
 };
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Errors, rms, maximum, residual, remark)
 
-Errors errors(const Experiment& experiment, int n) {
+Errors find_errors(const Experiment& experiment, int n) {
   const model::Scene scene = scene_of(experiment, n);
   model::Cloth cloth = model::compile(scene);
   hold_still(cloth.ode.pins, cloth.ode.particles(), experiment.still);
@@ -176,6 +178,14 @@ Errors errors(const Experiment& experiment, int n) {
   return {std::sqrt(sum / area), std::sqrt(squares.maxCoeff()), found.residual};
 }
 
+Errors errors(const Experiment& experiment, int n) {
+  try {
+    return find_errors(experiment, n);
+  } catch (const reference::ReferenceError& error) {
+    return {.remark = error.what()};
+  }
+}
+
 /// What all rows of a table have in common, in words of a verdict.
 std::string conclusion(const Experiment& experiment, const std::optional<results::OrderFit>& fit, double finest_error) {
   constexpr double round_off = 1e-10;
@@ -186,18 +196,20 @@ std::string conclusion(const Experiment& experiment, const std::optional<results
 
 /// The curve of one experiment, and its order.
 results::Table figure(const std::string& name, const std::string& title, const std::vector<Experiment>& experiments,
-                      const std::vector<int>& resolutions, Progress& progress) {
+                      const std::vector<int>& resolutions, Units& units) {
   results::TableBuilder table(name, title);
   for (const Experiment& experiment : experiments) {
     std::vector<double> spacings, rms;
     for (const int n : resolutions) {
-      progress.show(fmt::format("{}, {}, {} × {}", experiment.name, experiment.form, n, n));
+      units.show(fmt::format("{}, {}, {} × {}", experiment.name, experiment.form, n, n));
       table.row();
       table.text("experiment", "experiment", "which, with what differs from the scene of that name", experiment.name);
       table.text("form", "form", "of the forces: consistent, or as the algorithms of the thesis print them", experiment.form);
       table.count("n", "n", "particles in one direction", n);
-      if (n <= experiment.finest) try {
-          const Errors e = errors(experiment, n);
+      if (n <= experiment.finest) {
+        const Errors e =
+            units(fmt::format("{} {} {}", experiment.name, experiment.form, n), [&] { return errors(experiment, n); });
+        if (e.remark.empty()) {
           table.number("rms", "rms error", "m", "root mean square distance of the nodes from the exact equilibrium (L2)",
                        e.rms);
           table.number("maximum", "maximum", "m", "largest distance", e.maximum);
@@ -207,11 +219,12 @@ results::Table figure(const std::string& name, const std::string& title, const s
           table.number("residual", "", "N", "largest force that was left", e.residual);
           rms.push_back(e.rms);
           spacings.push_back(1.0 / (n - 1));
-        } catch (const reference::ReferenceError& error) {
-          table.text("remark", "remark", "why there is no number", error.what());
+        } else {
+          table.text("remark", "remark", "why there is no number", e.remark);
         }
+      }
       table.number("uncertainty", "", "m", "of the exact solution", experiment.uncertainty);
-      progress.advance();
+      units.advance();
     }
     const auto fit = results::fit_order(spacings, rms, experiment.uncertainty);
     results::add_fit(table, fit, conclusion(experiment, fit, rms.empty() ? NAN : rms.back()));
@@ -224,9 +237,9 @@ results::Table figure(const std::string& name, const std::string& title, const s
 std::vector<TableJob> convergence(bool quick) {
   const std::vector<int> resolutions = quick ? std::vector{20, 28, 36, 48} : std::vector{5, 10, 20, 40, 80, 160};
   const auto job = [&](const char* name, const char* title, int experiments, auto make) {
-    return TableJob{experiments * static_cast<int>(resolutions.size()), [=](Progress& progress) {
-                      progress.show(fmt::format("exact solution of {}", name));
-                      return figure(name, title, make(), resolutions, progress);
+    return TableJob{experiments * static_cast<int>(resolutions.size()), [=](Units& units) {
+                      units.show(fmt::format("exact solution of {}", name));
+                      return figure(name, title, make(), resolutions, units);
                     }};
   };
   return {job("figure-2.11a", "Figure 2.11 (a), tension: error of the equilibrium against the resolution", 2, tension),

@@ -71,13 +71,15 @@ struct Flutter {
   std::vector<double> swing;         ///< mean of the free edge's distance from the plane of the start, step by step [m]
   double wrinkles = 0;               ///< root mean square distance of the free edge from this mean [m]
   Eigen::VectorXd bending, kinetic;  ///< wave by wave [J]
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE(Flutter, run, swing, wrinkles, bending, kinetic)
 
   double peak_to_peak() const {
     const auto [low, high] = std::ranges::minmax(swing);
     return high - low;
   }
   double rms() const {
-    const Eigen::Map<const Eigen::ArrayXd> s(swing.data(), static_cast<Eigen::Index>(swing.size()));
+    // a copy, since sums over foreign memory are rounded as it happens to be aligned
+    const Eigen::ArrayXd s = Eigen::Map<const Eigen::ArrayXd>(swing.data(), static_cast<Eigen::Index>(swing.size()));
     return std::sqrt((s - s.mean()).square().mean());
   }
 };
@@ -110,15 +112,15 @@ constexpr const char* dampings[] = {"0.2", "0.02", "0.002"};
 constexpr const char* methods[] = {"implicit-euler", "bdf2", "verlet"};
 using Flutters = std::array<Flutter, 3>;
 
-Flutters compare(const char* damping, bool quick, Progress& progress) {
+Flutters compare(const char* damping, bool quick, Units& units) {
   std::vector<model::Override> overrides{{"material.damping", damping}};
   if (quick) overrides.insert(overrides.end(), {{"grid.n", "8"}, {"end.time", "1.5"}});
   const model::Scene scene = model::load_scene("wind", overrides);
   Flutters all;
   for (std::size_t k = 0; k < all.size(); ++k) {
-    progress.show(fmt::format("{}, d = {}, {}", scene.name, damping, methods[k]));
-    all[k] = flutter(scene, methods[k]);
-    progress.advance();
+    units.show(fmt::format("{}, d = {}, {}", scene.name, damping, methods[k]));
+    all[k] = units(fmt::format("{} {}", damping, methods[k]), [&] { return flutter(scene, methods[k]); });
+    units.advance();
   }
   return all;
 }
@@ -194,11 +196,11 @@ results::Table spectrum(const Runs& runs) {
 std::vector<TableJob> figure_3_2(bool quick) {
   const auto runs = std::make_shared<Runs>();  // of the first table, for the second
   return {{static_cast<int>(std::size(dampings) * std::size(methods)),
-           [=](Progress& progress) {
-             for (const char* damping : dampings) runs->push_back(compare(damping, quick, progress));
+           [=](Units& units) {
+             for (const char* damping : dampings) runs->push_back(compare(damping, quick, units));
              return swings(*runs);
            }},
-          {0, [=](Progress&) { return spectrum(*runs); }}};
+          {0, [=](Units&) { return spectrum(*runs); }}};
 }
 
 }  // namespace drape::bench

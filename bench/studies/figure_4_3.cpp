@@ -92,25 +92,30 @@ void add_bar(results::TableBuilder& table, const RunRecord& run, const char* wha
   table.text("verdict", "verdict", "whether it keeps below the bar", verdict);
 }
 
-results::Table bars(bool quick, Progress& progress) {
+/// All bars of a method, from its cells with and without box.
+void add_bars(results::TableBuilder& table, const Group& group, int repetitions) {
+  const RunRecord with = record(group[0]), without = record(group[1]);
+  const auto times = time_group(group, repetitions, [] {});
+  const double time = results::quantile(times[0], 0.5) / results::quantile(times[1], 0.5);
+  const Steps all = with.steps, rest = all.last(std::min(all.size(), at_rest));
+  add_bar(table, with, "CG iterations a step, at rest over before the first contact",
+          iterations(rest) / iterations(before_contact(with)), most_iterations);
+  add_bar(table, with, "time, with over without box", time, most_time);
+  add_bar(table, with, "time a CG iteration, with over without box", time * iterations(without.steps) / iterations(all),
+          most_time);
+}
+
+results::Table bars(bool quick, Units& units) {
   results::TableBuilder table("figure-4.3-bars", "Figure 4.3: what contact costs; the sheet swings with and without the box");
   const model::Scene scene = swing(quick);
   model::Scene without_box = scene;
   without_box.obstacles.clear();
   for (const solver::Method& method : solver::thesis_methods()) {
     if (!method.implicit()) continue;
-    progress.show(fmt::format("cost of contact, {}", method.name));
+    units.show(fmt::format("cost of contact, {}", method.name));
     const Group group{cell(scene, method.name), cell(without_box, method.name)};
-    const RunRecord with = record(group[0]), without = record(group[1]);
-    const auto times = time_group(group, quick ? 1 : 5, [] {});
-    const double time = results::quantile(times[0], 0.5) / results::quantile(times[1], 0.5);
-    const Steps all = with.steps, rest = all.last(std::min(all.size(), at_rest));
-    add_bar(table, with, "CG iterations a step, at rest over before the first contact",
-            iterations(rest) / iterations(before_contact(with)), most_iterations);
-    add_bar(table, with, "time, with over without box", time, most_time);
-    add_bar(table, with, "time a CG iteration, with over without box", time * iterations(without.steps) / iterations(all),
-            most_time);
-    progress.advance();
+    units.rows(table, std::string(method.name), [&](results::TableBuilder& rows) { add_bars(rows, group, quick ? 1 : 5); });
+    units.advance();
   }
   return table.finish();
 }
@@ -121,16 +126,16 @@ std::vector<TableJob> figure_4_3(bool quick) {
   const auto runs = std::make_shared<std::vector<RunRecord>>();  // of the first table, for the last
   const auto implicit = std::ranges::count_if(solver::thesis_methods(), [](const solver::Method& m) { return m.implicit(); });
   return {{2,
-           [=](Progress& progress) {
+           [=](Units& units) {
              for (const char* method : {"bdf2", "sbdf2"}) {
-               progress.show(fmt::format("{} against the box", method));
-               runs->push_back(record(cell(swing(quick), method)));
-               progress.advance();
+               units.show(fmt::format("{} against the box", method));
+               runs->push_back(units(method, [&] { return record(cell(swing(quick), method)); }));
+               units.advance();
              }
              return over_time("figure-4.3", "Figure 4.3: a sheet swings against a box; means over five steps", *runs, window);
            }},
-          {static_cast<int>(implicit), [=](Progress& progress) { return bars(quick, progress); }},
-          {0, [=](Progress&) { return over_time("figure-4.3-steps", "Figure 4.3: every step (in the file)", *runs, 1); }}};
+          {static_cast<int>(implicit), [=](Units& units) { return bars(quick, units); }},
+          {0, [=](Units&) { return over_time("figure-4.3-steps", "Figure 4.3: every step (in the file)", *runs, 1); }}};
 }
 
 }  // namespace drape::bench

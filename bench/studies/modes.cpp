@@ -69,79 +69,83 @@ void add_verdict(results::TableBuilder& table, const std::string& verdict) {
 }
 
 /// The running step against its characteristic polynomial, mode by mode.
-results::Table amplification(bool quick, Progress& progress) {
-  results::TableBuilder table("amplification", "Amplification by the running code against the characteristic polynomials");
+void amplification(results::TableBuilder& table, const Method& method, bool quick) {
   constexpr double agreement = 1e-10, far_outside = 1e3;
-  for (const Method& method : solver::thesis_methods()) {
-    progress.show(fmt::format("amplification of {}", method.name));
-    for (const NamedMode& named : modes_of_the_sheet())
-      for (const double nu : stiffnesses(quick)) {
-        const Mode mode = at_step(named.mode, std::sqrt(nu / named.mode.kappa));
-        if (!method.implicit() && std::max(mode.W, mode.s) > far_outside) continue;  // far outside its limit
-        const double distance = distance_from_theory(method, mode, mode);
-        table.row();
-        add_method(table, method);
-        add_mode(table, named.name, mode);
-        table.number("radius", "|z|", "1", "largest modulus of the amplification factors", spectral_radius(method, mode));
-        table.number("distance", "from theory", "1",
-                     "largest difference of coefficients of the characteristic polynomial, over the largest coefficient",
-                     distance);
-        add_verdict(table, distance <= agreement ? "as in theory" : "NOT as in theory");
-      }
-    progress.advance();
-  }
-  return table.finish();
+  for (const NamedMode& named : modes_of_the_sheet())
+    for (const double nu : stiffnesses(quick)) {
+      const Mode mode = at_step(named.mode, std::sqrt(nu / named.mode.kappa));
+      if (!method.implicit() && std::max(mode.W, mode.s) > far_outside) continue;  // far outside its limit
+      const double distance = distance_from_theory(method, mode, mode);
+      table.row();
+      add_method(table, method);
+      add_mode(table, named.name, mode);
+      table.number("radius", "|z|", "1", "largest modulus of the amplification factors", spectral_radius(method, mode));
+      table.number("distance", "from theory", "1",
+                   "largest difference of coefficients of the characteristic polynomial, over the largest coefficient",
+                   distance);
+      add_verdict(table, distance <= agreement ? "as in theory" : "NOT as in theory");
+    }
 }
 
 /// Where methods become unstable: bisection on the spectral radius of the running step.
-results::Table stability(bool, Progress& progress) {
-  results::TableBuilder table("stability", "Largest stable W = h² ω² by bisection, for shares ω²/κ of the implicit part");
-  for (const Method& method : solver::thesis_methods()) {
-    progress.show(fmt::format("stability limit of {}", method.name));
-    for (const double share : {2.5, 1.5, 1.0, 0.1, 1e-3}) {
-      const double h = reference::stability_limit(method, {1 / share, 1, 0}), W = h * h;
-      const double bound = reference::stability_bound(method.name, W / share, 0);
-      table.row();
-      add_method(table, method);
-      table.number("share", "ω²/κ", "1", "1 in plane, much less transversally, more than 1 with stiff explicit forces", share);
-      table.number("limit", "W at the limit", "1", "largest stable h² ω²; 0: none, infinite: no limit up to h ω = 1600", W);
-      table.number("bound", "in theory", "1", "the same in closed form, at the ν of the limit", bound);
-      const bool equal = std::isinf(W) ? bound > 1e6 : std::abs(W - bound) <= 1e-6 * bound || (W == 0 && bound == 0);
-      add_verdict(table, equal ? "as in theory" : "NOT as in theory");
-    }
-    progress.advance();
+void stability(results::TableBuilder& table, const Method& method, bool) {
+  for (const double share : {2.5, 1.5, 1.0, 0.1, 1e-3}) {
+    const double h = reference::stability_limit(method, {1 / share, 1, 0}), W = h * h;
+    const double bound = reference::stability_bound(method.name, W / share, 0);
+    table.row();
+    add_method(table, method);
+    table.number("share", "ω²/κ", "1", "1 in plane, much less transversally, more than 1 with stiff explicit forces", share);
+    table.number("limit", "W at the limit", "1", "largest stable h² ω²; 0: none, infinite: no limit up to h ω = 1600", W);
+    table.number("bound", "in theory", "1", "the same in closed form, at the ν of the limit", bound);
+    const bool equal = std::isinf(W) ? bound > 1e6 : std::abs(W - bound) <= 1e-6 * bound || (W == 0 && bound == 0);
+    add_verdict(table, equal ? "as in theory" : "NOT as in theory");
   }
-  return table.finish();
 }
 
 /// How transverse motion lags and is damped: figure 3.3 as numbers.
-results::Table artificial(bool quick, Progress& progress) {
-  results::TableBuilder table("artificial", "Artificial inertia and damping of a transverse mode, h ω = 0.01, undamped");
+void artificial(results::TableBuilder& table, const Method& method, bool quick) {
   constexpr double W = 1e-4, tolerance = 1e-3;
+  for (const double nu : stiffnesses(quick)) {
+    if (nu < W) continue;
+    const Mode mode{nu, W, 0};
+    const auto measured = measured_behaviour(method, mode), exact = exact_behaviour(mode);
+    const auto predicted = predicted_behaviour(method.name, mode);
+    const auto added = reference::artificial(method.name, mode);
+    table.row();
+    add_method(table, method);
+    table.number("nu", "ν", "1", "h² κ", nu);
+    table.number("frequency", "frequency", "1", "measured, over the true one", measured.frequency / exact.frequency);
+    table.number("predicted_frequency", "predicted", "1", "the same by the artificial inertia and damping",
+                 predicted.frequency / exact.frequency);
+    table.number("damping", "damping", "1", "decay of the amplitude in one true period",
+                 measured.decay * 2 * std::numbers::pi / exact.frequency);
+    table.number("predicted_damping", "predicted", "1", "the same by the artificial inertia and damping",
+                 predicted.decay * 2 * std::numbers::pi / exact.frequency);
+    table.number("inertia", "inertia added", "1", "over the true one", added.inertia);
+    const double scale = std::hypot(predicted.frequency, predicted.decay);
+    const double distance = std::hypot(measured.frequency - predicted.frequency, measured.decay - predicted.decay);
+    add_verdict(table, distance <= tolerance * scale ? "as predicted" : "NOT as predicted");
+  }
+}
+
+/// A table with some rows for each method.
+struct MethodTable {
+  const char* name;
+  const char* description;
+  void (*add_rows)(results::TableBuilder& table, const Method& method, bool quick);
+};
+
+constexpr MethodTable method_tables[] = {
+    {"amplification", "Amplification by the running code against the characteristic polynomials", amplification},
+    {"stability", "Largest stable W = h² ω² by bisection, for shares ω²/κ of the implicit part", stability},
+    {"artificial", "Artificial inertia and damping of a transverse mode, h ω = 0.01, undamped", artificial}};
+
+results::Table compute(const MethodTable& what, bool quick, Units& units) {
+  results::TableBuilder table(what.name, what.description);
   for (const Method& method : solver::thesis_methods()) {
-    progress.show(fmt::format("artificial inertia of {}", method.name));
-    for (const double nu : stiffnesses(quick)) {
-      if (nu < W) continue;
-      const Mode mode{nu, W, 0};
-      const auto measured = measured_behaviour(method, mode), exact = exact_behaviour(mode);
-      const auto predicted = predicted_behaviour(method.name, mode);
-      const auto added = reference::artificial(method.name, mode);
-      table.row();
-      add_method(table, method);
-      table.number("nu", "ν", "1", "h² κ", nu);
-      table.number("frequency", "frequency", "1", "measured, over the true one", measured.frequency / exact.frequency);
-      table.number("predicted_frequency", "predicted", "1", "the same by the artificial inertia and damping",
-                   predicted.frequency / exact.frequency);
-      table.number("damping", "damping", "1", "decay of the amplitude in one true period",
-                   measured.decay * 2 * std::numbers::pi / exact.frequency);
-      table.number("predicted_damping", "predicted", "1", "the same by the artificial inertia and damping",
-                   predicted.decay * 2 * std::numbers::pi / exact.frequency);
-      table.number("inertia", "inertia added", "1", "over the true one", added.inertia);
-      const double scale = std::hypot(predicted.frequency, predicted.decay);
-      const double distance = std::hypot(measured.frequency - predicted.frequency, measured.decay - predicted.decay);
-      add_verdict(table, distance <= tolerance * scale ? "as predicted" : "NOT as predicted");
-    }
-    progress.advance();
+    units.show(fmt::format("{} of {}", what.name, method.name));
+    units.rows(table, std::string(method.name), [&](results::TableBuilder& rows) { what.add_rows(rows, method, quick); });
+    units.advance();
   }
   return table.finish();
 }
@@ -151,8 +155,8 @@ results::Table artificial(bool quick, Progress& progress) {
 std::vector<TableJob> modes(bool quick) {
   const int parts = static_cast<int>(solver::thesis_methods().size());
   std::vector<TableJob> jobs;
-  for (auto* compute : {amplification, stability, artificial})
-    jobs.push_back({parts, [=](Progress& progress) { return compute(quick, progress); }});
+  for (const MethodTable& table : method_tables)
+    jobs.push_back({parts, [=](Units& units) { return compute(table, quick, units); }});
   return jobs;
 }
 

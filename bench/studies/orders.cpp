@@ -91,19 +91,21 @@ class Refinement {
   double uncertainty_ = 0;
 };
 
-results::Table orders_on(const Setting& setting, bool quick, Progress& progress) {
+results::Table orders_on(const Setting& setting, bool quick, Units& units) {
   const model::Scene scene = model::load_scene(setting.scene, setting.overrides);
   const model::Cloth cloth = model::compile(scene);
-  progress.show("reference of " + scene.name);
+  units.show("reference of " + scene.name);
   References references(SweepOptions().agreement, 1e-12);  // the more of a curve is resolved
   const reference::Reference reference = references(scene, cloth);
-  progress.advance();
+  units.advance();
   results::TableBuilder table("orders-" + scene.name, fmt::format("Order in time on {}, {:g} s; reference {} + {}", scene.name,
                                                                   scene.end, reference.name, reference.witness));
   for (const Method& method : solver::methods()) {
-    progress.show(fmt::format("{} on {}", method.name, scene.name));
-    Refinement(scene, cloth, reference, method).add_rows(table, quick ? 0.5 : 8);
-    progress.advance();
+    units.show(fmt::format("{} on {}", method.name, scene.name));
+    units.rows(table, std::string(method.name), [&](results::TableBuilder& rows) {
+      Refinement(scene, cloth, reference, method).add_rows(rows, quick ? 0.5 : 8);
+    });
+    units.advance();
   }
   return table.finish();
 }
@@ -113,8 +115,8 @@ results::Table orders_on(const Setting& setting, bool quick, Progress& progress)
 std::vector<TableJob> orders(bool quick) {
   std::vector<TableJob> jobs;
   for (const Setting& setting : settings(quick))
-    jobs.push_back({1 + static_cast<int>(solver::methods().size()),
-                    [=](Progress& progress) { return orders_on(setting, quick, progress); }});
+    jobs.push_back(
+        {1 + static_cast<int>(solver::methods().size()), [=](Units& units) { return orders_on(setting, quick, units); }});
   return jobs;
 }
 

@@ -23,31 +23,33 @@ const std::vector<std::string> scenes{"hung-edge", "hung-corners"};
 
 /// What a family computes of a scene, what it counted, and how long it took [s].
 struct Solution {
-  reference::Trajectory trajectory;
-  std::int64_t steps, factorisations;
-  double seconds;
+  std::vector<solver::Vectors> positions;
+  std::int64_t steps = 0, factorisations = 0;
+  double seconds = 0;
 };
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Solution, positions, steps, factorisations, seconds)
 
 Solution solve(const std::string& family, const model::Scene& scene) {
   const model::Cloth cloth = model::compile(scene);
   std::vector<double> times;
   for (int k = 1; k <= outputs; ++k) times.push_back(scene.end * k / outputs);
   const auto begin = std::chrono::steady_clock::now();
-  Solution solution{
-      reference::family(family).solve(cloth.ode, cloth.start, 0, times, {.rtol = reference_rtol, .size = model::size(scene)}),
-      0, 0, 0};
+  const reference::Trajectory trajectory =
+      reference::family(family).solve(cloth.ode, cloth.start, 0, times, {.rtol = reference_rtol, .size = model::size(scene)});
+  Solution solution;
   solution.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   const std::string prefix = family.substr(0, family.find('-'));
   solution.steps = cloth.ode.work->count(prefix + "/steps");
   solution.factorisations = cloth.ode.work->count(prefix + "/factorisations");
+  for (const solver::State& y : trajectory.states) solution.positions.push_back(y.x);
   return solution;
 }
 
 /// Largest distance of positions at the output times, over the size of the scene.
 double largest_distance(const Solution& a, const Solution& b, double size) {
   double largest = 0;
-  for (std::size_t k = 0; k < a.trajectory.states.size(); ++k)
-    largest = std::max(largest, reference::rms_distance(a.trajectory.states[k].x, b.trajectory.states[k].x) / size);
+  for (std::size_t k = 0; k < a.positions.size(); ++k)
+    largest = std::max(largest, reference::rms_distance(a.positions[k], b.positions[k]) / size);
   return largest;
 }
 
@@ -66,7 +68,7 @@ void add_row(results::TableBuilder& table, const model::Scene& scene, const std:
   table.text("verdict", "verdict", "whether it agrees with CVODE to 1e-8", apart <= closest ? "agrees" : "NOT in agreement");
 }
 
-results::Table compare(bool quick, Progress& progress) {
+results::Table compare(bool quick, Units& units) {
   results::TableBuilder table(
       "references", fmt::format("Three families of solvers on the same equation of motion, rtol = {:g}", reference_rtol));
   for (const std::string& name : scenes)
@@ -76,9 +78,9 @@ results::Table compare(bool quick, Progress& progress) {
       const model::Scene scene = model::load_scene(name, overrides);
       std::vector<Solution> solutions;
       for (const std::string& family : family_names) {
-        progress.show(fmt::format("{}, d = {}, {}", name, damping, family));
-        solutions.push_back(solve(family, scene));
-        progress.advance();
+        units.show(fmt::format("{}, d = {}, {}", name, damping, family));
+        solutions.push_back(units(fmt::format("{} {} {}", name, damping, family), [&] { return solve(family, scene); }));
+        units.advance();
       }
       for (std::size_t k = 0; k < family_names.size(); ++k)
         add_row(table, scene, family_names[k], solutions[k], solutions.front());
@@ -90,7 +92,7 @@ results::Table compare(bool quick, Progress& progress) {
 
 std::vector<TableJob> references(bool quick) {
   const auto parts = static_cast<int>(scenes.size() * reference_dampings.size() * family_names.size());
-  return {{parts, [quick](Progress& progress) { return compare(quick, progress); }}};
+  return {{parts, [quick](Units& units) { return compare(quick, units); }}};
 }
 
 }  // namespace drape::bench

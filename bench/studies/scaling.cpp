@@ -78,44 +78,60 @@ std::string_view linear_solver_of(const Run& run) {
   return used;
 }
 
-/// Times some steps and adds a row. Returns the mean wall time of a step [s].
-double add_steps(results::TableBuilder& table, int n, int threads, const std::string& method) {
+/// What some steps cost on average, and what the run did in all.
+struct StepCost {
+  double seconds = 0, updates = 0, iterations = 0;  ///< a step
+  int particles = 0;
+  std::string linear_solver = {};
+  std::int64_t escalations = 0;
+  double memory = 0;  ///< [MB]
+};
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(StepCost, seconds, updates, iterations, particles, linear_solver, escalations, memory)
+
+StepCost time_steps(int n, const std::string& method) {
   constexpr int timed = 3;
   Run run(n, method);
   const auto updates_before = run.count("updates"), iterations_before = run.count("cg_iterations");
   double time = 0;
   for (int k = 0; k < timed; ++k) time += run.advance() / timed;
-  const double updates = static_cast<double>(run.count("updates") - updates_before) / timed;
-  const double iterations = static_cast<double>(run.count("cg_iterations") - iterations_before) / timed;
-  const double per_particle = 1e9 * time / run.particles();
+  return {.seconds = time,
+          .updates = static_cast<double>(run.count("updates") - updates_before) / timed,
+          .iterations = static_cast<double>(run.count("cg_iterations") - iterations_before) / timed,
+          .particles = run.particles(),
+          .linear_solver = std::string(linear_solver_of(run)),
+          .escalations = run.count("escalations"),
+          .memory = peak_memory_mb()};
+}
 
+void add_steps(results::TableBuilder& table, int n, int threads, const std::string& method, const StepCost& cost) {
+  const double per_particle = 1e9 * cost.seconds / cost.particles;
   add_size(table, n, threads);
   table.text("method", "method", "time integrator", method);
-  table.text("linear_solver", "chosen", "the linear solver that auto chose", std::string(linear_solver_of(run)));
-  table.number("step", "step", "ms", "mean wall time of a step", 1e3 * time);
+  table.text("linear_solver", "chosen", "the linear solver that auto chose", cost.linear_solver);
+  table.number("step", "step", "ms", "mean wall time of a step", 1e3 * cost.seconds);
   table.number("per_particle", "/particle", "ns", "the same, over the number of particles", per_particle);
-  table.number("updates", "updates", "1", "linear systems a step", updates);
-  table.number("per_update", "/update", "ns", "time over the number of particles and updates", per_particle / updates);
-  table.number("cg_iterations", "CG", "1", "iterations of conjugate gradients a step", iterations);
-  table.count("escalations", "to Newton", "stages that auto gave to Newton's matrix", run.count("escalations"));
-  table.number("memory", "memory", "MB", "most memory that the process had until then", peak_memory_mb());
-  return time;
+  table.number("updates", "updates", "1", "linear systems a step", cost.updates);
+  table.number("per_update", "/update", "ns", "time over the number of particles and updates", per_particle / cost.updates);
+  table.number("cg_iterations", "CG", "1", "iterations of conjugate gradients a step", cost.iterations);
+  table.count("escalations", "to Newton", "stages that auto gave to Newton's matrix", cost.escalations);
+  table.number("memory", "memory", "MB", "most memory that the process had until then", cost.memory);
 }
 
 }  // namespace
 
-results::Table steps(bool quick, Progress& progress) {
+results::Table steps(bool quick, Units& units) {
   results::TableBuilder table("scaling",
                               fmt::format("A step of {:g} s of the sheet hung by its edge, by size; all solvers: auto", step));
   std::vector<std::vector<double>> times(methods.size());
   for (const int n : sizes(quick))
     for (std::size_t k = 0; k < methods.size(); ++k) {
-      progress.show(fmt::format("{} x {}, {}", n, n, methods[k]));
+      units.show(fmt::format("{} x {}, {}", n, n, methods[k]));
       with_threads(n, [&](int threads) {
-        const double time = add_steps(table, n, threads, methods[k]);
-        if (threads == 1) times[k].push_back(time);
+        const StepCost cost = units(fmt::format("{} {} {}", n, methods[k], threads), [&] { return time_steps(n, methods[k]); });
+        add_steps(table, n, threads, methods[k], cost);
+        if (threads == 1) times[k].push_back(cost.seconds);
       });
-      progress.advance();
+      units.advance();
     }
   for (std::size_t k = 0; k < methods.size(); ++k) {
     table.row();
@@ -129,9 +145,9 @@ results::Table steps(bool quick, Progress& progress) {
 
 std::vector<TableJob> scaling(bool quick) {
   const int count = static_cast<int>(scaling_study::sizes(quick).size());
-  return {{2 * count, [quick](Progress& progress) { return scaling_study::steps(quick, progress); }},
-          {count, [quick](Progress& progress) { return scaling_study::iterations(quick, progress); }},
-          {3, [quick](Progress& progress) { return scaling_study::bars(quick, progress); }}};
+  return {{2 * count, [quick](Units& units) { return scaling_study::steps(quick, units); }},
+          {count, [quick](Units& units) { return scaling_study::iterations(quick, units); }},
+          {3, [quick](Units& units) { return scaling_study::bars(quick, units); }}};
 }
 
 }  // namespace drape::bench

@@ -140,24 +140,29 @@ void add_iteration(results::TableBuilder& table, int n, int threads, const std::
                1e-9 * median(turns.triad));
 }
 
+/// All preconditioners on one size.
+void add_iterations(results::TableBuilder& table, int n) {
+  constexpr int count = 11;
+  const model::Cloth cloth = hung_sheet(n);
+  const SparseMatrix A = stage_matrix(cloth.ode);
+  Triad triad(n * n);
+  with_threads(n, [&](int threads) {
+    add_iteration(table, n, threads, "none", turns(count, triad, BareIteration(A)));
+    for (const char* name : {"ic0", "mic0", "multigrid", "cholesky"})
+      if (name != std::string_view("cholesky") || n <= 316)
+        add_iteration(table, n, threads, name, turns(count, triad, Iterations(A, *cloth.ode.work, name)));
+  });
+}
+
 }  // namespace
 
-results::Table iterations(bool quick, Progress& progress) {
-  constexpr int count = 11;
+results::Table iterations(bool quick, Units& units) {
   results::TableBuilder table("scaling-iterations",
                               "An iteration of conjugate gradients, by size, in turns with the triad a = b + 3 c");
   for (const int n : sizes(quick)) {
-    progress.show(fmt::format("{} x {}, conjugate gradients", n, n));
-    const model::Cloth cloth = hung_sheet(n);
-    const SparseMatrix A = stage_matrix(cloth.ode);
-    Triad triad(n * n);
-    with_threads(n, [&](int threads) {
-      add_iteration(table, n, threads, "none", turns(count, triad, BareIteration(A)));
-      for (const char* name : {"ic0", "mic0", "multigrid", "cholesky"})
-        if (name != std::string_view("cholesky") || n <= 316)
-          add_iteration(table, n, threads, name, turns(count, triad, Iterations(A, *cloth.ode.work, name)));
-    });
-    progress.advance();
+    units.show(fmt::format("{} x {}, conjugate gradients", n, n));
+    units.rows(table, std::to_string(n), [&](results::TableBuilder& rows) { add_iterations(rows, n); });
+    units.advance();
   }
   return table.finish();
 }

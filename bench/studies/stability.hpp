@@ -14,10 +14,12 @@ inline constexpr double horizon = 0.24;      ///< [s], in which a free sheet fal
 struct Judged {
   Attempt trial;
   results::UncertainError error;
-  results::Verdict verdict;
+  results::Verdict verdict = results::Verdict::bounded;
 
   bool stable() const { return verdict <= results::Verdict::bounded; }
 };
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Judged, trial, error, verdict)
+
 Judged judged(Attempt trial, const Yardstick& yardstick);
 
 /// A square sheet of n × n particles, horizontal, hung by two corners, with the shear modulus k/100.

@@ -62,6 +62,8 @@ constexpr const char* bar_methods[] = {"implicit-euler", "bdf2", "midpoint"};
 
 bool is_bar_method(std::string_view name) { return std::ranges::find(bar_methods, name) != std::end(bar_methods); }
 
+bool tries(const Sheet& sheet, const Row& row) { return !sheet.spot_check || is_bar_method(row.name); }
+
 /// What a run may cost. A sub-step of an explicit method is far cheaper than an update of an implicit one.
 std::int64_t budget(const Method& method) {
   if (!method.implicit()) return 100'000;
@@ -139,28 +141,37 @@ void add_cell(results::TableBuilder& table, const AtlasCell& cell, bool shown) {
   add_verdict(table, cell.judged, shown);
 }
 
+/// All methods that are tried on a sheet of one stiffness and one damping.
+std::vector<Judged> try_rows(const std::vector<Row>& rows, const Sheet& sheet, double nu, double ratio) {
+  const double l = 0.8 / (sheet.n - 1), h = sheet.step, k = nu * l * l / (h * h);
+  const Specimen specimen = hung_by_corners(sheet.n, k, h * k / ratio);
+  const Yardstick yardstick(specimen, horizon, sheet.effort);
+  std::vector<Judged> runs;
+  for (const Row& row : rows)
+    if (tries(sheet, row))
+      runs.push_back(judged(attempt(specimen, {row.method, row.options, h, horizon,
+                                               static_cast<std::int64_t>(sheet.effort * static_cast<double>(row.budget))}),
+                            yardstick));
+  return runs;
+}
+
 /// All runs: for the file.
-results::Table explore(Atlas& atlas, Progress& progress) {
+results::Table explore(Atlas& atlas, Units& units) {
   results::TableBuilder table("stability-atlas", "Every run of the atlas");
   Predictions predict;
   for (const Sheet& sheet : atlas.sheets)
     for (const double nu : sheet.stiffnesses)
       for (const double ratio : sheet.ratios) {
-        progress.show(fmt::format("{0} x {0}, h = {1}, ν = {2:g}, h k/d = {3:g}", sheet.n, sheet.step, nu, ratio));
-        const double l = 0.8 / (sheet.n - 1), h = sheet.step, k = nu * l * l / (h * h);
-        const Specimen specimen = hung_by_corners(sheet.n, k, h * k / ratio);
-        const Yardstick yardstick(specimen, horizon, sheet.effort);
-        for (const Row& row : atlas.rows) {
-          if (sheet.spot_check && !is_bar_method(row.name)) continue;
-          const Expected expected = predict(row, sheet, nu, ratio);
-          atlas.cells.push_back(
-              {&sheet, &row, nu, ratio, expected,
-               judged(attempt(specimen, {row.method, row.options, h, horizon,
-                                         static_cast<std::int64_t>(sheet.effort * static_cast<double>(row.budget))}),
-                      yardstick)});
+        units.show(fmt::format("{0} x {0}, h = {1}, ν = {2:g}, h k/d = {3:g}", sheet.n, sheet.step, nu, ratio));
+        const auto runs = units(fmt::format("{} {} {} {}", sheet.n, sheet.step, nu, ratio),
+                                [&] { return try_rows(atlas.rows, sheet, nu, ratio); });
+        for (std::size_t k = 0, run = 0; k < atlas.rows.size(); ++k) {
+          const Row& row = atlas.rows[k];
+          if (!tries(sheet, row)) continue;
+          atlas.cells.push_back({&sheet, &row, nu, ratio, predict(row, sheet, nu, ratio), runs[run++]});
           add_cell(table, atlas.cells.back(), false);
         }
-        progress.advance();
+        units.advance();
       }
   return table.finish();
 }
@@ -171,7 +182,7 @@ results::Table count_verdicts(const Atlas& atlas) {
   results::TableBuilder table("stability-verdicts", "How many runs of the atlas end how, method by method");
   for (const Sheet& sheet : atlas.sheets)
     for (const Row& row : atlas.rows) {
-      if (sheet.spot_check && !is_bar_method(row.name)) continue;
+      if (!tries(sheet, row)) continue;
       std::array<int, results::verdicts> counts{};
       int total = 0, as_predicted = 0;
       for (const AtlasCell& cell : atlas.cells) {
@@ -236,9 +247,9 @@ std::vector<TableJob> stability_atlas(bool quick) {
   const auto atlas = std::make_shared<Atlas>(Atlas{sheets(quick), rows(), {}});
   int cells = 0;
   for (const Sheet& sheet : atlas->sheets) cells += static_cast<int>(sheet.stiffnesses.size() * sheet.ratios.size());
-  std::vector<TableJob> jobs{{cells, [=](Progress& progress) { return explore(*atlas, progress); }}};
+  std::vector<TableJob> jobs{{cells, [=](Units& units) { return explore(*atlas, units); }}};
   for (auto* summarise : {count_verdicts, check_bar, list_surprises})
-    jobs.push_back({0, [=](Progress&) { return summarise(*atlas); }});
+    jobs.push_back({0, [=](Units&) { return summarise(*atlas); }});
   return jobs;
 }
 

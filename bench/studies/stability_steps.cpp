@@ -65,33 +65,40 @@ void add_step(results::TableBuilder& table, const char* name, const char* title,
   if (steps > 0) table.number(name, title, "s", description, horizon / steps);
 }
 
+/// All methods on one sheet.
+void add_largest_steps(results::TableBuilder& table, int n, const Softness& softness) {
+  const auto [k, d] = softness;
+  const Specimen specimen = hung_by_corners(n, k, d);
+  const Yardstick yardstick(specimen, horizon);
+  for (const solver::Method& method : solver::methods()) {
+    FewestSteps search(specimen, yardstick, method);
+    table.row();
+    table.number("tension", "k", "N/m", "tension modulus", k);
+    table.number("damping", "d", "N s/m", "damping, linear", d);
+    table.text("method", "method", "time integrator", std::string(method.name));
+    add_step(table, "accurate", "accurate", "largest step that is accurate",
+             search.fewest([](const Judged& run) { return uncut(run) && run.verdict == Verdict::accurate; }));
+    add_step(table, "stable", "stable", "largest step that is stable, right or wrong",
+             search.fewest([](const Judged& run) { return uncut(run) && run.stable(); }));
+    table.number("uncertainty", "±", "1", "how far the two reference methods differ", yardstick.uncertainty());
+  }
+}
+
 }  // namespace
 
 TableJob largest_steps(bool quick) {
   const std::vector<Softness> sheets =
       quick ? std::vector<Softness>{{1e4, 50}} : std::vector<Softness>{{1e4, 50}, {1e4, 5}, {1e4, 0.5}, {1e6, 5}};
-  return {static_cast<int>(sheets.size()), [=](Progress& progress) {
+  return {static_cast<int>(sheets.size()), [=](Units& units) {
             results::TableBuilder table(
                 "stability-steps",
                 fmt::format("The largest usable step of every method by bisection, at least {:.2g} s, to {} s",
                             horizon / most_parts, horizon));
-            for (const auto& [k, d] : sheets) {
-              const Specimen specimen = hung_by_corners(quick ? 6 : particles, k, d);
-              const Yardstick yardstick(specimen, horizon);
-              for (const solver::Method& method : solver::methods()) {
-                progress.show(fmt::format("largest step of {}, k = {}, d = {}", method.name, k, d));
-                FewestSteps search(specimen, yardstick, method);
-                table.row();
-                table.number("tension", "k", "N/m", "tension modulus", k);
-                table.number("damping", "d", "N s/m", "damping, linear", d);
-                table.text("method", "method", "time integrator", std::string(method.name));
-                add_step(table, "accurate", "accurate", "largest step that is accurate",
-                         search.fewest([](const Judged& run) { return uncut(run) && run.verdict == Verdict::accurate; }));
-                add_step(table, "stable", "stable", "largest step that is stable, right or wrong",
-                         search.fewest([](const Judged& run) { return uncut(run) && run.stable(); }));
-                table.number("uncertainty", "±", "1", "how far the two reference methods differ", yardstick.uncertainty());
-              }
-              progress.advance();
+            for (const Softness& sheet : sheets) {
+              units.show(fmt::format("largest steps, k = {}, d = {}", sheet.k, sheet.d));
+              units.rows(table, fmt::format("{} {}", sheet.k, sheet.d),
+                         [&](results::TableBuilder& rows) { add_largest_steps(rows, quick ? 6 : particles, sheet); });
+              units.advance();
             }
             return table.finish();
           }};

@@ -95,6 +95,17 @@ Attempt endure(const Stress& stress, int n, Conditions conditions) {
   return attempt(specimen, conditions);
 }
 
+void add_stress(results::TableBuilder& table, const Stress& stress, int n, const std::vector<const solver::Method*>& methods) {
+  const auto run = [&](const Conditions& conditions) { return endure(stress, n, conditions); };
+  const Yardstick yardstick(stress.make(n), horizon, run);
+  for (const solver::Method* method : methods) {
+    table.row();
+    table.text("case", "case", "what is done to the sheet", stress.name);
+    table.text("method", "method", "time integrator", std::string(method->name));
+    add_verdict(table, judged(run({method, {}, stress_step, horizon, method->implicit() ? 4'000 : 100'000}), yardstick), true);
+  }
+}
+
 }  // namespace
 
 TableJob stress_cases(bool quick) {
@@ -102,21 +113,12 @@ TableJob stress_cases(bool quick) {
   std::vector<const solver::Method*> chosen;
   for (const solver::Method& method : solver::methods())
     if (!quick || method.name == "bdf2" || method.name == "verlet") chosen.push_back(&method);
-  return {static_cast<int>(std::size(stresses)), [=](Progress& progress) {
+  return {static_cast<int>(std::size(stresses)), [=](Units& units) {
             results::TableBuilder table("stability-stress", "What no scene should do to a solver, h = 0.01 s");
             for (const Stress& stress : stresses) {
-              progress.show(stress.name);
-              const auto run = [&](const Conditions& conditions) { return endure(stress, n, conditions); };
-              const Yardstick yardstick(stress.make(n), horizon, run);
-              for (const solver::Method* method : chosen) {
-                table.row();
-                table.text("case", "case", "what is done to the sheet", stress.name);
-                table.text("method", "method", "time integrator", std::string(method->name));
-                add_verdict(table,
-                            judged(run({method, {}, stress_step, horizon, method->implicit() ? 4'000 : 100'000}), yardstick),
-                            true);
-              }
-              progress.advance();
+              units.show(stress.name);
+              units.rows(table, stress.name, [&](results::TableBuilder& rows) { add_stress(rows, stress, n, chosen); });
+              units.advance();
             }
             return table.finish();
           }};

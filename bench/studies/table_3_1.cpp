@@ -62,15 +62,15 @@ std::string verdict(const RunsOfBlock& runs) {
                      falls ? "falls" : "does NOT always fall");
 }
 
-results::Table compute(bool quick, Progress& progress) {
+results::Table compute(bool quick, Units& units) {
   results::TableBuilder table("table-3.1", "Table 3.1: the work of BDF(2) on the tablecloth against stiffness k and damping d");
   for (const Block& block : blocks()) {
     RunsOfBlock runs;
     for (const int i : {0, 1})
       for (const int j : {0, 1}) {
-        progress.show(fmt::format("tablecloth, k = {}, d = {}", block.k[i], block.d[j]));
+        units.show(fmt::format("tablecloth, k = {}, d = {}", block.k[i], block.d[j]));
         const model::Scene cloth = scene(block.k[i], block.d[j], quick);
-        runs[i][j] = run_bdf2(cloth);
+        runs[i][j] = units(fmt::format("{} {} {}", block.name, i, j), [&] { return run_bdf2(cloth); });
         table.row();
         table.text("rows", "rows", "the thesis' parameters, or such that the cloth drapes within the time", block.name);
         table.number("tension", "k", "N/m", "tension modulus", block.k[i]);
@@ -78,7 +78,7 @@ results::Table compute(bool quick, Progress& progress) {
         table.number("stiffness_to_damping", "h k/d", "1", "what the fixed-point loop's contraction depends on",
                      draping_step * block.k[i] / block.d[j]);
         add_draping(table, cloth, runs[i][j], block.thesis[i][j]);
-        progress.advance();
+        units.advance();
       }
     table.text("verdict", "work", "of the four runs: whether updates and CG iterations do as the thesis says", verdict(runs));
   }
@@ -88,7 +88,7 @@ results::Table compute(bool quick, Progress& progress) {
 }  // namespace
 
 std::vector<TableJob> table_3_1(bool quick) {
-  return {{static_cast<int>(4 * blocks().size()), [quick](Progress& progress) { return compute(quick, progress); }}};
+  return {{static_cast<int>(4 * blocks().size()), [quick](Units& units) { return compute(quick, units); }}};
 }
 
 }  // namespace drape::bench

@@ -62,17 +62,26 @@ void add_row(results::TableBuilder& table, const TableclothBlock& block, const C
   add_draping(table, cell.scene, run, known ? std::optional(printed->second) : std::nullopt);
 }
 
-results::Table compute_tablecloth(bool quick, Progress& progress) {
+std::vector<results::RunRecord> timed_runs(const Group& group, int count) {
+  const auto times = time_group(group, count, [] {});
+  std::vector<results::RunRecord> runs;
+  for (std::size_t k = 0; k < group.size(); ++k) {
+    runs.push_back(record(group[k]));
+    runs.back().times_ms = times[k];
+  }
+  return runs;
+}
+
+results::Table compute_tablecloth(bool quick, Units& units) {
   results::TableBuilder table("table-3.2",
                               "Table 3.2: the methods on the tablecloth; the thesis' figures are from a Pentium III");
   for (const TableclothBlock& block : tablecloth_blocks()) {
-    progress.show("tablecloth, " + block.name);
+    units.show("tablecloth, " + block.name);
     const Group group = cells(block, quick);
-    const auto times = time_group(group, repetitions(quick), [&] { progress.advance(); });
+    const auto runs = units(block.name, [&] { return timed_runs(group, repetitions(quick)); });
     for (std::size_t k = 0; k < group.size(); ++k) {
-      results::RunRecord run = record(group[k]);
-      run.times_ms = times[k];
-      add_row(table, block, group[k], run);
+      add_row(table, block, group[k], runs[k]);
+      units.advance();
     }
   }
   return table.finish();
@@ -82,9 +91,8 @@ results::Table compute_tablecloth(bool quick, Progress& progress) {
 
 std::vector<TableJob> table_3_2(bool quick) {
   int parts = 0;
-  for (const TableclothBlock& block : tablecloth_blocks())
-    parts += repetitions(quick) * static_cast<int>(cells(block, quick).size());
-  return {{parts, [quick](Progress& progress) { return compute_tablecloth(quick, progress); }}};
+  for (const TableclothBlock& block : tablecloth_blocks()) parts += static_cast<int>(cells(block, quick).size());
+  return {{parts, [quick](Units& units) { return compute_tablecloth(quick, units); }}};
 }
 
 }  // namespace drape::bench

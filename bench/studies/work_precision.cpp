@@ -91,14 +91,26 @@ std::vector<solver::Vectors> leapfrog(const Problem& problem, double fraction) {
 }
 
 /// Large undamped sheets are beyond the families' factorisations, but not stiff: two explicit families.
-void find_explicit_truth(Problem& problem) {
+struct ExplicitTruth {
+  std::vector<solver::Vectors> positions;
+  double uncertainty = 0;  ///< [m]
+};
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ExplicitTruth, positions, uncertainty)
+
+ExplicitTruth find_explicit_truth(const Problem& problem) {
   constexpr double fraction = 0.1, rtol = 1e-5;
-  problem.truth = leapfrog(problem, fraction);
+  ExplicitTruth truth{leapfrog(problem, fraction)};
   const model::Cloth cloth = model::compile(problem.scene);
   const reference::SolveOptions options{.rtol = rtol, .size = model::size(problem.scene), .max_order = 4};
   const auto witness = reference::arkode_erk(cloth.ode, cloth.start, 0, problem.times, options).states;
   for (std::size_t k = 0; k < witness.size(); ++k)
-    problem.uncertainty = std::max(problem.uncertainty, reference::rms_distance(problem.truth[k], witness[k].x));
+    truth.uncertainty = std::max(truth.uncertainty, reference::rms_distance(truth.positions[k], witness[k].x));
+  return truth;
+}
+
+void set_explicit_truth(Problem& problem, const ExplicitTruth& truth) {
+  problem.truth = truth.positions;
+  problem.uncertainty = truth.uncertainty;
   problem.length = 1;  // errors in metres, as those of the other codes
   problem.asked = peer_errors();
 }
@@ -106,15 +118,18 @@ void find_explicit_truth(Problem& problem) {
 /// What the tables of all scenes are made from.
 using All = std::vector<SceneTrials>;
 
-results::Table try_scene(const Entry& entry, All& all, Progress& progress) {
-  progress.show("reference of " + entry.name);
+results::Table try_scene(const Entry& entry, All& all, Units& units) {
+  units.show("reference of " + entry.name);
   SceneTrials& scene = all.emplace_back(SceneTrials{problem(entry), {}, {}});
   Problem& problem = scene.problem;
-  entry.scene.name == "peer-edge" ? find_explicit_truth(problem) : find_truth(problem);
+  if (entry.scene.name == "peer-edge")
+    set_explicit_truth(problem, units("truth", [&] { return find_explicit_truth(problem); }));
+  else
+    find_truth(problem);
   scene.families = families(problem.scene, entry.search);
-  scene.trials = try_all(problem, scene.families, entry.effort, progress);
-  progress.show("timing " + entry.name);
-  time_fronts(problem, scene.trials, entry.effort);
+  scene.trials = try_all(problem, scene.families, entry.effort, units);
+  units.show("timing " + entry.name);
+  time_fronts(problem, scene.trials, entry.effort, units);
   return trials_table(scene);
 }
 
@@ -124,9 +139,9 @@ std::vector<TableJob> jobs(const std::vector<Entry>& list) {
   all->reserve(list.size());  // trials point into what is in it
   for (const Entry& entry : list)
     jobs.push_back({static_cast<int>(families(entry.scene, entry.search).size()),
-                    [=](Progress& progress) { return try_scene(entry, *all, progress); }});
+                    [=](Units& units) { return try_scene(entry, *all, units); }});
   for (auto* table : {winners_table, defaults_table, bars_table, peers_table})
-    jobs.push_back({0, [=](Progress&) { return table(*all); }});
+    jobs.push_back({0, [=](Units&) { return table(*all); }});
   return jobs;
 }
 

@@ -9,6 +9,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "bench/limits.hpp"
 #include "bench/timing.hpp"
 #include "reference/reference.hpp"
 
@@ -32,21 +33,6 @@ constexpr double slack = 1.4;
 
 double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
-/// Lets evaluations of the force and its derivatives fail when the time is up.
-void limit(solver::SplitOde& ode, double seconds) {
-  const auto deadline = Clock::now() + std::chrono::duration<double>(seconds);
-  const auto limited = [=](auto inner) {
-    return [=](auto&&... arguments) {
-      if (Clock::now() > deadline) throw std::runtime_error(fmt::format("longer than {:g} s", seconds));
-      inner(arguments...);
-    };
-  };
-  ode.force = limited(ode.force);
-  ode.explicit_force = limited(ode.explicit_force);
-  ode.jacobian = limited(ode.jacobian);
-  ode.newton_matrix = limited(ode.newton_matrix);
-}
-
 double largest_error(const Problem& problem, const std::vector<solver::Vectors>& positions) {
   double largest = 0;
   for (std::size_t k = 0; k < problem.truth.size(); ++k)
@@ -62,20 +48,30 @@ std::int64_t count(const solver::Work& work, std::initializer_list<std::string_v
   return sum;
 }
 
-void note_work(const solver::Work& work, Trial& trial) {
+/// A trial as a unit of work: the place of its candidate in its family, and what became of it.
+struct Tried {
+  std::size_t candidate = 0;
+  std::string outcome = "success";
+  results::Measured measured = {std::nan(""), {}};
+  std::int64_t forces = 0, factorisations = 0, steps = 0;
+};
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Tried, candidate, outcome, measured, forces, factorisations, steps)
+
+void note_work(const solver::Work& work, Tried& trial) {
   trial.forces = count(work, {"forces", "explicit_forces"});
   trial.factorisations = count(
       work, {"newton_factorizations", "factorizations", "cvode/factorisations", "arkode/factorisations", "ida/factorisations"});
   trial.steps = count(work, {"steps", "cvode/steps", "arkode/steps", "ida/steps"});
 }
 
-Trial attempt(const Problem& problem, const Family& family, const Candidate& candidate, double cap) {
-  Trial trial{&family, &candidate, "success", {std::nan(""), {}}};
+Tried attempt(const Problem& problem, const Family& family, std::size_t candidate, double cap) {
+  check_interruption();  // SUNDIALS' failure of the one before may have been one
+  Tried trial{.candidate = candidate};
   model::Cloth cloth = model::compile(problem.scene);
-  limit(cloth.ode, cap);
+  watch(cloth.ode, cap);
   try {
     const auto begin = Clock::now();
-    const auto positions = candidate.solve(cloth, problem.times);
+    const auto positions = family.candidates[candidate].solve(cloth, problem.times);
     const double milliseconds = 1e3 * seconds_since(begin);
     trial.measured = {largest_error(problem, positions), {milliseconds}};
     if (!std::isfinite(trial.measured.error)) throw std::runtime_error("not finite");
@@ -87,30 +83,39 @@ Trial attempt(const Problem& problem, const Family& family, const Candidate& can
   return trial;
 }
 
-/// Whether another trial of the same code was as exact in a small part of the time.
-bool outdone(const Trial& trial, const std::vector<Trial>& trials) {
-  return !trial.measured.times.empty() && std::ranges::any_of(trials, [&](const Trial& other) {
-    return other.family->code == trial.family->code && !other.measured.times.empty() &&
-           other.measured.error <= trial.measured.error && hopeless * other.measured.times[0] < trial.measured.times[0];
+/// Whether a rival was as exact in a small part of the time.
+bool outdone(const results::Measured& trial, const std::vector<results::Measured>& rivals) {
+  return !trial.times.empty() && std::ranges::any_of(rivals, [&](const results::Measured& other) {
+    return !other.times.empty() && other.error <= trial.error && hopeless * other.times[0] < trial.times[0];
   });
 }
 
-void add_family(const Problem& problem, const Family& family, double cap, std::vector<Trial>& trials) {
+/// `rivals`: other trials of the same code.
+std::vector<Tried> try_family(const Problem& problem, const Family& family, double cap, std::vector<results::Measured> rivals) {
+  std::vector<Tried> trials;
   int times_outdone = 0;
   double before = INFINITY;  // seconds
   bool succeeded = false;
   for (std::size_t k = 0; k < family.candidates.size();) {
     const auto begin = Clock::now();
-    const Trial trial = attempt(problem, family, family.candidates[k], cap);
+    const Tried& trial = trials.emplace_back(attempt(problem, family, k, cap));
     const double seconds = seconds_since(begin);
     const bool too_long = seconds > 0.7 * cap;
     succeeded |= trial.outcome == "success";
-    times_outdone = seconds > before && outdone(trial, trials) ? times_outdone + 1 : 0;
+    times_outdone = seconds > before && outdone(trial.measured, rivals) ? times_outdone + 1 : 0;
     before = seconds;
-    trials.push_back(trial);
-    if ((too_long && succeeded) || trial.measured.error < too_exact * problem.uncertainty || times_outdone > 1) return;
+    rivals.push_back(trial.measured);
+    if ((too_long && succeeded) || trial.measured.error < too_exact * problem.uncertainty || times_outdone > 1) break;
     k += too_long ? leap : 1;
   }
+  return trials;
+}
+
+std::vector<results::Measured> rivals_of(const Family& family, const std::vector<Trial>& trials) {
+  std::vector<results::Measured> rivals;
+  for (const Trial& trial : trials)
+    if (trial.family->code == family.code) rivals.push_back(trial.measured);
+  return rivals;
 }
 
 }  // namespace
@@ -129,13 +134,15 @@ std::vector<double> asked(const Problem& problem) {
   return all;
 }
 
-std::vector<Trial> try_all(const Problem& problem, const std::vector<Family>& families, const Effort& effort,
-                           Progress& progress) {
+std::vector<Trial> try_all(const Problem& problem, const std::vector<Family>& families, const Effort& effort, Units& units) {
   std::vector<Trial> trials;
   for (const Family& family : families) {
-    progress.show(fmt::format("{}: {}", problem.name, family.name));
-    add_family(problem, family, effort.cap, trials);
-    progress.advance();
+    units.show(fmt::format("{}: {}", problem.name, family.name));
+    const auto tried = units(family.name, [&] { return try_family(problem, family, effort.cap, rivals_of(family, trials)); });
+    for (const Tried& t : tried)
+      trials.push_back(
+          {&family, &family.candidates.at(t.candidate), t.outcome, t.measured, false, t.forces, t.factorisations, t.steps});
+    units.advance();
   }
   return trials;
 }
@@ -158,7 +165,7 @@ std::vector<Contender> contenders(const std::vector<Trial>& trials) {
   return all;
 }
 
-void time_fronts(const Problem& problem, std::vector<Trial>& trials, const Effort& effort) {
+void time_fronts(const Problem& problem, std::vector<Trial>& trials, const Effort& effort, Units& units) {
   std::set<std::size_t> chosen;
   for (const Contender& contender : contenders(trials)) {
     std::vector<results::Measured> measured;
@@ -172,7 +179,7 @@ void time_fronts(const Problem& problem, std::vector<Trial>& trials, const Effor
         solve(*cloth, problem.times);
       };
     });
-  const auto times = time_runs(runs, effort.repetitions, [] {});
+  const auto times = units("times", [&] { return time_runs(runs, effort.repetitions, [] {}); });
   for (std::size_t place = 0; const std::size_t k : chosen) {
     trials[k].measured.times = times[place++];
     trials[k].timed = true;

@@ -3,9 +3,15 @@
 #include <string>
 #include <vector>
 
-#include "bench/progress.hpp"
 #include "bench/studies/work_precision_candidates.hpp"
+#include "bench/units.hpp"
 #include "results/work_precision.hpp"
+
+namespace drape::results {
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Measured, error, times)
+
+}  // namespace drape::results
 
 namespace drape::bench {
 
@@ -44,8 +50,7 @@ struct Effort {
 };
 
 /// Runs every candidate once, from coarse to fine until it takes too long or is more exact than the truth.
-std::vector<Trial> try_all(const Problem& problem, const std::vector<Family>& families, const Effort& effort,
-                           Progress& progress);
+std::vector<Trial> try_all(const Problem& problem, const std::vector<Family>& families, const Effort& effort, Units& units);
 
 /// Whose results are compared: a name and the trials that belong to it.
 struct Contender {
@@ -58,7 +63,7 @@ struct Contender {
 std::vector<Contender> contenders(const std::vector<Trial>& trials);
 
 /// Times what is near the front of any contender, all interleaved.
-void time_fronts(const Problem& problem, std::vector<Trial>& trials, const Effort& effort);
+void time_fronts(const Problem& problem, std::vector<Trial>& trials, const Effort& effort, Units& units);
 
 /// The trials of a contender as they were measured repeatedly; the others count as failed.
 std::vector<results::Measured> timed(const Contender& contender, const std::vector<Trial>& trials);

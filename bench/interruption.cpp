@@ -1,0 +1,23 @@
+#include "bench/interruption.hpp"
+
+#include <csignal>
+
+namespace drape::bench {
+namespace {
+
+volatile std::sig_atomic_t noted_signal = 0;
+
+}  // namespace
+
+void note_interruptions() {
+  struct sigaction action {};
+  action.sa_handler = [](int signal) { noted_signal = signal; };
+  action.sa_flags = static_cast<int>(SA_RESETHAND) | SA_RESTART;
+  for (const int signal : {SIGINT, SIGTERM}) sigaction(signal, &action, nullptr);
+}
+
+void check_interruption() {
+  if (const int signal = noted_signal; signal != 0) throw Interrupted{signal};
+}
+
+}  // namespace drape::bench

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <filesystem>
+
+namespace drape::bench {
+
+/// Ends a sweep that SIGINT or SIGTERM has asked to end; what is finished is recorded. No std::exception, so that it does not
+/// pass for the failure of a run.
+struct Interrupted {
+  int signal;
+  std::filesystem::path out = {};  ///< the file of the sweep; empty if it had none yet
+};
+
+/// From now on SIGINT and SIGTERM are only noted, but for a second one, which kills.
+void note_interruptions();
+
+/// Throws Interrupted if there was one.
+void check_interruption();
+
+}  // namespace drape::bench

@@ -1,0 +1,136 @@
+#include "results/journal.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <utility>
+
+namespace drape::results {
+namespace fs = std::filesystem;
+namespace {
+
+using nlohmann::json;
+
+/// Whether a descriptor is still what a path names: the holder of the lock removes the file.
+bool is_at(int fd, const fs::path& path) {
+  struct stat opened {
+  }, named{};
+  return fstat(fd, &opened) == 0 && stat(path.c_str(), &named) == 0 && opened.st_ino == named.st_ino &&
+         opened.st_dev == named.st_dev;
+}
+
+/// Opens and locks a file that is made if need be.
+int open_locked(const fs::path& file, const fs::path& path) {
+  for (;;) {
+    const int fd = open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+    if (fd < 0) fail_to_create_beside(file);
+    if (flock(fd, LOCK_EX | LOCK_NB) != 0) {
+      const bool taken = errno == EWOULDBLOCK;
+      if (!taken) fail(path, "cannot be locked");
+      close(fd);
+      throw FileError(
+          fmt::format("{}: another process is recording in it; wait for it or choose another --out", file.string()));
+    }
+    if (is_at(fd, path)) return fd;
+    close(fd);
+  }
+}
+
+/// Files that publish() was writing when it was killed.
+void remove_leftovers(const fs::path& file) {
+  const std::string prefix = file.filename().string() + ".tmp-";
+  std::error_code ignored;  // they do no harm
+  for (const auto& entry : fs::directory_iterator(folder_of(file), ignored)) {
+    const std::string name = entry.path().filename();
+    if (name.starts_with(prefix) && name.find_first_not_of("0123456789", prefix.size()) == std::string::npos)
+      fs::remove(entry.path(), ignored);
+  }
+}
+
+Journal::Bytes header_of(const Provenance& provenance) {
+  json facts = json::array();
+  for (const Fact& fact : lasting(provenance)) facts.push_back({fact.name, fact.value});
+  return json::to_cbor(facts);
+}
+
+/// The next item of a sequence; discarded if it is not complete.
+json next_item(std::istream& sequence) { return json::from_cbor(sequence, /*strict=*/false, /*allow_exceptions=*/false); }
+
+/// The facts at the beginning of a journal; none if it has no such beginning.
+Provenance facts_in(const json& header) {
+  Provenance facts;
+  if (!header.is_array()) return facts;
+  for (const json& fact : header)
+    if (fact.is_array() && fact.size() == 2 && fact[0].is_string() && fact[1].is_string())
+      facts.push_back({fact[0].get<std::string>(), fact[1].get<std::string>(), ""});
+  return facts;
+}
+
+bool is_unit(const json& item) { return item.is_array() && item.size() == 2 && item[0].is_string() && item[1].is_binary(); }
+
+std::string content(const fs::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+}  // namespace
+
+Journal::Journal(const fs::path& file, const Provenance& provenance, Start start)
+    : file_(file), path_(file.string() + ".journal"), lock_(open_locked(file_, path_)), header_(header_of(provenance)) {
+  remove_leftovers(file_);
+  read(provenance, start);
+}
+
+Journal::~Journal() {
+  if (units_.empty()) unlink(path_.c_str());
+}
+
+void Journal::read(const Provenance& provenance, Start start) {
+  const std::string bytes = content(path_);
+  if (std::string(header_.begin(), header_.end()).starts_with(bytes)) return clear();
+  std::istringstream sequence(bytes);
+  const Provenance theirs = facts_in(next_item(sequence));
+  if (theirs.empty()) throw FileError(fmt::format("{}: is no journal of this program; remove it", path_.string()));
+  auto good = sequence.tellg();
+  for (json item = next_item(sequence); is_unit(item); item = next_item(sequence)) {
+    units_.insert_or_assign(item[0].get<std::string>(), Bytes(item[1].get_binary()));
+    good = sequence.tellg();
+  }
+  if (units_.empty()) return clear();
+  if (start == Start::fresh)
+    throw FileError(
+        fmt::format("{} is left of a sweep that did not end; continue it by --resume, or remove it", path_.string()));
+  if (const std::string why = why_not_resumed(theirs, provenance); !why.empty())
+    throw FileError(fmt::format("{}: cannot be continued: {}; choose another --out, or remove it", path_.string(), why));
+  if (ftruncate(lock_.fd, good) != 0) fail(path_, "cannot be written");
+}
+
+const Journal::Bytes* Journal::find(const std::string& id) const {
+  const auto unit = units_.find(id);
+  return unit == units_.end() ? nullptr : &unit->second;
+}
+
+void Journal::add(const std::string& id, Bytes value) {
+  Bytes bytes = units_.empty() ? header_ : Bytes();
+  json::to_cbor(json::array({id, json::binary(value)}), bytes);
+  const off_t before = lseek(lock_.fd, 0, SEEK_END);
+  try {
+    write_all(path_, lock_.fd, std::as_bytes(std::span(bytes)));
+  } catch (const FileError&) {
+    if (ftruncate(lock_.fd, before) != 0) throw;  // then its end is incomplete, which the next reader cuts off
+    throw;
+  }
+  units_.insert_or_assign(id, std::move(value));
+}
+
+void Journal::clear() {
+  units_.clear();
+  if (ftruncate(lock_.fd, 0) != 0) fail(path_, "cannot be written");
+}
+
+}  // namespace drape::results
