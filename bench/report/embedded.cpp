@@ -1,6 +1,6 @@
 #include "bench/report/embedded.hpp"
 
-/// The assembler copies the file into the program: a compiler would take minutes to read megabytes of numbers.
+/// The assembler copies the file into the program as it is.
 #define DRAPE_EMBED(name, file)                                                                \
   asm(".section .rodata\n.global drape_" #name "_begin, drape_" #name                          \
       "_end\n"                                                                                 \
@@ -19,5 +19,6 @@ DRAPE_EMBED(tables_js, DRAPE_REPORT "/tables.js");
 DRAPE_EMBED(plots_js, DRAPE_REPORT "/plots.js");
 DRAPE_EMBED(figures_js, DRAPE_REPORT "/figures.js");
 DRAPE_EMBED(run_figures_js, DRAPE_REPORT "/run_figures.js");
+DRAPE_EMBED(motion_js, DRAPE_REPORT "/motion.js");
 DRAPE_EMBED(player_js, DRAPE_REPORT "/player.js");
 DRAPE_EMBED(report_js, DRAPE_REPORT "/report.js");

@@ -41,8 +41,9 @@ std::string report_page(const std::vector<std::filesystem::path>& files) {
     add_script(page, embedded::three_js);
     add_script(page, embedded::orbit_controls_js);
   }
-  for (const std::string_view script : {embedded::data_js, embedded::tables_js, embedded::plots_js, embedded::figures_js,
-                                        embedded::run_figures_js, embedded::player_js, embedded::report_js})
+  for (const std::string_view script :
+       {embedded::data_js, embedded::tables_js, embedded::plots_js, embedded::figures_js, embedded::run_figures_js,
+        embedded::motion_js, embedded::player_js, embedded::report_js})
     add_script(page, script);
   return page + "</html>\n";
 }
