@@ -12,7 +12,7 @@ namespace {
 
 constexpr const char* chromium = "/usr/bin/chromium";
 
-std::string read(const std::filesystem::path& path) {
+std::string read_page(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};
 }
@@ -65,7 +65,7 @@ std::string seen_in(const std::string& dom) {
   return text;
 }
 
-Words console_messages(const std::string& log) {
+Words console_of(const std::string& log) {
   Words messages;
   for (const std::string& line : lines(log))
     if (line.find("CONSOLE:") != std::string::npos && line.find("GL Driver Message") == std::string::npos)
@@ -77,10 +77,10 @@ Words console_messages(const std::string& log) {
 
 Browsed browse(const std::filesystem::path& page, const std::string& script, int width) {
   const TemporaryFolder folder;
-  std::ofstream(folder / "driven.html") << read(page) << driver(script);
+  std::ofstream(folder / "driven.html") << read_page(page) << driver(script);
   const ProgramResult result = run_chromium(
       folder, {fmt::format("--window-size={},900", width), "--dump-dom", "file://" + (folder / "driven.html").string()});
-  return {seen_in(result.out), console_messages(result.err)};
+  return {seen_in(result.out), console_of(result.err)};
 }
 
 }  // namespace drape::verify

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <system_error>
 
 #include "bench/argument_checks.hpp"

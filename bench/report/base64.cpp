@@ -1,5 +1,7 @@
 #include "bench/report/base64.hpp"
 
+#include <algorithm>
+
 namespace drape::bench {
 
 std::string base64(std::span<const std::byte> bytes) {

@@ -14,8 +14,12 @@ namespace {
 
 /// JSON inside a <script>: no text in it can end the element.
 std::string script_data(const nlohmann::ordered_json& data) {
-  std::string text = data.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace), safe;
-  for (const char c : text) c == '<' ? safe += "\\u003c" : safe += c;
+  std::string safe;
+  for (const char c : data.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace))
+    if (c == '<')
+      safe += "\\u003c";
+    else
+      safe += c;
   return safe;
 }
 

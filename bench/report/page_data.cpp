@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "bench/report/base64.hpp"
 #include "results/run_file.hpp"

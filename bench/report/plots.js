@@ -49,9 +49,9 @@ function uncertainBand(limit, lowest, colours) {
   return [{type: "rect", xref: "x", yref: "paper", x0: lowest, x1: limit, y0: 0, y1: 1, fillcolor: colours.band, line: {width: 0}, layer: "below"}];
 }
 
-/** Powers of ten around positive numbers as a range of a log axis. */
-function logRange(numbers, reversed = false) {
-  const logs = numbers.filter((number) => number > 0 && Number.isFinite(number)).map(Math.log10);
+/** Powers of ten around errors as a range of a log axis; beyond ten sizes of the scene, where the unstable are, it ends. */
+function logRange(errors, reversed = false) {
+  const logs = errors.filter((error) => error > 0 && Number.isFinite(error)).map((error) => Math.min(1, Math.log10(error)));
   const low = Math.min(...logs), high = Math.max(...logs), edge = 0.05 * (high - low) + 0.1;
   return reversed ? [high + edge, low - edge] : [low - edge, high + edge];
 }
