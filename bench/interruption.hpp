@@ -8,7 +8,7 @@ namespace drape::bench {
 /// pass for the failure of a run.
 struct Interrupted {
   int signal;
-  std::filesystem::path out = {};  ///< the file of the sweep; empty if it had none yet
+  std::filesystem::path out = {};  ///< the file of the sweep; empty if nothing is recorded in it
 };
 
 /// From now on SIGINT and SIGTERM are only noted, but for a second one, which kills.

@@ -12,7 +12,7 @@ void record_in_file(const SweepOptions& options, const std::string& sweep, int p
     try {
       work(file, units);
     } catch (Interrupted& interrupted) {
-      interrupted.out = options.out;
+      if (file.begun() || !journal.empty()) interrupted.out = options.out;  // else there is nothing to continue
       throw;
     }
     file.finish();

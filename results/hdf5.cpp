@@ -2,9 +2,15 @@
 
 #include <fmt/format.h>
 #include <hdf5.h>
+#include <xxhash.h>
 
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <concepts>
+#include <fstream>
+#include <iterator>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 
@@ -101,16 +107,51 @@ Handle create_in_memory(const std::filesystem::path& name) {
   return {H5Fcreate(name.c_str(), H5F_ACC_TRUNC, creation.id(), in_memory().id()), "file"};
 }
 
+namespace {
+
+/// What follows the library's part of a file: who wrote it, and the checksum of that part.
+constexpr std::string_view seal_name = "drape: XXH3-128\n";
+constexpr std::size_t seal_size = seal_name.size() + sizeof(XXH128_canonical_t);
+
+std::array<std::byte, seal_size> seal_of(std::span<const std::byte> content) {
+  XXH128_canonical_t hash;
+  XXH128_canonicalFromHash(&hash, XXH3_128bits(content.data(), content.size()));
+  std::array<std::byte, seal_size> seal{};
+  const auto after_name = std::ranges::copy(std::as_bytes(std::span(seal_name)), seal.begin()).out;
+  std::ranges::copy(std::as_bytes(std::span(hash.digest)), after_name);
+  return seal;
+}
+
+/// The library's part of a file.
+std::span<const std::byte> unseal(std::span<const std::byte> bytes) {
+  constexpr std::string_view signature = "\211HDF\r\n\032\n";
+  const auto begins = [](std::span<const std::byte> text, std::string_view with) {
+    return text.size() >= with.size() && std::ranges::equal(text.first(with.size()), std::as_bytes(std::span(with)));
+  };
+  if (!begins(bytes, signature)) throw Error("is no HDF5 file");
+  const auto seal = bytes.last(std::min(seal_size, bytes.size()));
+  const auto content = bytes.first(bytes.size() - seal.size());
+  if (!begins(seal, seal_name))
+    throw Error("has been truncated, or is of another program or an older version: there is no checksum at its end");
+  if (!std::ranges::equal(seal, seal_of(content))) throw Error("is damaged: its checksum is wrong");
+  return content;
+}
+
+}  // namespace
+
 Handle open_for_reading(const std::filesystem::path& path) {
-  be_silent();
-  return {H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), "cannot be opened"};
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) throw Error("cannot be read");
+  const std::string bytes(std::istreambuf_iterator<char>(stream), {});
+  return open_image(std::as_bytes(std::span(bytes)));
 }
 
 Handle open_image(std::span<const std::byte> bytes) {
   be_silent();
   static std::atomic<int> count = 0;  // files of the same name would be the same file to the library
+  const auto content = unseal(bytes);
+  std::vector<std::byte> copy(content.begin(), content.end());  // the library asks for one that it may change, and copies it
   const Handle access = in_memory();
-  std::vector<std::byte> copy(bytes.begin(), bytes.end());  // the library asks for one that it may change, and copies it
   check(H5Pset_file_image(access.id(), copy.data(), copy.size()), "file image");
   return {H5Fopen(fmt::format("image {}", count++).c_str(), H5F_ACC_RDWR, access.id()), "cannot be opened"};
 }
@@ -119,6 +160,8 @@ std::vector<std::byte> image(const Handle& file) {
   check(H5Fflush(file.id(), H5F_SCOPE_GLOBAL), "file image");
   std::vector<std::byte> bytes(static_cast<std::size_t>(check(H5Fget_file_image(file.id(), nullptr, 0), "file image")));
   check(H5Fget_file_image(file.id(), bytes.data(), bytes.size()), "file image");
+  const auto seal = seal_of(bytes);
+  bytes.insert(bytes.end(), seal.begin(), seal.end());
   return bytes;
 }
 

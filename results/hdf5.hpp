@@ -36,12 +36,15 @@ class Handle {
 
 /// A file that exists in memory only. Its root remembers the order in which its attributes were written.
 Handle create_in_memory(const std::filesystem::path& name);
+
+/// Reads a file that is what image() gave. Throws Error if it has been truncated, damaged or changed since: the library crashes
+/// on some damaged files, so that it must not see them.
 Handle open_for_reading(const std::filesystem::path& path);
 
-/// A file in memory, to be read and changed there, that is what image() gave.
+/// A file in memory, to be read and changed there, that is what image() gave. Throws like the other.
 Handle open_image(std::span<const std::byte> bytes);
 
-/// What the file would be on disk.
+/// What the file is on disk: the library's image, which other programs can read, followed by a checksum of it.
 std::vector<std::byte> image(const Handle& file);
 
 Handle create_group(const Handle& parent, const std::string& name, const std::string& description);

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <sys/file.h>
 #include <sys/stat.h>
+#include <xxhash.h>
 
 #include <algorithm>
 #include <fstream>
@@ -59,7 +60,13 @@ Journal::Bytes header_of(const Provenance& provenance) {
 }
 
 /// The next item of a sequence; discarded if it is not complete.
-json next_item(std::istream& sequence) { return json::from_cbor(sequence, /*strict=*/false, /*allow_exceptions=*/false); }
+json next_item(std::istream& sequence) {
+  try {
+    return json::from_cbor(sequence, /*strict=*/false);
+  } catch (const json::exception&) {
+    return json::value_t::discarded;
+  }
+}
 
 /// The facts at the beginning of a journal; none if it has no such beginning.
 Provenance facts_in(const json& header) {
@@ -71,7 +78,14 @@ Provenance facts_in(const json& header) {
   return facts;
 }
 
-bool is_unit(const json& item) { return item.is_array() && item.size() == 2 && item[0].is_string() && item[1].is_binary(); }
+std::uint64_t checksum(const std::string& id, const Journal::Bytes& value) {
+  return XXH3_64bits_withSeed(value.data(), value.size(), XXH3_64bits(id.data(), id.size()));
+}
+
+bool is_unit(const json& item) {
+  return item.is_array() && item.size() == 3 && item[0].is_string() && item[1].is_binary() && item[2].is_number_unsigned() &&
+         item[2] == checksum(item[0].get<std::string>(), item[1].get_binary());
+}
 
 std::string content(const fs::path& path) {
   std::ifstream stream(path, std::ios::binary);
@@ -117,7 +131,7 @@ const Journal::Bytes* Journal::find(const std::string& id) const {
 
 void Journal::add(const std::string& id, Bytes value) {
   Bytes bytes = units_.empty() ? header_ : Bytes();
-  json::to_cbor(json::array({id, json::binary(value)}), bytes);
+  json::to_cbor(json::array({id, json::binary(value), checksum(id, value)}), bytes);
   const off_t before = lseek(lock_.fd, 0, SEEK_END);
   try {
     write_all(path_, lock_.fd, std::as_bytes(std::span(bytes)));

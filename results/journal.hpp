@@ -15,7 +15,7 @@ namespace drape::results {
 /// What a sweep has done since it last wrote its file, unit by unit, in `FILE.journal` beside it; and the lock that keeps other
 /// processes from that file, which the system takes back when this one ends, however it ends.
 ///
-/// A CBOR sequence (RFC 8742), which keeps NaN and infinities: the facts that tell who wrote it, then a pair [id, bytes] for
+/// A CBOR sequence (RFC 8742), which keeps NaN and infinities: the facts that tell who wrote it, then [id, bytes, checksum] for
 /// each unit. What a killed process left unfinished at the end is cut off.
 class Journal {
  public:

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <iterator>
 #include <string>
 #include <system_error>
@@ -166,11 +165,7 @@ Handle begin(const fs::path& path, const Provenance& provenance) {
 
 /// What a process before this one has left.
 Handle go_on(const fs::path& path, const Provenance& provenance) {
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw hdf5::Error("cannot be read");
-  const std::string bytes(std::istreambuf_iterator<char>(stream), {});
-  Handle file = hdf5::open_image(std::as_bytes(std::span(bytes)));
-  require_version(file);
+  Handle file = open_run_file(path);
   if (const std::string why = why_not_resumed(facts_of(file), provenance); !why.empty())
     throw hdf5::Error(fmt::format("cannot be continued: {}; choose another --out", why));
   return file;

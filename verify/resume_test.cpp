@@ -197,7 +197,9 @@ TEST(Sweep, InterruptedBeforeAnythingIsDoneLeavesNothing) {
   RunningProgram running(program.command(hanging));
   ASSERT_TRUE(appears(program.folder() / "a.h5.journal"));
   running.send(SIGINT);
-  EXPECT_EQ(running.wait().exit_code, 128 + SIGINT);
+  const ProgramResult interrupted = running.wait();
+  EXPECT_EQ(interrupted.exit_code, 128 + SIGINT);
+  EXPECT_THAT(interrupted.err, HasSubstr("nothing is recorded"));
   EXPECT_THAT(program.files(), IsEmpty());
 }
 

@@ -1,0 +1,119 @@
+// Damaged input never crashes a reader: seeded mutations of good files give an error or, for scenes, at most another scene.
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <random>
+
+#include "model/scene_file.hpp"
+#include "results/journal.hpp"
+#include "results/run_file.hpp"
+#include "results/validate.hpp"
+#include "verify/temporary_folder.hpp"
+
+namespace drape::verify::fuzz_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string content(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+void write(const fs::path& file, const std::string& text) { std::ofstream(file, std::ios::binary) << text; }
+
+/// A few bits, bytes or pieces are changed; one in ten is cut.
+std::string mutated(std::string text, std::mt19937& random) {
+  const auto place = [&] { return random() % text.size(); };
+  for (auto changes = 1 + random() % 8; changes > 0; --changes) {
+    const std::size_t p = place(), q = place(), length = random() % 16;
+    switch (random() % 5) {
+      case 0: text[p] = static_cast<char>(text[p] ^ (1 << random() % 8)); break;
+      case 1: text[p] = static_cast<char>(random()); break;
+      case 2: text[p] = static_cast<char>(random() % 2 == 0 ? 0 : 0xff); break;
+      case 3: text.replace(p, length, text.substr(q, length)); break;
+      default: text.insert(p, text.substr(q, length)); break;
+    }
+  }
+  if (random() % 10 == 0) text.resize(place());
+  return text;
+}
+
+/// Whether a reader refuses its input as it may; any other exception fails the test.
+template <class Error, class Read>
+bool refuses(const Read& read) {
+  try {
+    read();
+    return false;
+  } catch (const Error& error) {
+    EXPECT_STRNE(error.what(), "");
+    return true;
+  }
+}
+
+TEST(Fuzz, EveryDamageOfARecordIsNoticed) {
+  const TemporaryFolder folder;
+  const fs::path file = folder / "damaged.h5";
+  std::mt19937 random(1);
+  for (const char* name : {"runs-schema-4.h5", "tables-schema-4.h5"}) {
+    const std::string good = content(fs::path(DRAPE_SOURCE_DIR) / "verify/data" / name);
+    for (int k = 0; k < 500; ++k) {
+      const std::string bad = mutated(good, random);
+      if (bad == good) continue;
+      write(file, bad);
+      EXPECT_TRUE(refuses<results::FileError>([&] { results::read_runs(file); })) << name << " " << k;
+      EXPECT_TRUE(refuses<results::FileError>([&] { results::read_tables(file); })) << name << " " << k;
+      EXPECT_TRUE(refuses<results::FileError>([&] { results::read_provenance(file); })) << name << " " << k;
+      EXPECT_TRUE(refuses<results::FileError>([&] { results::validate(file); })) << name << " " << k;
+    }
+  }
+}
+
+TEST(Fuzz, ADamagedJournalHasOnlyWhatWasWritten) {
+  const TemporaryFolder folder;
+  const fs::path file = folder / "runs.h5", path = folder / "runs.h5.journal";
+  const results::Provenance facts{{"program_hash", "1", ""}, {"sweep", "a", ""}};
+  const results::Journal::Bytes value(100, 7);
+  {
+    results::Journal journal(file, facts, results::Start::fresh);
+    for (const char* id : {"first", "second", "third"}) journal.add(id, value);
+  }
+  const std::string good = content(path);
+  std::mt19937 random(2);
+  int refused = 0, less = 0;
+  for (int k = 0; k < 1000; ++k) {
+    write(path, mutated(good, random));
+    refused += refuses<results::FileError>([&] {
+      const results::Journal journal(file, facts, results::Start::resumed);
+      for (const char* id : {"first", "second", "third"}) {
+        const auto* found = journal.find(id);
+        less += found == nullptr;
+        EXPECT_TRUE(found == nullptr || *found == value) << k;
+      }
+    });
+  }
+  EXPECT_GT(refused, 0);
+  EXPECT_GT(less, 0);
+}
+
+TEST(Fuzz, DamagedScenesAreScenesOrErrors) {
+  const TemporaryFolder folder;
+  const fs::path file = folder / "damaged.toml";
+  std::mt19937 random(3);
+  int refused = 0, accepted = 0;
+  for (const char* name : {"hung-edge", "wind", "tablecloth", "box_swing", "curtain"}) {
+    const std::string good = model::to_toml(model::load_scene(name));
+    for (int k = 0; k < 200; ++k) {
+      write(file, mutated(good, random));
+      ++(refuses<model::SceneError>([&] { model::load_scene(file.string()); }) ? refused : accepted);
+    }
+  }
+  EXPECT_GT(refused, 0);
+  EXPECT_GT(accepted, 0);
+}
+
+}  // namespace
+}  // namespace drape::verify::fuzz_test
