@@ -26,6 +26,9 @@ void require(bool fine, const std::string& what) {
   if (!fine) throw std::system_error(errno, std::generic_category(), what);
 }
 
+}  // namespace
+
+/// Owns an open file; not local to this source because RunningProgram has some.
 struct Descriptor {
   int fd;
   Descriptor(int opened, const std::string& what) : fd(opened) { require(fd >= 0, what); }
@@ -33,6 +36,8 @@ struct Descriptor {
   Descriptor& operator=(const Descriptor&) = delete;
   ~Descriptor() { close(fd); }
 };
+
+namespace {
 
 Descriptor memory() { return {memfd_create("captured", MFD_CLOEXEC), "memfd_create"}; }
 
