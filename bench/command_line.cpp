@@ -50,8 +50,8 @@ int run_command_line(int argc, const char* const* argv) {
   add_list(app);
   add_run(app, command_line);
   add_study(app, command_line);
-  add_inspect(app);
   int exit_code = 0;
+  add_inspect(app, exit_code);
   add_compare(app, exit_code);
   add_report(app);
   app.footer(

@@ -86,6 +86,15 @@ TEST_F(Inspect, SaysWhatThereIsInstead) {
   EXPECT_THAT(complaint({"inspect", "text.h5"}), HasSubstr("text.h5: cannot be opened"));
 }
 
+TEST_F(Inspect, SaysWhetherAFileIsAsSpecified) {
+  program_.output(two_runs + Words{"moving.h5", "--trajectory", "every=0.02"});
+  for (const char* file : {"a.h5", "moving.h5"})
+    EXPECT_THAT(inspect({file, "--validate"}), HasSubstr("is as results/README.md specifies")) << file;
+  const ProgramResult incomplete = program_.run({"inspect", "table.h5", "--validate"});
+  EXPECT_EQ(incomplete.exit_code, 1);
+  EXPECT_THAT(incomplete.out, HasSubstr("git_commit: is missing"));
+}
+
 TEST_F(Inspect, CompareEndsAsItsVerdictsWant) {
   const auto compare = [&](const Words& arguments) { return program_.run(Words{"compare"} + arguments); };
   program_.output(two_runs + Words{"b.h5"});

@@ -11,6 +11,7 @@
 #include "bench/commands/output.hpp"
 #include "results/run_file.hpp"
 #include "results/runs_table.hpp"
+#include "results/validate.hpp"
 
 namespace drape::bench {
 namespace {
@@ -20,6 +21,7 @@ struct InspectArguments {
   std::optional<int> run;
   std::string table;
   std::string format = "table";
+  bool validate = false;
 };
 
 std::vector<results::Table> overview(const std::string& file) {
@@ -50,27 +52,43 @@ results::Table one_table(const std::string& file, const std::string& name) {
                                           names.empty() ? "it has none" : fmt::format("{}", fmt::join(names, ", ")), name));
 }
 
-void inspect(const InspectArguments& a) {
-  if (!a.table.empty()) return print_table(one_table(a.file, a.table), a.format);
-  print_tables(a.run ? one_run(a.file, *a.run) : overview(a.file), a.format);
+/// Prints where a file departs from the specification. Returns the exit code: 1 if it does.
+int validate(const std::string& file) {
+  const std::vector<std::string> deviations = results::validate(file);
+  for (const std::string& deviation : deviations) fmt::print("{}\n", deviation);
+  if (deviations.empty()) fmt::print("{} is as results/README.md specifies\n", file);
+  return deviations.empty() ? 0 : 1;
+}
+
+int inspect(const InspectArguments& a) {
+  if (a.validate) return validate(a.file);
+  if (!a.table.empty())
+    print_table(one_table(a.file, a.table), a.format);
+  else
+    print_tables(a.run ? one_run(a.file, *a.run) : overview(a.file), a.format);
+  return 0;
 }
 
 }  // namespace
 
-void add_inspect(CLI::App& app) {
+void add_inspect(CLI::App& app, int& exit_code) {
   CLI::App& command = *app.add_subcommand("inspect", "show what is in a file of results");
   const auto a = std::make_shared<InspectArguments>();
   command.add_option("FILE", a->file, "HDF5 file of results")->required()->type_name("");
   CLI::Option* run =
       command.add_option("--run", a->run, "one run in full, by its number")->type_name("NNN")->check(between(0, 1000000));
-  command.add_option("--table", a->table, "one table, by its name")->type_name("NAME")->check(not_empty())->excludes(run);
+  CLI::Option* table =
+      command.add_option("--table", a->table, "one table, by its name")->type_name("NAME")->check(not_empty())->excludes(run);
   CLI::Option* csv = command.add_flag_callback(
       "--csv", [=] { a->format = "csv"; }, "as comma-separated values");
   command
       .add_flag_callback(
           "--json", [=] { a->format = "json"; }, "as JSON")
       ->excludes(csv);
-  command.callback([=] { inspect(*a); });
+  command.add_flag("--validate", a->validate, "say where the file departs from its specification; then the exit code is 1")
+      ->excludes(run)
+      ->excludes(table);
+  command.callback([=, &exit_code] { exit_code = inspect(*a); });
 }
 
 }  // namespace drape::bench
