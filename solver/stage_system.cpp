@@ -49,11 +49,11 @@ struct StageSystem::Merged {
     std::vector<bool> gone(n, false);
     for (const Pin& pin : ode.pins) gone[pin.particle] = pin.all();
     for (int i = 0; i < n; ++i) {
-      Row k(ode.stiffness, i), d(ode.damping, i);
+      Row k_i(ode.stiffness, i), d_i(ode.damping, i);
       for (int own = i;;) {
-        const int j = std::min({own, k.column(n), d.column(n)});
+        const int j = std::min({own, k_i.column(n), d_i.column(n)});
         if (j == n) break;
-        const double k_ij = k.take(j), d_ij = d.take(j);
+        const double k_ij = k_i.take(j), d_ij = d_i.take(j);
         if (j == own) own = n;
         if (j == i || (!gone[i] && !gone[j])) add(j, j == i ? ode.mass[i] : 0, k_ij, d_ij);
       }
