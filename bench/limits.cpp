@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <malloc.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -55,15 +54,14 @@ void watch(solver::SplitOde& ode, double seconds) {
   ode.newton_matrix = watched(ode.newton_matrix);
 }
 
-MemoryLimit::MemoryLimit(double megabytes) : before_(limit_of_data().rlim_cur) {
+MemoryLimit::MemoryLimit(double megabytes) : before_(limit_of_data()) {
   if (!std::isfinite(megabytes)) return;
   malloc_trim(0);  // or what earlier cells have freed would be at this one's disposal
   limit_data(data_held() + static_cast<rlim_t>(megabytes * 1024 * 1024));
 }
 
 MemoryLimit::~MemoryLimit() {
-  const rlimit limit{before_, limit_of_data().rlim_max};
-  setrlimit(RLIMIT_DATA, &limit);  // raising a soft limit to where it was cannot fail
+  setrlimit(RLIMIT_DATA, &before_);  // raising a soft limit to where it was cannot fail
 }
 
 }  // namespace drape::bench

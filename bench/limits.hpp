@@ -1,5 +1,7 @@
 #pragma once
 
+#include <sys/resource.h>
+
 #include <limits>
 #include <stdexcept>
 
@@ -30,7 +32,7 @@ class MemoryLimit {
   MemoryLimit& operator=(const MemoryLimit&) = delete;
 
  private:
-  unsigned long before_ = 0;  ///< soft limit [bytes]
+  rlimit before_;
 };
 
 }  // namespace drape::bench
