@@ -44,15 +44,10 @@ template <bool border>
 struct GridLine {
   const FivePoint::Node* nodes;
   int nu;
-  Eigen::Index begin;     ///< offset of the line's first coordinate
-  Eigen::Index down, up;  ///< offsets of its neighbours
+  Eigen::Index length, begin;  ///< numbers in a line, offset of the line's first
 
   GridLine(const FivePoint& A, int b)
-      : nodes(A.row(b).data()),
-        nu(A.nu),
-        begin(3 * static_cast<Eigen::Index>(A.nu) * b),
-        down(b > 0 ? 3 * static_cast<Eigen::Index>(A.nu) : 0),
-        up(b < A.nv - 1 ? 3 * static_cast<Eigen::Index>(A.nu) : 0) {}
+      : nodes(A.row(b).data()), nu(A.nu), length(3 * static_cast<Eigen::Index>(A.nu)), begin(length * b) {}
 
   static Lanes lanes(const double* p) {
     if constexpr (!border) return load(p);
@@ -63,14 +58,16 @@ struct GridLine {
 
   Lanes at(const double* x, int a) const { return lanes(x + begin + 3 * a); }
 
-  /// What couples node a to its neighbours. Outside of the line the coefficient is 0, whatever is read there.
+  /// What couples node a to its neighbours. At the ends of a line that is no border, the ends of the next lines are read with
+  /// the coefficient 0: they must be finite.
   Lanes around(const double* x, int a) const {
     const FivePoint::Node& n = nodes[a];
     const double* const p = x + begin + 3 * a;
-    const int left = border && a == 0 ? 0 : 3, right = border && a == nu - 1 ? 0 : 3;
-    const Lanes along = n.left * lanes(p - left) + n.right * lanes(p + right);
-    const Lanes across = n.down * lanes(p - down) + n.up * lanes(p + up);
-    return along + across;
+    const auto pull = [&](double coefficient, Eigen::Index to) {
+      if (border && coefficient == 0) return Lanes(Lanes::Zero());
+      return Lanes(coefficient * lanes(p + to));
+    };
+    return (pull(n.left, -3) + pull(n.right, 3)) + (pull(n.down, -length) + pull(n.up, length));
   }
 };
 

@@ -32,13 +32,16 @@ void each_red(const Level& level, int b, const F& f) {
 }
 
 /// z = r / D on red nodes (a + b even), (r + what neighbours pull) / D on black ones. What then is left is on red nodes only:
-/// what their neighbours pull. It goes to the coarse grid.
+/// what their neighbours pull. It goes to the coarse grid. A line's black ends are first 0: the next lines read them, maybe
+/// before they are known, and nobody knows what z was.
 void smooth_down(Level& level, const Vectors& r, Vectors& z) {
   const FivePoint& A = level.A;
   level.r.setZero();
   const auto red = [&](int b) {
     with_line(A, b, [&](const auto& line) {
       for (int a = b % 2; a < A.nu; a += 2) store(z.data() + line.begin + 3 * a, line.nodes[a].inverse * line.at(r.data(), a));
+      for (const int end : {0, A.nu - 1})
+        if ((end + b) % 2 == 1) store(z.data() + line.begin + 3 * end, Lanes::Zero());
     });
     return Lanes(Lanes::Zero());
   };

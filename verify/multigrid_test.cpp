@@ -102,7 +102,7 @@ TEST(Multigrid, IsSymmetricPositiveDefinite) {
     ASSERT_EQ(cycle->factor(A), Outcome::success);
     EXPECT_FALSE(cycle->exact());
     const Vectors r = noise(n, 1), s = noise(n, 2);
-    Vectors z(n, 3), w(n, 3);
+    Vectors z = Vectors::Constant(n, 3, std::nan("")), w = z;  // whatever was there
     const double rz = cycle->apply(r, z), sw = cycle->apply(s, w);
     EXPECT_NEAR(rz, dot(r, z), 1e-13 * std::abs(rz)) << n;
     EXPECT_NEAR(dot(s, z), dot(r, w), 1e-12 * std::sqrt(rz * sw)) << n;
