@@ -7,7 +7,6 @@
 #include <cctype>
 #include <cmath>
 #include <fstream>
-#include <system_error>
 
 #include "bench/polygons.hpp"
 #include "results/atomic_file.hpp"
@@ -16,12 +15,6 @@ namespace drape::bench {
 namespace {
 
 namespace fs = std::filesystem;
-
-void create(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw results::FileError(fmt::format("{}: cannot be created ({})", folder.string(), error.message()));
-}
 
 /// A name for a run that any file system takes.
 std::string run_name(const Cell& cell) {
@@ -55,7 +48,7 @@ class Writer {
  public:
   Writer(const Cell& cell, const Frames& frames)
       : folder_(frames.folder / run_name(cell)), every_(frames.every), grid_(cell.scene.sheet.grid) {
-    create(folder_);
+    results::create_folder(folder_);
     for (const model::ObstacleRule& rule : cell.scene.obstacles)
       obstacles_.push_back({model::Obstacle(rule), obstacle_polygons(rule, 4 * model::size(cell.scene))});
   }
@@ -82,7 +75,7 @@ class Writer {
 }  // namespace
 
 void make_folder(const Frames& frames) {
-  create(frames.folder);
+  results::create_folder(frames.folder);
   if (!fs::is_empty(frames.folder))
     throw results::FileError(fmt::format("{}: expected a new or empty folder for the frames", frames.folder.string()));
 }

@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <system_error>
 
 #include "bench/contact_record.hpp"
 #include "bench/errors.hpp"
@@ -125,11 +124,7 @@ std::vector<results::RunRecord> sweep(const std::vector<Group>& groups, const Sw
 
 std::filesystem::path default_out(const std::string& job) {
   const std::filesystem::path folder = std::filesystem::path("results") / "runs";
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error)
-    throw results::FileError(
-        fmt::format("{}: cannot be created ({}); choose a file by --out", folder.string(), error.message()));
+  results::create_folder(folder, "; choose a file by --out");
   return folder / fmt::format("{:%Y-%m-%dT%H-%M-%SZ}-{}-{}.h5", fmt::gmtime(std::time(nullptr)), job, getpid());
 }
 

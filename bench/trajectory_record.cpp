@@ -5,6 +5,8 @@
 #include <stdexcept>
 
 #include "bench/contact_record.hpp"
+#include "model/edges.hpp"
+#include "reference/coordinates.hpp"
 
 namespace drape::bench {
 namespace {
@@ -17,24 +19,14 @@ std::vector<double> frame_times(double every, double end) {
   return times;
 }
 
-solver::State start_of(const model::Cloth& cloth) {
-  solver::State start = cloth.start;
-  solver::prescribe(cloth.ode.pins, start.v);
-  return start;
-}
-
-Eigen::VectorXd mean_strain(const model::Grid& grid, const solver::Vectors& x) {
-  Eigen::VectorXd sum = Eigen::VectorXd::Zero(grid.particles()), edges = sum;
-  const auto add = [&](int i, int j, double length) {
-    const double strain = (x.row(i) - x.row(j)).norm() / length - 1;
-    for (const int end : {i, j}) sum[end] += strain, edges[end] += 1;
-  };
-  for (int b = 0; b < grid.nv; ++b)
-    for (int a = 0; a < grid.nu; ++a) {
-      if (a + 1 < grid.nu) add(grid.index(a, b), grid.index(a + 1, b), grid.spacing_u());
-      if (b + 1 < grid.nv) add(grid.index(a, b), grid.index(a, b + 1), grid.spacing_v());
-    }
-  return sum.cwiseQuotient(edges);
+/// Of the edges that meet in each particle.
+Eigen::VectorXd mean_strain(const std::vector<model::Edge>& edges, const solver::Vectors& x) {
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(x.rows()), count = sum;
+  for (const model::Edge& edge : edges) {
+    const double strain = (x.row(edge.i) - x.row(edge.j)).norm() / edge.length - 1;
+    for (const int end : {edge.i, edge.j}) sum[end] += strain, count[end] += 1;
+  }
+  return sum.cwiseQuotient(count);
 }
 
 std::vector<int> constraints(const model::Scene& scene, const model::Cloth& cloth, double t, const solver::Vectors& x) {
@@ -60,18 +52,19 @@ void check_frames(double every, double end) {
 TrajectoryWatch::TrajectoryWatch(const model::Scene& scene, const model::Cloth& cloth, double every)
     : scene_(scene),
       cloth_(cloth),
-      start_(start_of(cloth)),
+      start_(reference::prescribed_start(cloth.ode, cloth.start)),
       times_(frame_times(every, scene.end)),
       output_(times_, 0, start_) {}
 
 results::TrajectoryRecord TrajectoryWatch::result() const {
   const model::Grid& grid = scene_.sheet.grid;
+  const std::vector<model::Edge> edges = model::edges(grid);
   results::TrajectoryRecord record{
       .nu = grid.nu, .nv = grid.nv, .times = {0}, .states = {start_}, .stretch = {}, .constraint = {}};
   record.times.insert(record.times.end(), times_.begin(), times_.begin() + std::ssize(output_.states));
   record.states.insert(record.states.end(), output_.states.begin(), output_.states.end());
   for (std::size_t k = 0; k < record.times.size(); ++k) {
-    record.stretch.push_back(mean_strain(grid, record.states[k].x));
+    record.stretch.push_back(mean_strain(edges, record.states[k].x));
     record.constraint.push_back(constraints(scene_, cloth_, record.times[k], record.states[k].x));
   }
   return record;

@@ -41,6 +41,12 @@ void require_creatable(const fs::path& file) {
   const Temporary attempt(file);  // trying is the only test that knows of rights, full and read-only file systems alike
 }
 
+void create_folder(const fs::path& folder, std::string_view advice) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw FileError(fmt::format("{}: cannot be created ({}){}", folder.string(), error.message(), advice));
+}
+
 void publish(const fs::path& file, std::span<const std::byte> content, Existing existing) {
   const Temporary temporary(file);
   write_all(file, temporary.out.fd, content);

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <span>
 #include <stdexcept>
+#include <string_view>
 
 namespace drape::results {
 
@@ -15,6 +16,9 @@ class FileError : public std::runtime_error {
 
 /// Throws FileError unless there is no such file yet and its folder lets us create one.
 void require_creatable(const std::filesystem::path& file);
+
+/// Creates a folder and those it lies in, unless they are there. Throws FileError, with `advice` at its end.
+void create_folder(const std::filesystem::path& folder, std::string_view advice = {});
 
 /// Whether publish() may take the place of a file that is already there.
 enum class Existing { refuse, replace };

@@ -99,8 +99,7 @@ void compare_error(const Pair& pair, const std::string& quantity, double ErrorRe
                    const CompareOptions& options, Findings& findings) {
   const double a = (*pair.a->error).*error, b = (*pair.b->error).*error;
   const double noise = (*pair.a->error).*uncertainty + (*pair.b->error).*uncertainty;
-  const auto grown = [&](double from, double to) { return !(to <= options.error_factor * from + noise) && !std::isnan(from); };
-  const Judgement judgement = grown(a, b) ? Judgement::regression : grown(b, a) ? Judgement::better : Judgement::same;
+  const Judgement judgement = judge_error(a, b, options.error_factor, noise);
   if (judgement == Judgement::same) return;
   findings.add({title(*pair.a), quantity, fmt::format("{} ± {:.1g}", shown(a), (*pair.a->error).*uncertainty),
                 fmt::format("{} ± {:.1g}", shown(b), (*pair.b->error).*uncertainty), std::isnan(b) ? INFINITY : std::log(b / a),
@@ -156,12 +155,9 @@ void compare_work(const Pair& pair, Findings& findings) {
 
 /// Why times of two files say nothing about the program; empty if they do.
 std::string other_machine(const Provenance& a, const Provenance& b) {
-  const auto value = [](const Provenance& facts, const std::string& name) {
-    const auto fact = std::ranges::find(facts, name, &Fact::name);
-    return fact == facts.end() ? std::string("unknown") : fact->value;
-  };
-  for (const std::string name : {"cpu", "cores", "compile_flags", "sanitizers"})
-    if (value(a, name) != value(b, name)) return fmt::format("{} differ: {} and {}", name, value(a, name), value(b, name));
+  for (const char* name : {"cpu", "cores", "compile_flags", "sanitizers"})
+    if (const std::string in_a = value_of(a, name), in_b = value_of(b, name); in_a != in_b)
+      return fmt::format("{} differ: {} and {}", name, in_a, in_b);
   return {};
 }
 

@@ -59,16 +59,12 @@ bool same_rows(const Table& a, const Table& b) {
   return true;
 }
 
+constexpr double round_off = 1e-12;  ///< of errors in tables
+
 Judgement judge_order(double a, double b) {
   constexpr double steady = 0.05;
   if (std::isnan(a)) return std::isnan(b) ? Judgement::same : Judgement::better;
   return !(b >= a - steady) ? Judgement::regression : b > a + steady ? Judgement::better : Judgement::same;
-}
-
-Judgement judge_error(double a, double b, double factor) {
-  constexpr double round_off = 1e-12;
-  const auto grown = [&](double from, double to) { return !(to <= factor * from + round_off) && !std::isnan(from); };
-  return grown(a, b) ? Judgement::regression : grown(b, a) ? Judgement::better : Judgement::same;
 }
 
 /// A number of which only that is known that it depends on no time: nobody knows which way is better.
@@ -101,7 +97,8 @@ struct Judge {
                                                                : Judgement::regression,
                     name, column, shown(a), shown(b), std::log((b + 0.5) / (a + 0.5)));
       case Kind::error:
-        return note(accuracy, judge_error(a, b, options.error_factor), name, column, shown(a), shown(b), std::log(b / a));
+        return note(accuracy, judge_error(a, b, options.error_factor, round_off), name, column, shown(a), shown(b),
+                    std::log(b / a));
       case Kind::order: return note(accuracy, judge_order(a, b), name, column, shown(a), shown(b), a - b);
       case Kind::other: return note(accuracy, judge_other(a, b, options.error_factor), name, column, shown(a), shown(b), 0);
     }

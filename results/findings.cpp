@@ -3,12 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "results/table_builder.hpp"
 
 namespace drape::results {
 
 std::string shown(double value) { return fmt::format("{:.6g}", value); }
+
+Judgement judge_error(double a, double b, double factor, double noise) {
+  const auto grown = [&](double from, double to) { return !(to <= factor * from + noise) && !std::isnan(from); };
+  return grown(a, b) ? Judgement::regression : grown(b, a) ? Judgement::better : Judgement::same;
+}
 
 Judged summary(const Findings& findings, const std::string& name) {
   constexpr std::size_t most = 10;

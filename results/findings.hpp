@@ -27,6 +27,9 @@ struct Findings {
 /// The worst of all judgements, with counts as its reason, and the ten worst cells as a table of this name.
 Judged summary(const Findings& findings, const std::string& name);
 
+/// Whether an error has grown from a to b by this factor and beyond the noise, or shrunk likewise.
+Judgement judge_error(double a, double b, double factor, double noise);
+
 /// A number for people.
 std::string shown(double value);
 

@@ -45,6 +45,11 @@ constexpr std::array<std::string_view, 6> of_a_start{"started", "command_line", 
 
 std::string time_of_day() { return fmt::format("{:%FT%TZ}", fmt::gmtime(std::time(nullptr))); }
 
+std::string value_of(const Provenance& facts, std::string_view name) {
+  const auto fact = std::ranges::find(facts, name, &Fact::name);
+  return fact == facts.end() ? "unknown" : fact->value;
+}
+
 Provenance lasting(const Provenance& provenance) {
   Provenance facts = provenance;
   std::erase_if(facts, [](const Fact& fact) { return std::ranges::find(of_a_start, fact.name) != of_a_start.end(); });
@@ -53,8 +58,7 @@ Provenance lasting(const Provenance& provenance) {
 
 std::string why_not_resumed(const Provenance& theirs, const Provenance& ours) {
   for (const auto& [name, value, description] : lasting(ours)) {
-    const auto fact = std::ranges::find(theirs, name, &Fact::name);
-    const std::string other = fact == theirs.end() ? "unknown" : fact->value;
+    const std::string other = value_of(theirs, name);
     if (other == value) continue;
     if (name == "sweep") return "it holds something else than what is asked for";
     return fmt::format("it was written by another program or machine: {} is {} there and {} here", name, other, value);

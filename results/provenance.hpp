@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace drape::results {
@@ -14,6 +15,9 @@ struct Fact {
 
 /// All that is known, in the order in which it is shown.
 using Provenance = std::vector<Fact>;
+
+/// The value of the fact with this name, "unknown" if there is none.
+std::string value_of(const Provenance& facts, std::string_view name);
 
 /// What this program was built from and with, the machine it runs on, the time of this call and the command line it was
 /// started with. What cannot be found out is "unknown". `sweep`: identity of what is computed, so that a file is continued by

@@ -108,7 +108,7 @@ std::optional<Shape> member(Check& check, const std::string& group, const auto& 
 
 std::optional<Shape> member(Check& check, const std::string& group, const auto& field, const solver::Vectors*) {
   const std::string path = fmt::format("{}/{}", group, field.name);
-  const auto shape = check.numbers(path, "float64", 2, field.unit);
+  auto shape = check.numbers(path, "float64", 2, field.unit);
   if (shape && shape->back() != 3) check.note(path, fmt::format("has {} columns instead of 3", shape->back()));
   return shape;
 }

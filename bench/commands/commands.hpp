@@ -9,13 +9,11 @@ namespace drape::bench {
 void add_list(CLI::App& app);
 void add_run(CLI::App& app, const std::string& command_line);
 void add_study(CLI::App& app, const std::string& command_line);
-
-/// Sets the program's exit code.
-void add_inspect(CLI::App& app, int& exit_code);
-
-/// Sets the program's exit code when it has compared.
-void add_compare(CLI::App& app, int& exit_code);
 void add_report(CLI::App& app);
+
+/// These set the program's exit code.
+void add_inspect(CLI::App& app, int& exit_code);
+void add_compare(CLI::App& app, int& exit_code);
 
 /// What the program does without a subcommand.
 void do_main_job(const std::string& command_line);

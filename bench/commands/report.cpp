@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <memory>
 #include <span>
-#include <system_error>
 
 #include "bench/argument_checks.hpp"
 #include "bench/commands/commands.hpp"
@@ -21,9 +20,7 @@ struct ReportArguments {
 void report(const ReportArguments& a) {
   const std::string page = report_page({a.files.begin(), a.files.end()});
   const std::filesystem::path folder = a.out, file = folder / "index.html";
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) throw results::FileError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
+  results::create_folder(folder);
   results::publish(file, std::as_bytes(std::span(page)), results::Existing::replace);
   fmt::print("{}\n", file.string());
 }

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <optional>
 
 #include "bench/argument_checks.hpp"
 #include "bench/choices.hpp"
@@ -40,32 +41,31 @@ void check_scene(const Study& chosen, const SceneChoice& choice) {
   if (choice.scene.empty() && !choice.sets.empty()) throw std::invalid_argument("--set: expected --scene beside it");
 }
 
-/// Limits are for runs.
-void check_limits(const Study& chosen, const Limits& limits) {
-  if (std::isfinite(limits.seconds) || std::isfinite(limits.megabytes))
-    throw std::invalid_argument(fmt::format("--time-limit, --memory-limit: expected run, or one of the studies {}, not {}",
-                                            names_of(studies(), [](const Study& s) { return s.groups != nullptr; }),
-                                            chosen.name));
+/// Limits and motions are for runs.
+void check_options_of_tables(const Study& chosen, const SweepOptions& options) {
+  if (options.frames_every)
+    throw std::invalid_argument(fmt::format("--trajectory: the study {} makes tables; runs make {}", chosen.name, of_runs()));
+  if (std::isfinite(options.limits.seconds) || std::isfinite(options.limits.megabytes))
+    throw std::invalid_argument(
+        fmt::format("--time-limit, --memory-limit: expected run, or one of the studies {}, not {}", of_runs(), chosen.name));
 }
 
 /// Of the tables that a study makes.
-std::string identity(const StudyArguments& a) {
-  const std::string scene = a.choice.scene.empty() ? "" : model::to_toml(a.choice.load());
-  return hash_of(fmt::format("{}{}\n{}", a.name, a.quick ? " quick" : "", scene));
+std::string identity(const StudyArguments& a, const std::optional<model::Scene>& scene) {
+  return hash_of(fmt::format("{}{}\n{}", a.name, a.quick ? " quick" : "", scene ? model::to_toml(*scene) : ""));
 }
 
 void run_study(const Study& chosen, const StudyArguments& a) {
   check_scene(chosen, a.choice);
   const std::string name(chosen.name);
   if (chosen.groups) return sweep_and_print(chosen.groups(a.quick), a.output, name);
-  if (a.output.sweep.frames_every)
-    throw std::invalid_argument(fmt::format("--trajectory: the study {} makes tables; runs make {}", name, of_runs()));
-  check_limits(chosen, a.output.sweep.limits);
-  const std::vector<TableJob> jobs =
-      a.choice.scene.empty() ? chosen.tables(a.quick) : chosen.of_scene(a.choice.load(), a.quick);
+  check_options_of_tables(chosen, a.output.sweep);
+  std::optional<model::Scene> scene;
+  if (!a.choice.scene.empty()) scene = a.choice.load();
+  const std::vector<TableJob> jobs = scene ? chosen.of_scene(*scene, a.quick) : chosen.tables(a.quick);
   SweepOptions options = a.output.sweep;
   options.out = out_file(a.output, name);
-  print_tables(compute(jobs, identity(a), options), a.output.format);
+  print_tables(compute(jobs, identity(a, scene), options), a.output.format);
   say_where(options.out, a.output.format);
   if (chosen.plot.empty()) return;
   const std::string said = plot(chosen.plot, options.out);
