@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <string_view>
 #include <system_error>
 
 #include "bench/argument_checks.hpp"
@@ -29,6 +32,16 @@ int complain(const std::string& message, int exit_code = bad_input) {
   return exit_code;
 }
 
+/// A word as a shell takes it.
+std::string shell_word(std::string word) {
+  const auto plain = [](unsigned char c) {
+    return std::isalnum(c) != 0 || std::string_view("-_./,:=+@%").find(char(c)) != std::string_view::npos;
+  };
+  if (!word.empty() && std::ranges::all_of(word, plain)) return word;
+  for (auto at = word.find('\''); at != std::string::npos; at = word.find('\'', at + 4)) word.replace(at, 1, "'\\''");
+  return "'" + word + "'";
+}
+
 std::string farewell(const Interrupted& interrupted) {
   const std::string how =
       interrupted.out.empty()
@@ -40,11 +53,11 @@ std::string farewell(const Interrupted& interrupted) {
 }  // namespace
 
 int run_command_line(int argc, const char* const* argv) {
-  std::string command_line;
-  for (int k = 0; k < argc; ++k) command_line += (k > 0 ? " " : "") + std::string(argv[k]);
+  std::string command_line = "bench_integrators";
+  for (int k = 1; k < argc; ++k) command_line += " " + shell_word(argv[k]);
   CLI::App app(
       "Runs time integrators of cloth side by side with a reference and records accuracy, work and time.\n"
-      "Without arguments: the study hung-sheets.",
+      "Without arguments: the main job, three studies and a report of them.",
       "bench_integrators");
   app.require_subcommand(0, 1);
   add_list(app);
@@ -63,7 +76,7 @@ int run_command_line(int argc, const char* const* argv) {
   note_interruptions();
   try {
     app.parse(argc, argv);
-    if (app.get_subcommands().empty()) do_main_job(command_line);
+    if (app.get_subcommands().empty()) do_main_job();
     flush_output();
     return exit_code;
   } catch (const CLI::ParseError& error) {

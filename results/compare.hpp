@@ -3,18 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "results/provenance.hpp"
-#include "results/run_record.hpp"
-#include "results/table.hpp"
+#include "results/run_file.hpp"
 
 namespace drape::results {
-
-/// What a file holds.
-struct Recording {
-  Provenance provenance;
-  std::vector<RunRecord> runs;
-  std::vector<Table> tables;
-};
 
 enum class Judgement { same, better, regression, not_comparable };
 

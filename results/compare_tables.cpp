@@ -11,44 +11,39 @@ namespace drape::results {
 namespace {
 
 /// What is known of a column by its name and unit.
-enum class Kind { key, verdict, time, work, error, order, other };
+enum class Kind { key, verdict, ignored, work, error, order, other };
 
 bool one_of(std::string_view name, std::initializer_list<std::string_view> names) {
   return std::ranges::find(names, name) != names.end();
 }
 
+bool timed(const Column& column) {
+  return one_of(column.unit, {"ms", "ns", "s/s", "GB/s", "MB"}) || one_of(column.name, {"wall", "exponent", "repetitions"});
+}
+
 Kind kind_of(const Column& column) {
   if (one_of(column.name, {"verdict", "outcome"})) return Kind::verdict;
-  if (one_of(column.name, {"spread", "remark", "detail"})) return Kind::time;  // text made of numbers
+  if (one_of(column.name, {"spread", "remark", "detail"})) return Kind::ignored;  // text made of numbers
   if (column.unit.empty()) return Kind::key;
-  if (one_of(column.unit, {"ms", "ns", "s/s", "GB/s", "MB"}) || one_of(column.name, {"wall", "exponent", "repetitions"}))
-    return Kind::time;
+  if (timed(column) || one_of(column.name, {"residual", "uncertainty", "order"}))
+    return Kind::ignored;  // what a solver left of what it was allowed to leave, and what follows from errors
   if (one_of(column.name, {"updates", "cg_iterations", "steps", "factorisations", "forces", "escalations"})) return Kind::work;
-  if (one_of(column.name, {"error", "rms", "maximum", "distance", "residual"})) return Kind::error;
+  if (one_of(column.name, {"error", "rms", "maximum", "distance"})) return Kind::error;
   return column.name == "fitted_order" ? Kind::order : Kind::other;
 }
 
 bool timed(const Table& table) {
-  return std::ranges::any_of(table.columns, [](const Column& c) { return !c.unit.empty() && kind_of(c) == Kind::time; });
+  return std::ranges::any_of(table.columns, [](const Column& column) { return timed(column); });
 }
 
-std::string text_of(const Cell& cell) {
-  if (const auto* text = std::get_if<std::string>(&cell)) return *text;
-  return "";
+bool counts_work(const Table& table) {
+  return std::ranges::any_of(table.columns, [](const Column& column) { return kind_of(column) == Kind::work; });
 }
-
-double number_of(const Cell& cell) {
-  if (const auto* value = std::get_if<double>(&cell)) return *value;
-  if (const auto* count = std::get_if<std::int64_t>(&cell)) return static_cast<double>(*count);
-  return NAN;
-}
-
-std::size_t rows(const Table& table) { return table.columns.empty() ? 0 : table.columns.front().cells.size(); }
 
 std::string row_name(const Table& table, std::size_t row) {
   std::string name = table.name;
   for (const Column& column : table.columns)
-    if (kind_of(column) == Kind::key && !text_of(column.cells[row]).empty()) name += " " + text_of(column.cells[row]);
+    if (kind_of(column) == Kind::key && !text_in(&column, row).empty()) name += " " + text_in(&column, row);
   return name;
 }
 
@@ -59,7 +54,7 @@ bool same_rows(const Table& a, const Table& b) {
   return true;
 }
 
-constexpr double round_off = 1e-12;  ///< of errors in tables
+constexpr double round_off = 1e-12;  ///< of numbers in tables
 
 Judgement judge_order(double a, double b) {
   constexpr double steady = 0.05;
@@ -70,7 +65,7 @@ Judgement judge_order(double a, double b) {
 /// A number of which only that is known that it depends on no time: nobody knows which way is better.
 Judgement judge_other(double a, double b, double factor) {
   if (std::isnan(a) && std::isnan(b)) return Judgement::same;
-  const bool near = a == b || std::abs(b - a) <= (factor - 1) * std::max(std::abs(a), std::abs(b));
+  const bool near = a == b || std::abs(b - a) <= (factor - 1) * std::max(std::abs(a), std::abs(b)) + round_off;
   return near ? Judgement::same : Judgement::regression;
 }
 
@@ -83,13 +78,15 @@ struct Judge {
   const CompareOptions& options;
   Findings &accuracy, &work;
 
-  void cell(const std::string& name, const Column& column, const Cell& in_a, const Cell& in_b) const {
-    const double a = number_of(in_a), b = number_of(in_b);
+  /// `noise`: of errors in this row.
+  void cell(const std::string& name, const Column& column, const Column& other, std::size_t row, double noise) const {
+    const double a = number_in(&column, row), b = number_in(&other, row);
     switch (kind_of(column)) {
       case Kind::key:
-      case Kind::time: return;
+      case Kind::ignored: return;
       case Kind::verdict:
-        return note(accuracy, judge_verdict(text_of(in_a), text_of(in_b)), name, column, text_of(in_a), text_of(in_b), 0);
+        return note(accuracy, judge_verdict(text_in(&column, row), text_in(&other, row)), name, column, text_in(&column, row),
+                    text_in(&other, row), 0);
       case Kind::work:
         return note(work,
                     a == b || (std::isnan(a) && std::isnan(b)) ? Judgement::same
@@ -97,7 +94,7 @@ struct Judge {
                                                                : Judgement::regression,
                     name, column, shown(a), shown(b), std::log((b + 0.5) / (a + 0.5)));
       case Kind::error:
-        return note(accuracy, judge_error(a, b, options.error_factor, round_off), name, column, shown(a), shown(b),
+        return note(accuracy, judge_error(a, b, options.error_factor, noise + round_off), name, column, shown(a), shown(b),
                     std::log(b / a));
       case Kind::order: return note(accuracy, judge_order(a, b), name, column, shown(a), shown(b), a - b);
       case Kind::other: return note(accuracy, judge_other(a, b, options.error_factor), name, column, shown(a), shown(b), 0);
@@ -111,14 +108,20 @@ struct Judge {
   }
 };
 
+double uncertainty(const Table& table, std::size_t row) {
+  const double value = number_in(find_column(table, "uncertainty"), row);
+  return std::isnan(value) ? 0 : value;
+}
+
 void compare_rows(const Table& a, const Table& b, const Judge& judge) {
   for (std::size_t row = 0; row < rows(a); ++row) {
     const std::string name = row_name(a, row);
     if (name.find(" time") != std::string::npos) continue;  // its number is a time, whatever its column's unit says
     ++judge.accuracy.cells;
+    judge.work.cells += counts_work(a);
+    const double noise = uncertainty(a, row) + uncertainty(b, row);
     for (const Column& column : a.columns)
-      if (const auto other = std::ranges::find(b.columns, column.name, &Column::name); other != b.columns.end())
-        judge.cell(name, column, column.cells[row], other->cells[row]);
+      if (const Column* other = find_column(b, column.name)) judge.cell(name, column, *other, row, noise);
   }
 }
 

@@ -296,4 +296,6 @@ Provenance read_provenance(const fs::path& path) {
   return with_file_named(path, [&] { return facts_of(open_run_file(path)); });
 }
 
+Recording read_recording(const fs::path& path) { return {read_provenance(path), read_runs(path), read_tables(path)}; }
+
 }  // namespace drape::results

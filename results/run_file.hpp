@@ -51,6 +51,13 @@ class RunFile {
   std::unique_ptr<Image> image_;
 };
 
+/// What a file holds.
+struct Recording {
+  Provenance provenance;
+  std::vector<RunRecord> runs;
+  std::vector<Table> tables;
+};
+
 /// The name of a run's group in `/runs`, counted from 0: "000".
 std::string run_name(std::size_t run);
 
@@ -67,5 +74,8 @@ std::vector<Table> read_tables(const std::filesystem::path& path);
 
 /// Where the runs of a file come from. Throws like read_runs().
 Provenance read_provenance(const std::filesystem::path& path);
+
+/// All of that. Throws like read_runs().
+Recording read_recording(const std::filesystem::path& path);
 
 }  // namespace drape::results

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <string_view>
 
@@ -33,7 +34,7 @@ nlohmann::ordered_json to_value(const Cell& cell) {
 
 nlohmann::ordered_json to_value(const Table& table) {
   auto list = nlohmann::ordered_json::array();
-  for (std::size_t row = 0; !table.columns.empty() && row < table.columns.front().cells.size(); ++row) {
+  for (std::size_t row = 0; row < rows(table); ++row) {
     auto object = nlohmann::ordered_json::object();
     for (const Column& column : table.columns) object[column.name] = to_value(column.cells[row]);
     list.push_back(std::move(object));
@@ -74,6 +75,25 @@ std::vector<std::string> shown(const Column& column) {
 }
 
 }  // namespace
+
+std::size_t rows(const Table& table) { return table.columns.empty() ? 0 : table.columns.front().cells.size(); }
+
+const Column* find_column(const Table& table, std::string_view name) {
+  const auto found = std::ranges::find(table.columns, name, &Column::name);
+  return found == table.columns.end() ? nullptr : &*found;
+}
+
+std::string text_in(const Column* column, std::size_t row) {
+  const auto* text = column == nullptr ? nullptr : std::get_if<std::string>(&column->cells[row]);
+  return text == nullptr ? "" : *text;
+}
+
+double number_in(const Column* column, std::size_t row) {
+  if (column == nullptr) return std::numeric_limits<double>::quiet_NaN();
+  if (const auto* count = std::get_if<std::int64_t>(&column->cells[row])) return static_cast<double>(*count);
+  const auto* number = std::get_if<double>(&column->cells[row]);
+  return number == nullptr ? std::numeric_limits<double>::quiet_NaN() : *number;
+}
 
 std::string to_text(const Table& table) {
   const std::size_t rows = table.columns.empty() ? 0 : table.columns.front().cells.size();

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -27,6 +28,16 @@ struct Table {
   std::string description;  ///< one sentence
   std::vector<Column> columns;
 };
+
+/// The number of rows.
+std::size_t rows(const Table& table);
+
+/// The column with this name, null if there is none.
+const Column* find_column(const Table& table, std::string_view name);
+
+/// A cell's text, empty if it has none; its number, NaN if it has none. Without a column there is none.
+std::string text_in(const Column* column, std::size_t row);
+double number_in(const Column* column, std::size_t row);
 
 /// One line per row, aligned for people. Columns without any value or title are left out.
 std::string to_text(const Table& table);

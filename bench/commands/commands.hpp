@@ -16,6 +16,6 @@ void add_inspect(CLI::App& app, int& exit_code);
 void add_compare(CLI::App& app, int& exit_code);
 
 /// What the program does without a subcommand.
-void do_main_job(const std::string& command_line);
+void do_main_job();
 
 }  // namespace drape::bench

@@ -16,17 +16,14 @@ struct CompareArguments {
   results::CompareOptions options;
 };
 
-results::Recording recording(const std::string& file) {
-  return {results::read_provenance(file), results::read_runs(file), results::read_tables(file)};
-}
-
 void print(const char* kind, const results::Judged& judged) {
   fmt::print("{}: {} ({})\n", kind, to_string(judged.judgement), judged.reason);
   if (!judged.worst.columns.empty()) fmt::print("\n{}\n", to_text(judged.worst));
 }
 
 int compare_files(const CompareArguments& a) {
-  const results::Comparison comparison = results::compare(recording(a.a), recording(a.b), a.options);
+  const results::Comparison comparison =
+      results::compare(results::read_recording(a.a), results::read_recording(a.b), a.options);
   print("accuracy", comparison.accuracy);
   print("work", comparison.work);
   print("time", comparison.time);

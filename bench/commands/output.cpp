@@ -35,12 +35,13 @@ std::filesystem::path out_file(const Output& output, const std::string& job) {
   return output.sweep.out.empty() ? default_out(job) : output.sweep.out;
 }
 
-void sweep_and_print(const std::vector<Group>& groups, Output output, const std::string& job) {
+std::filesystem::path sweep_and_print(const std::vector<Group>& groups, Output output, const std::string& job) {
   output.sweep.out = out_file(output, job);
   print_table(results::to_table(sweep(groups, output.sweep)), output.format);
   say_where(output.sweep.out, output.format);
   if (output.sweep.frames_every && output.format == "table")
     fmt::print("motion for ParaView: {}\n", results::xdmf_path(output.sweep.out).string());
+  return output.sweep.out;
 }
 
 void add_output_options(CLI::App& command, Output& output) {

@@ -21,8 +21,8 @@ void add_output_options(CLI::App& command, Output& output);
 /// The file asked for, or one named after the job.
 std::filesystem::path out_file(const Output& output, const std::string& job);
 
-/// Runs all groups, prints the runs and says where they are recorded.
-void sweep_and_print(const std::vector<Group>& groups, Output output, const std::string& job);
+/// Runs all groups, prints the runs, says where they are recorded and returns that.
+std::filesystem::path sweep_and_print(const std::vector<Group>& groups, Output output, const std::string& job);
 
 void print_table(const results::Table& table, const std::string& format);
 

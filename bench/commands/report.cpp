@@ -1,3 +1,5 @@
+#include "bench/commands/report.hpp"
+
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -6,8 +8,11 @@
 
 #include "bench/argument_checks.hpp"
 #include "bench/commands/commands.hpp"
+#include "bench/commands/output.hpp"
 #include "bench/report/page.hpp"
 #include "results/atomic_file.hpp"
+#include "results/overview.hpp"
+#include "results/run_file.hpp"
 
 namespace drape::bench {
 namespace {
@@ -17,15 +22,18 @@ struct ReportArguments {
   std::string out;
 };
 
-void report(const ReportArguments& a) {
-  const std::string page = report_page({a.files.begin(), a.files.end()});
-  const std::filesystem::path folder = a.out, file = folder / "index.html";
+}  // namespace
+
+void report(const std::vector<std::filesystem::path>& files, const std::filesystem::path& folder) {
+  const std::string page = report_page(files);
+  const std::filesystem::path file = folder / "index.html";
   results::create_folder(folder);
   results::publish(file, std::as_bytes(std::span(page)), results::Existing::replace);
-  fmt::print("{}\n", file.string());
+  std::vector<results::Recording> recordings;
+  for (const auto& recorded : files) recordings.push_back(results::read_recording(recorded));
+  print_tables(results::overview(recordings), "table");
+  fmt::print("\nreport: {}\n", file.string());
 }
-
-}  // namespace
 
 void add_report(CLI::App& app) {
   CLI::App& command = *app.add_subcommand("report", "one HTML page with tables, plots and motions of recorded results");
@@ -38,7 +46,7 @@ void add_report(CLI::App& app) {
       ->required()
       ->type_name("DIR")
       ->check(not_empty());
-  command.callback([=] { report(*a); });
+  command.callback([=] { report({a->files.begin(), a->files.end()}, a->out); });
 }
 
 }  // namespace drape::bench

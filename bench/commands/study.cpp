@@ -1,3 +1,5 @@
+#include "bench/commands/study.hpp"
+
 #include <fmt/format.h>
 
 #include <cmath>
@@ -8,7 +10,6 @@
 #include "bench/commands/commands.hpp"
 #include "bench/commands/names_of.hpp"
 #include "bench/commands/output.hpp"
-#include "bench/commands/scene_choice.hpp"
 #include "bench/identity.hpp"
 #include "bench/plot.hpp"
 #include "bench/studies.hpp"
@@ -17,13 +18,6 @@
 
 namespace drape::bench {
 namespace {
-
-struct StudyArguments {
-  std::string name;
-  bool quick = false;
-  SceneChoice choice;
-  Output output;
-};
 
 /// The studies that can be made of any scene.
 std::string of_any_scene() {
@@ -55,24 +49,25 @@ std::string identity(const StudyArguments& a, const std::optional<model::Scene>&
   return hash_of(fmt::format("{}{}\n{}", a.name, a.quick ? " quick" : "", scene ? model::to_toml(*scene) : ""));
 }
 
-void run_study(const Study& chosen, const StudyArguments& a) {
+}  // namespace
+
+std::filesystem::path run_study(const StudyArguments& a) {
+  const Study& chosen = study(a.name);
   check_scene(chosen, a.choice);
-  const std::string name(chosen.name);
-  if (chosen.groups) return sweep_and_print(chosen.groups(a.quick), a.output, name);
+  if (chosen.groups) return sweep_and_print(chosen.groups(a.quick), a.output, a.name);
   check_options_of_tables(chosen, a.output.sweep);
   std::optional<model::Scene> scene;
   if (!a.choice.scene.empty()) scene = a.choice.load();
   const std::vector<TableJob> jobs = scene ? chosen.of_scene(*scene, a.quick) : chosen.tables(a.quick);
   SweepOptions options = a.output.sweep;
-  options.out = out_file(a.output, name);
+  options.out = out_file(a.output, a.name);
   print_tables(compute(jobs, identity(a, scene), options), a.output.format);
   say_where(options.out, a.output.format);
-  if (chosen.plot.empty()) return;
+  if (chosen.plot.empty()) return options.out;
   const std::string said = plot(chosen.plot, options.out);
   if (a.output.format == "table") fmt::print("{}", said);
+  return options.out;
 }
-
-}  // namespace
 
 void add_study(CLI::App& app, const std::string& command_line) {
   CLI::App& command = *app.add_subcommand("study", "run one of the studies");
@@ -88,13 +83,7 @@ void add_study(CLI::App& app, const std::string& command_line) {
   add_overrides(command, a->choice);
   add_output_options(command, a->output);
   command.footer(paragraph("Studies", study_choices()));
-  command.callback([=] { run_study(study(a->name), *a); });
-}
-
-void do_main_job(const std::string& command_line) {
-  StudyArguments a;
-  a.output.sweep.command_line = command_line;
-  run_study(studies().front(), a);
+  command.callback([=] { run_study(*a); });
 }
 
 }  // namespace drape::bench

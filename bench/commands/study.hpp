@@ -1,0 +1,23 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "bench/commands/output.hpp"
+#include "bench/commands/scene_choice.hpp"
+
+namespace drape::bench {
+
+/// What the subcommand study is told.
+struct StudyArguments {
+  std::string name;
+  bool quick = false;
+  SceneChoice choice;
+  Output output;
+};
+
+/// Runs the study, prints what it finds, and returns the file that it is recorded in. Throws std::invalid_argument if the
+/// arguments do not go together, and what sweep() and compute() throw.
+std::filesystem::path run_study(const StudyArguments& a);
+
+}  // namespace drape::bench
