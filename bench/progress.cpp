@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 namespace drape::bench {
 namespace {
@@ -31,6 +32,8 @@ void Progress::show(const std::string& activity) {
 }
 
 void Progress::advance() {
+  const auto now = std::chrono::steady_clock::now();
+  if (now - std::exchange(last_, now) < std::chrono::milliseconds(1)) ++known_;
   ++done_;
   draw();
 }
@@ -40,9 +43,9 @@ void Progress::draw() const {
   constexpr int width = 24;
   const int filled = width * done_ / std::max(total_, 1);
   std::string left = "estimating";
-  if (done_ > 0) {
+  if (done_ > known_ || done_ == total_) {
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start_;
-    const long seconds = std::lround(elapsed.count() / done_ * (total_ - done_));
+    const long seconds = std::lround(elapsed.count() / std::max(done_ - known_, 1) * (total_ - done_));
     left = fmt::format("{}:{:02} left", seconds / 60, seconds % 60);
   }
   const std::string line =

@@ -24,8 +24,9 @@ class Progress {
 
   bool terminal_;
   int total_, done_ = 0;
+  int known_ = 0;  ///< of those that are done: they took no time, since an earlier process has done them
   std::string activity_;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now(), last_ = start_;
 };
 
 }  // namespace drape::bench

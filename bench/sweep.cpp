@@ -105,15 +105,20 @@ void run_group(const Group& group, const SweepOptions& options, References& refe
 
 std::vector<results::RunRecord> sweep(const std::vector<Group>& groups, const SweepOptions& options) {
   if (options.frames_every) require_trajectories(groups, options);
+  const auto parts_of = [&](const Group& group) {
+    return static_cast<int>(group.size()) * (1 + options.repetitions) + (options.reference ? 1 : 0);
+  };
   int parts = 0;
-  for (const Group& group : groups)
-    parts += static_cast<int>(group.size()) * (1 + options.repetitions) + (options.reference ? 1 : 0);
+  for (const Group& group : groups) parts += parts_of(group);
   record_in_file(options, identity(groups, options), parts, [&](results::RunFile& file, Units& units) {
     References references(options.agreement);
     const std::size_t recorded = file.run_count();
     std::size_t before = 0;  // runs of the groups before this one
     for (const Group& group : groups) {
-      if (before >= recorded) run_group(group, options, references, file, units);
+      if (before >= recorded)
+        run_group(group, options, references, file, units);
+      else
+        for (int k = 0; k < parts_of(group); ++k) units.advance();
       before += group.size();
     }
   });

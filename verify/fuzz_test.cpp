@@ -18,6 +18,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
+#ifdef DRAPE_SANITIZE
+constexpr int rounds = 1;  // sanitizers make them ten times slower
+#else
+constexpr int rounds = 20;
+#endif
+
 std::string content(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(stream), {}};
@@ -60,7 +66,7 @@ TEST(Fuzz, EveryDamageOfARecordIsNoticed) {
   std::mt19937 random(1);
   for (const char* name : {"runs-schema-4.h5", "tables-schema-4.h5"}) {
     const std::string good = content(fs::path(DRAPE_SOURCE_DIR) / "verify/data" / name);
-    for (int k = 0; k < 500; ++k) {
+    for (int k = 0; k < 500 * rounds; ++k) {
       const std::string bad = mutated(good, random);
       if (bad == good) continue;
       write(file, bad);
@@ -84,7 +90,7 @@ TEST(Fuzz, ADamagedJournalHasOnlyWhatWasWritten) {
   const std::string good = content(path);
   std::mt19937 random(2);
   int refused = 0, less = 0;
-  for (int k = 0; k < 1000; ++k) {
+  for (int k = 0; k < 1000 * rounds; ++k) {
     write(path, mutated(good, random));
     refused += refuses<results::FileError>([&] {
       const results::Journal journal(file, facts, results::Start::resumed);
@@ -106,7 +112,7 @@ TEST(Fuzz, DamagedScenesAreScenesOrErrors) {
   int refused = 0, accepted = 0;
   for (const char* name : {"hung-edge", "wind", "tablecloth", "box_swing", "curtain"}) {
     const std::string good = model::to_toml(model::load_scene(name));
-    for (int k = 0; k < 200; ++k) {
+    for (int k = 0; k < 200 * rounds; ++k) {
       write(file, mutated(good, random));
       ++(refuses<model::SceneError>([&] { model::load_scene(file.string()); }) ? refused : accepted);
     }
