@@ -6,8 +6,10 @@
 
 #include "bench/argument_checks.hpp"
 #include "bench/commands/commands.hpp"
+#include "bench/report/images.hpp"
 #include "bench/report/page.hpp"
 #include "results/atomic_file.hpp"
+#include "results/browser.hpp"
 
 namespace drape::bench {
 namespace {
@@ -15,6 +17,7 @@ namespace {
 struct ReportArguments {
   std::vector<std::string> files;
   std::string out;
+  bool images = false;
 };
 
 void report(const ReportArguments& a) {
@@ -23,6 +26,7 @@ void report(const ReportArguments& a) {
   results::create_folder(folder);
   results::publish(file, std::as_bytes(std::span(page)), results::Existing::replace);
   fmt::print("{}\n", file.string());
+  if (a.images) fmt::print("{}: {} figures\n", (folder / "images").string(), write_images(file, folder / "images"));
 }
 
 }  // namespace
@@ -38,6 +42,9 @@ void add_report(CLI::App& app) {
       ->required()
       ->type_name("DIR")
       ->check(not_empty());
+  command.add_flag("--images", a->images,
+                   fmt::format("each figure also as SVG and PNG in DIR/images, drawn by Chromium in at most {:g} s",
+                               results::browsing_time));
   command.callback([=] { report(*a); });
 }
 
