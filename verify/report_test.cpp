@@ -9,10 +9,11 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "results/browser.hpp"
 #include "results/run_file.hpp"
 #include "results/table_builder.hpp"
 #include "verify/bench_integrators.hpp"
-#include "verify/browser.hpp"
+#include "verify/mesh_files.hpp"
 
 namespace drape::verify::report_test {
 namespace {
@@ -93,6 +94,36 @@ Table hostile() {
   return table.finish();
 }
 
+/// A table like those of figure 4.3.
+Table over_time() {
+  TableBuilder table("figure-4.3", "Figure 4.3: a sheet and a box");
+  for (int k = 1; k <= 4; ++k) {
+    table.row();
+    table.number("t", "until", "s", "", 0.05 * k);
+    for (const char* curve : {"bdf2_updates", "bdf2_CG", "bdf2_contacts"}) table.number(curve, curve, "1", "", k);
+  }
+  return table.finish();
+}
+
+/// A sheet on a box that rises, beside other obstacles.
+std::string scene_on_box(const std::string& name, const std::string& others) {
+  return fmt::format(R"(name = "{}"
+[grid]
+n = 6
+size = 0.8
+[material]
+density = 0.3
+tension = 300
+[forces]
+gravity = [0, 0, -9.81]
+[[obstacles]]
+shape = "box"
+size = [0.5, 0.5, 0.1]
+motion = [{{ time = 0, position = [0.4, 0.4, -0.4] }}, {{ time = 0.1, position = [0.4, 0.4, 0.1] }}]
+{})",
+                     name, others);
+}
+
 /// What the scripts of the tests below see of one page, in one go: a browser takes seconds to start.
 constexpr const char* look = R"(
   const all = (selector, from = document) => [...from.querySelectorAll(selector)];
@@ -106,6 +137,16 @@ constexpr const char* look = R"(
     copy.drawImage(canvas, 0, 0);
     return copy.getImageData(0, 0, canvas.width, canvas.height).data;
   };
+  // How much of a picture has a colour that colour(r, g, b) tells, and how far from its top that is.
+  const coloured = (pixels, width, colour) => {
+    let count = 0, rows = 0;
+    for (let k = 0; k < pixels.length; k += 4)
+      if (pixels[k + 3] === 255 && colour(pixels[k], pixels[k + 1], pixels[k + 2])) ++count, rows += Math.floor(k / 4 / width);
+    return {share: 4 * count / pixels.length, row: count ? rows / count / width : 0};
+  };
+  const isGrey = (r, g, b) => r > 60 && Math.abs(g / r - 130 / 118) < 0.03 && Math.abs(b / g - 142 / 130) < 0.03;
+  const isWhite = (r, g, b) => Math.min(r, g, b) > 225;
+  const isOrange = (r, g, b) => Math.hypot(r - 213, g - 94, b) < 30;
   const drawn = (pixels) => pixels.filter((value, k) => k % 4 === 3 && value > 0).length / (pixels.length / 4);
   const seen = {
     fetched: performance.getEntriesByType("resource").map((any) => any.name).filter((name) => !name.startsWith("blob:")),
@@ -117,14 +158,22 @@ constexpr const char* look = R"(
     if (plot) seen.figures[figure.querySelector("h3").textContent] = all(".point, .js-line, .heatmaplayer image, .textpoint", plot).length;
   }
   for (const table of all("article.table")) seen.csv[table.querySelector("h3").textContent] = await csv(table.querySelector("a[download]"));
-  const canvases = all(".view canvas"), slider = document.querySelector(".time"), before = canvases.map(picture);
-  if (slider) slider.value = slider.max, slider.dispatchEvent(new Event("input"));
+  const canvases = all(".view canvas"), before = canvases.map(picture);
+  for (const slider of all(".time")) slider.value = slider.max, slider.dispatchEvent(new Event("input"));
   canvases.forEach((canvas, k) => {
     const after = picture(canvas);
-    seen.views.push({drawn: drawn(before[k]), changed: after.some((value, i) => value !== before[k][i])});
+    const body = coloured(before[k], canvas.width, isGrey), later = coloured(after, canvas.width, isGrey);
+    seen.views.push({title: canvas.closest("figure").querySelector("h3").textContent, drawn: drawn(before[k]), changed: after.some((value, i) => value !== before[k][i]),
+                     body: body.share, risen: body.row - later.row, pins: coloured(after, canvas.width, isWhite).share, contacts: coloured(after, canvas.width, isOrange).share});
   });
-  const figure = plots[0];
-  seen.svg = await savePlot(figure, "svg", "a figure"), seen.png = (await savePlot(figure, "png", "a figure")).slice(0, 30);
+  seen.legends = all("#motion figure").map((figure) => figure.querySelector(".legend")?.parentElement.innerText ?? "");
+  const svg = await svgOf(plots[0]), png = await pngOf(svg), image = new Image();
+  image.src = `data:image/png;base64,${png}`;
+  await image.decode();
+  const copy = element("canvas", {width: image.width, height: image.height});
+  copy.getContext("2d").drawImage(image, 0, 0);
+  const ink = coloured(picture(copy), copy.width, (r, g, b) => Math.min(r, g, b) < 180).share;
+  seen.picture = {name: plots[0].name, svg, bytes: atob(png).length, width: image.width, ink};
   const sorted = all("article.table").find((table) => table.textContent.includes("from the data")), head = sorted.querySelector("thead button");
   const order = () => all("tbody th", sorted).map((cell) => cell.textContent);
   head.click();
@@ -141,7 +190,8 @@ void expect_marks_in_every_figure(const json& seen) {
     titles += title + "\n";
   }
   for (const char* title : {"Distance from", "Work–precision of runs: hung-corners", "Energy: hung-corners",
-                            "Updates: hung-corners", "Convergence: sheet", "Work–precision: sheet", "Stability: 6 × 6"})
+                            "Updates: hung-corners", "Convergence: sheet", "Work–precision: sheet", "Stability: 6 × 6",
+                            "Contacts: on box", "Clearance: on box", "Least clearance: on box", "Figure 4.3: a sheet"})
     EXPECT_THAT(titles, HasSubstr(title));
 }
 
@@ -167,10 +217,43 @@ void expect_motions(const json& seen, std::size_t count) {
   }
 }
 
-void expect_pictures(const json& seen) {
-  EXPECT_THAT(seen.at("svg").get<std::string>(), StartsWith("data:image/svg+xml,"));
-  EXPECT_THAT(seen.at("svg").get<std::string>(), HasSubstr("scatterlayer"));
-  EXPECT_THAT(seen.at("png").get<std::string>(), StartsWith("data:image/png;base64,"));
+/// Pins are marked where there are some, and so are contacts; a box is there and rises.
+void expect_obstacles_and_marks(const json& seen) {
+  for (const json& view : seen.at("views")) {
+    const bool boxed = view.at("title").get<std::string>().find("box") != std::string::npos;
+    const auto expect = [&](const char* what, bool there, double least) {
+      if (there)
+        EXPECT_GT(view.at(what), least) << what << " " << view;
+      else
+        EXPECT_EQ(view.at(what), 0) << what << " " << view;
+    };
+    expect("pins", !boxed, 2e-5);
+    expect("contacts", boxed, 2e-5);
+    expect("body", boxed, 0.01);
+    expect("risen", boxed, 0.02);
+  }
+  const std::vector<std::string> legends = seen.at("legends");
+  EXPECT_THAT(legends, Contains(HasSubstr("pinned")));
+  EXPECT_THAT(legends, Contains(testing::AllOf(HasSubstr("in contact"), HasSubstr("obstacle"), Not(HasSubstr("not drawn")))));
+  EXPECT_THAT(legends, Contains(testing::AllOf(HasSubstr("obstacle"), HasSubstr("not drawn"), HasSubstr("gone.obj"))));
+}
+
+/// The images are those of the page, one pair for each figure, and there is something on them.
+void expect_images(const json& seen, const std::map<std::string, std::string>& files) {
+  std::size_t images = 0;
+  for (const auto& [path, content] : files) {
+    if (!path.starts_with("page/images/") || path.ends_with('/')) continue;
+    ++images;
+    EXPECT_THAT(content, StartsWith(path.ends_with(".svg") ? "<svg" : "\x89PNG\r\n\x1a\n")) << path;
+    EXPECT_THAT(content, testing::AnyOf(HasSubstr("IEND"), HasSubstr("class=\"trace"), HasSubstr("<image"))) << path;
+  }
+  EXPECT_EQ(images, 2 * seen.at("figures").size());
+  const json& picture = seen.at("picture");
+  const std::string path = "page/images/" + picture.at("name").get<std::string>();
+  EXPECT_EQ(files.at(path + ".svg"), picture.at("svg"));
+  EXPECT_EQ(files.at(path + ".png").size(), picture.at("bytes"));
+  EXPECT_EQ(picture.at("width"), 2700);
+  EXPECT_GT(picture.at("ink"), 0.002);
 }
 
 void expect_summary(const json& seen) {
@@ -190,18 +273,29 @@ void expect_sorting(const json& seen) {
 std::filesystem::path page(const BenchIntegrators& program, const Words& files) {
   {
     results::RunFile file(program.folder() / "tables.h5", results::provenance("bench_integrators study all"));
-    for (const Table& table : {orders(), trials(), atlas(), hostile()}) file.add(table);
+    for (const Table& table : {orders(), trials(), atlas(), over_time(), hostile()}) file.add(table);
   }
   EXPECT_THAT(program.output(Words{"report"} + files + Words{"tables.h5", "--out", "page"}),
-              AllOf(HasSubstr("\nOrders of convergence\n"), EndsWith("\nreport: page/index.html\n")));
+              AllOf(HasSubstr("\nOrders of convergence\n"), HasSubstr("\nreport: page/index.html\n")));
   return program.folder() / "page/index.html";
+}
+
+void record(const BenchIntegrators& program, const std::string& scene, const Words& more) {
+  program.output(Words{"run", "--scene", scene, "--until", "0.1", "--trajectory", "every=0.02"} + more);
 }
 
 TEST(Report, ShowsAllThereIs) {  // one test, since a browser takes seconds to start
   const BenchIntegrators program;
-  program.output({"run", "--scene", "hung-corners", "--set", "grid.n=6", "--until", "0.1", "--method", "bdf2,sbdf2", "--step",
-                  "0.02,0.01", "--trajectory", "every=0.02", "--out", "runs.h5"});
-  const Browsed browsed = browse(page(program, {"runs.h5"}), look, 1280);
+  record(program, "hung-corners", {"--set", "grid.n=6", "--method", "bdf2,sbdf2", "--step", "0.02,0.01", "--out", "runs.h5"});
+  const Words once{"--method", "bdf2", "--step", "0.01", "--no-reference", "--repeat", "1", "--out"};
+  program.write("box.toml", scene_on_box("on box", ""));
+  record(program, "box.toml", once + Words{"box.h5"});
+  program.write("gone.toml",
+                scene_on_box("box and more", "[[obstacles]]\nshape = \"mesh\"\nfile = \"gone.obj\"\nposition = [3, 0, 0]\n"));
+  write_mesh(program.folder() / "gone.obj", box_mesh({0.1, 0.1, 0.1}));
+  record(program, "gone.toml", once + Words{"gone.h5"});
+  std::filesystem::remove(program.folder() / "gone.obj");
+  const results::Browsed browsed = results::browse(page(program, {"runs.h5", "box.h5", "gone.h5", "--images"}), look, 1280);
   EXPECT_THAT(browsed.console, IsEmpty());
   const json seen = json::parse(browsed.seen);
   EXPECT_THAT(seen.at("fetched"), IsEmpty());
@@ -209,16 +303,44 @@ TEST(Report, ShowsAllThereIs) {  // one test, since a browser takes seconds to s
   expect_csv_of(orders(), seen);
   expect_csv_of(atlas(), seen);
   EXPECT_THAT(seen.at("csv").at("All that was tried on sheet"), HasSubstr("\"cvode-bdf, \"\"as it is\"\"\""));
-  expect_motions(seen, 4);
-  expect_pictures(seen);
+  expect_motions(seen, 6);
+  expect_obstacles_and_marks(seen);
+  expect_images(seen, program.files());
   expect_summary(seen);
   expect_sorting(seen);
   EXPECT_THAT(seen.at("titles"), Contains(hostile().description));
 }
 
+TEST(Report, WithoutChromiumIsAPageWithoutImages) {
+  const BenchIntegrators program;
+  page(program, {});
+  std::filesystem::create_directory(program.folder() / "page/images");
+  program.write("page/images/old.png", "older");
+  Command command = program.command({"report", "tables.h5", "--out", "page", "--images"});
+  command.environment.emplace_back("PATH=/nowhere");
+  const ProgramResult result = run_program(command);
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.out, EndsWith("\nreport: page/index.html\n"));
+  EXPECT_THAT(result.err, HasSubstr("apt-get install chromium"));
+  EXPECT_THAT(lines(result.err), SizeIs(1));
+  EXPECT_EQ(program.files().at("page/images/old.png"), "older");
+}
+
+TEST(Report, ImagesTakeThePlaceOfImagesOnly) {
+  const BenchIntegrators program;
+  page(program, {});
+  std::filesystem::create_directory(program.folder() / "page/images");
+  program.write("page/images/notes.txt", "mine");
+  const ProgramResult result = program.run({"report", "tables.h5", "--out", "page", "--images"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("page/images/notes.txt"));
+  EXPECT_EQ(program.files().at("page/images/notes.txt"), "mine");
+}
+
 TEST(Report, FitsAPhone) {
   const BenchIntegrators program;
-  const Browsed browsed = browse(page(program, {}), "see(document.documentElement.scrollWidth - innerWidth);", 500);
+  const results::Browsed browsed =
+      results::browse(page(program, {}), "see(document.documentElement.scrollWidth - innerWidth);", 500);
   EXPECT_EQ(browsed.seen, "0");
   EXPECT_THAT(browsed.console, IsEmpty());
 }
@@ -227,7 +349,7 @@ TEST(Report, AScriptThatFailsWouldBeSeen) {
   const BenchIntegrators program;
   const std::filesystem::path broken = page(program, {});
   std::ofstream(broken, std::ios::app) << "<script>no_such_function();</script>";
-  EXPECT_THAT(browse(broken, "see('');", 1280).console, Contains(HasSubstr("no_such_function")));
+  EXPECT_THAT(results::browse(broken, "see('');", 1280).console, Contains(HasSubstr("no_such_function")));
 }
 
 TEST(Report, OfNothingSaysWhatIsWrongAndLeavesNothing) {

@@ -9,8 +9,10 @@
 #include "bench/argument_checks.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/output.hpp"
+#include "bench/report/images.hpp"
 #include "bench/report/page.hpp"
 #include "results/atomic_file.hpp"
+#include "results/browser.hpp"
 #include "results/overview.hpp"
 #include "results/run_file.hpp"
 
@@ -20,7 +22,16 @@ namespace {
 struct ReportArguments {
   std::vector<std::string> files;
   std::string out;
+  bool images = false;
 };
+
+void make_report(const ReportArguments& a) {
+  report({a.files.begin(), a.files.end()}, a.out);
+  if (!a.images) return;
+  const std::filesystem::path folder = a.out;
+  fmt::print("images: {} figures in {}\n", write_images(folder / "index.html", folder / "images"),
+             (folder / "images").string());
+}
 
 }  // namespace
 
@@ -46,7 +57,10 @@ void add_report(CLI::App& app) {
       ->required()
       ->type_name("DIR")
       ->check(not_empty());
-  command.callback([=] { report({a->files.begin(), a->files.end()}, a->out); });
+  command.add_flag("--images", a->images,
+                   fmt::format("each figure also as SVG and PNG in DIR/images, drawn by Chromium in at most {:g} s",
+                               results::browsing_time));
+  command.callback([=] { make_report(*a); });
 }
 
 }  // namespace drape::bench

@@ -87,7 +87,7 @@ function csvLink(name, columns) {
   return link;
 }
 
-const fileName = (text) => text.replace(/[^\p{L}\p{N}.=-]+/gu, "-").replace(/^-|-$/g, "");
+const fileName = (text) => text.replace(/[^\p{L}\p{N}.]+/gu, "-").replace(/^[-.]+|-$/g, "");
 
 const commandLine = (file) => element("p", {className: "command"}, "from ", element("code", {}, file.file), ", made by ",
                                       element("code", {}, fact(file, "command_line")));

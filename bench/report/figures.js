@@ -34,7 +34,7 @@ function workPrecisionLayout(width, colours, rows, uncertainty, entries) {
   return {
     ...baseLayout(width, colours, entries),
     xaxis: axis("error over the scene's size", colours, {type: "log", range}),
-    yaxis: axis("solver time [ms]", colours, {type: "log"}),
+    yaxis: axis("solver time [ms]", colours, logTicks(rows.map((row) => row.time))),
     shapes: uncertainBand(10 * uncertainty, 10 ** range[1], colours),
   };
 }
@@ -102,7 +102,7 @@ function convergenceFigures(file, table) {
       const layout = {
         ...baseLayout(width, colours, curves.length + slopes.length),
         xaxis: axis(title, colours, {type: "log", dtick: undefined, exponentformat: "e", tickangle: 0}),
-        yaxis: axis(unit === "1" ? "error over the scene's size" : `error [${unit}]`, colours, {type: "log", range}),
+        yaxis: axis(unit === "1" ? "error over the scene's size" : `error [${unit}]`, colours, {...logTicks(rows.map((row) => row.error)), range}),
         shapes: uncertainBand(10 * uncertainty, 10 ** range[0], colours).map((band) => ({...band, xref: "paper", yref: "y", x0: 0, x1: 1, y0: band.x0, y1: band.x1})),
       };
       return {data: [...curves, ...slopes], layout};
@@ -169,7 +169,7 @@ function stabilityFigures(file, table) {
       const titles = methods.map(([name, of], k) => ({
         text: panels[k].failing.flat().every(Boolean) ? `${name}: predicted to fail everywhere` : name, showarrow: false, xref: `x${k ? k + 1 : ""} domain`,
         yref: `y${k ? k + 1 : ""} domain`, x: 0, y: 1, yanchor: "bottom", xanchor: "left", font: {size: 11, color: colours.text}}));
-      const notes = [{text: "across: h k/d (∞: undamped); up: ν<sub>h</sub> = h² k/(ρ l²)", showarrow: false, xref: "paper", yref: "paper", x: 0, y: 1, yshift: 30, xanchor: "left", font: {size: 11, color: colours.text}}];
+      const notes = [{text: "across: h k/d (∞: undamped); up: ν<sub>h</sub> = h² k/(ρ l²)", showarrow: false, xref: "paper", yref: "paper", x: 0, y: 1, yshift: 36, xanchor: "left", font: {size: 11, color: colours.text}}];
       const layout = {...baseLayout(width, colours, 0), height, grid: {rows: lines, columns, pattern: "independent", xgap: 0.18, ygap: 0.3},
                       margin: {l: 40, r: 10, t: 60, b: 70}, legend: {orientation: "h", x: 0, y: -40 / (height - 130), yanchor: "top"}, annotations: [...titles, ...notes],
                       shapes: panels.flatMap((panel) => panel.shapes), ...Object.assign({}, ...panels.map((panel) => panel.axes))};
@@ -183,9 +183,30 @@ function stabilityFigures(file, table) {
   });
 }
 
+/** What a table of figure 4.3 has of each method over time: its columns are <method>_<curve>. */
+const curvesOverTime = [["CG", "CG iterations a step"], ["updates", "updates a step"], ["contacts", "particles in contact"]];
+const methodsOverTime = (table) => table.columns.map(({name}) => name).filter((name) => name.endsWith("_contacts")).map((name) => name.replace(/_contacts$/, ""));
+const isOverTime = (table) => hasColumns(table, "t") && methodsOverTime(table).length > 0;
+
+/** The three of them below each other over one time. */
+function overTimeFigure(file, table) {
+  const t = cellsOf(table, "t"), methods = methodsOverTime(table);
+  const make = (width, colours) => {
+    const curves = methods.flatMap((method, k) => curvesOverTime.map(([curve, label], row) => ({
+      type: "scatter", mode: "lines", name: method, legendgroup: method, showlegend: row === 0, x: t, y: cellsOf(table, `${method}_${curve}`), yaxis: `y${row ? row + 1 : ""}`,
+      hovertemplate: `${method}<br>t = %{x:.4g} s: %{y:.4g} ${label}<extra></extra>`, line: lineStyle(k)})));
+    const rows = Object.fromEntries(curvesOverTime.map(([, label], row) => [`yaxis${row ? row + 1 : ""}`, axis(label, colours, {domain: [(2 - row) * 0.35, (2 - row) * 0.35 + 0.3], rangemode: "tozero"})]));
+    const layout = {...baseLayout(width, colours, methods.length), height: 660, ...rows, xaxis: timeAxis(colours, {anchor: "y3"})};
+    return {data: curves, layout};
+  };
+  return [{file, make, title: table.description, says: "How hard the steps are before, during and after the contact: what a method solves, and how many particles obstacles constrain.",
+           columns: () => table.columns.map(exactCells)}];
+}
+
 /** All figures of a table; none if it is only to be read. */
 function figuresOfTable(file, table) {
   if (table.name.startsWith("trials: ")) return trialsFigure(file, table);
   if (table.name === "stability-atlas") return stabilityFigures(file, table);
+  if (isOverTime(table)) return overTimeFigure(file, table);
   return convergenceColumns(table) ? convergenceFigures(file, table) : [];
 }

@@ -4,19 +4,25 @@
 // Viridis [van der Walt, Smith 2015] at ninths: even steps of lightness, for the colour-blind, too.
 const viridis = ["#440154", "#482878", "#3e4a89", "#31688e", "#26828e", "#1f9e89", "#35b779", "#6ece58", "#b5de2b", "#fde725"];
 
-/** The positions of a trajectory, unpacked once: Float32Array, frame by frame. */
-function unpack(trajectory) {
-  const bytes = Uint8Array.from(atob(trajectory.positions), (character) => character.charCodeAt(0));
-  return {...trajectory, particles: trajectory.nu * trajectory.nv, positions: new Float32Array(bytes.buffer)};
+const bytesOf = (text) => Uint8Array.from(atob(text), (character) => character.charCodeAt(0));
+
+/** A trajectory, unpacked once: positions frame by frame, what constrains each particle, obstacles with their poses. */
+function unpack(trajectory, surfaces) {
+  const obstacles = trajectory.obstacles.drawn.map(({surface, poses}) => ({surface: surfaces[surface], poses: new Float32Array(bytesOf(poses).buffer)}));
+  return {...trajectory, particles: trajectory.nu * trajectory.nv, positions: new Float32Array(bytesOf(trajectory.positions).buffer),
+          constraint: bytesOf(trajectory.constraint), obstacles, missing: trajectory.obstacles.missing};
 }
 
-/** Positions at a time, between frames linearly, written to `to`; those of the last frame after the end. */
-function positionsAt(motion, t, to) {
-  const {times, positions, particles} = motion, size = 3 * particles;
-  let k = times.findIndex((time) => time > t);
-  if (k < 0) k = times.length;
-  const below = Math.max(k - 1, 0), above = Math.min(k, times.length - 1);
-  const share = above > below ? (t - times[below]) / (times[above] - times[below]) : 0;
+/** The frames before and after a time, and how far it is from the one to the other; after the end the last one. */
+function framesAt(times, t) {
+  const next = times.findIndex((time) => time > t), after = next < 0 ? times.length : next;
+  const below = Math.max(after - 1, 0), above = Math.min(after, times.length - 1);
+  return {below, above, share: above > below ? (t - times[below]) / (times[above] - times[below]) : 0};
+}
+
+/** Positions at a time, between frames linearly, written to `to`. */
+function positionsAt({times, positions, particles}, t, to) {
+  const {below, above, share} = framesAt(times, t), size = 3 * particles;
   for (let i = 0; i < size; ++i) to[i] = (1 - share) * positions[below * size + i] + share * positions[above * size + i];
 }
 
@@ -58,31 +64,106 @@ function cellTriangles({nu, nv}) {
   return triangles;
 }
 
+/** The geometry of a surface, made once: runs share it. */
+function surfaceGeometry(surface) {
+  if (surface.geometry) return surface.geometry;
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(bytesOf(surface.vertices).buffer), 3));
+  geometry.setIndex(new THREE.BufferAttribute(new Uint32Array(bytesOf(surface.triangles).buffer), 1));
+  geometry.computeVertexNormals();
+  return (surface.geometry = geometry);
+}
+
+/** A grey body with its sharp edges drawn, which tells it from the sheet on light and dark pages alike. */
+function makeObstacle({surface, poses}) {
+  const geometry = surfaceGeometry(surface), body = new THREE.Group();
+  body.add(new THREE.Mesh(geometry, new THREE.MeshPhongMaterial({color: 0x76828e, shininess: 0, flatShading: !surface.smooth, side: THREE.DoubleSide})));
+  if (!surface.smooth) body.add(new THREE.LineSegments(new THREE.EdgesGeometry(geometry, 40), new THREE.LineBasicMaterial({color: 0x4a5560})));
+  return {body, poses};
+}
+
+/** Moves an obstacle to where it is at a time. */
+function placeObstacle({body, poses}, times, t) {
+  const moves = poses.length > 7, {below, above, share} = moves ? framesAt(times, t) : {below: 0, above: 0, share: 0};
+  const position = (frame) => new THREE.Vector3().fromArray(poses, 7 * frame), turn = (frame) => new THREE.Quaternion().fromArray(poses, 7 * frame + 3);
+  body.position.copy(position(below).lerp(position(above), share));
+  body.quaternion.copy(turn(below).slerp(turn(above), share));
+}
+
+// What the trajectory says of particles, and how they are marked.
+const constraints = [{kind: 1, name: "pinned", square: true, colour: "#ffffff", border: "#000000", size: 9},
+                     {kind: 2, name: "in contact", square: false, colour: "#D55E00", border: "#ffffff", size: 8}];
+
+/** A mark as a small picture. */
+function markPicture({square, colour, border}) {
+  const canvas = element("canvas", {width: 32, height: 32}), context = canvas.getContext("2d");
+  context.fillStyle = colour, context.strokeStyle = border, context.lineWidth = square ? 6 : 3;
+  if (square) context.rect(4, 4, 24, 24);
+  else context.arc(16, 16, 12, 0, 2 * Math.PI);
+  context.fill(), context.stroke();
+  return canvas;
+}
+
+/** Marks on particles of one kind; a little nearer than they are, so that the sheet does not cut them in half. */
+function makeMarks(mark, positions, particles) {
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute("position", positions);
+  geometry.setIndex(new THREE.BufferAttribute(new Uint32Array(particles), 1));
+  const material = new THREE.PointsMaterial({map: new THREE.CanvasTexture(markPicture(mark)), size: mark.size, sizeAttenuation: false,
+                                             transparent: true, alphaTest: 0.4});
+  material.onBeforeCompile = (shader) => {
+    shader.vertexShader = shader.vertexShader.replace("#include <project_vertex>", "#include <project_vertex>\n gl_Position = projectionMatrix * vec4(0.99 * mvPosition.xyz, 1.0);");
+  };
+  const points = new THREE.Points(geometry, material);
+  points.frustumCulled = false;
+  return {mark, points, geometry};
+}
+
+/** What each particle is at a time: those of the frame before. */
+function constraintsAt({times, constraint, particles}, t) {
+  const first = constraint.length > particles ? framesAt(times, t).below * particles : 0;
+  return constraint.subarray(first, first + particles);
+}
+
+/** Puts the marks on those particles that are of their kind at a time. */
+function placeMarks({mark, geometry}, motion, t) {
+  let count = 0;
+  constraintsAt(motion, t).forEach((kind, i) => {
+    if (kind === mark.kind) geometry.index.array[count++] = i;
+  });
+  geometry.index.needsUpdate = true;
+  geometry.setDrawRange(0, count);
+}
+
+const hasMarks = (motion, mark) => motion.constraint.includes(mark.kind);
+
+/** The sheet, or the line of a chain, with its mesh. */
+function makeCloth(motion, geometry) {
+  const chain = motion.nu === 1 || motion.nv === 1;
+  if (!chain) geometry.setIndex(cellTriangles(motion));
+  const cloth = chain ? new THREE.Line(geometry, new THREE.LineBasicMaterial({vertexColors: THREE.VertexColors}))
+                      : new THREE.Mesh(geometry, new THREE.MeshLambertMaterial({vertexColors: THREE.VertexColors, side: THREE.DoubleSide}));
+  const lines = chain ? [] : [new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({color: 0x000000, wireframe: true, transparent: true, opacity: 0.12}))];
+  for (const any of [cloth, ...lines]) any.frustumCulled = false;
+  return {chain, cloth, lines};
+}
+
 /** What three.js draws of one run. */
 function makeScene(motion) {
   const geometry = new THREE.BufferGeometry(), count = 3 * motion.particles;
   geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(count), 3));
   geometry.setAttribute("color", new THREE.BufferAttribute(new Float32Array(count).fill(0.6), 3));
+  const {chain, cloth, lines} = makeCloth(motion, geometry), bodies = motion.obstacles.map(makeObstacle);
+  const marks = constraints.filter((mark) => hasMarks(motion, mark)).map((mark) => makeMarks(mark, geometry.attributes.position, motion.particles));
   const scene = new THREE.Scene(), sun = new THREE.DirectionalLight(0xffffff, 0.7);
   sun.position.set(1, -2, 3);
-  scene.add(new THREE.AmbientLight(0xffffff, 0.6), sun);
-  const chain = motion.nu === 1 || motion.nv === 1;
-  if (!chain) geometry.setIndex(cellTriangles(motion));
-  const cloth = chain ? new THREE.Line(geometry, new THREE.LineBasicMaterial({vertexColors: THREE.VertexColors}))
-                      : new THREE.Mesh(geometry, new THREE.MeshLambertMaterial({vertexColors: THREE.VertexColors, side: THREE.DoubleSide}));
-  cloth.frustumCulled = false;
-  scene.add(cloth);
-  if (!chain) {
-    const lines = new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({color: 0x000000, wireframe: true, transparent: true, opacity: 0.12}));
-    lines.frustumCulled = false;
-    scene.add(lines);
-  }
-  return {scene, cloth, geometry, chain};
+  scene.add(new THREE.AmbientLight(0xffffff, 0.6), sun, cloth, ...lines, ...bodies.map(({body}) => body), ...marks.map(({points}) => points));
+  return {scene, cloth, geometry, chain, bodies, marks};
 }
 
 /** A run's canvas with its name and, below it, how far it is off. */
-function makeView(run) {
-  const motion = unpack(run.trajectory), canvas = element("canvas", {role: "img", "aria-label": `Motion of ${runLabel(run)}`});
+function makeView(run, surfaces) {
+  const motion = unpack(run.trajectory, surfaces), canvas = element("canvas", {role: "img", "aria-label": `Motion of ${runLabel(run)}`});
   const says = element("p", {className: "quiet"}, "\u00a0");
   const box = element("div", {className: "view"}, element("p", {}, element("strong", {}, run.method), ` h = ${shortNumber(run.step)} s`), canvas, says);
   return {run, motion, canvas, says, box, ...makeScene(motion)};

@@ -1,10 +1,12 @@
 #include "bench/report/page_data.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <span>
 
 #include "bench/report/base64.hpp"
+#include "bench/report/obstacles.hpp"
 #include "results/run_file.hpp"
 #include "results/runs_table.hpp"
 #include "results/schema.hpp"
@@ -73,14 +75,26 @@ std::string packed_positions(const std::vector<solver::State>& states) {
   return base64(std::as_bytes(std::span(numbers)));
 }
 
-Json page_trajectory(const results::TrajectoryRecord& trajectory) {
+/// What each particle is, a byte each: frame by frame, or once if that never changes.
+std::string packed_constraints(const std::vector<std::vector<int>>& frames) {
+  const bool same = std::ranges::all_of(frames, [&](const std::vector<int>& frame) { return frame == frames.front(); });
+  std::vector<std::byte> bytes;
+  for (const std::vector<int>& frame : std::span(frames).first(same ? 1 : frames.size()))
+    for (const int kind : frame) bytes.push_back(static_cast<std::byte>(kind));
+  return base64(bytes);
+}
+
+Json page_trajectory(const results::RunRecord& run, Json& surfaces) {
+  const results::TrajectoryRecord& trajectory = *run.trajectory;
   return {{"nu", trajectory.nu},
           {"nv", trajectory.nv},
           {"times", trajectory.times},
-          {"positions", packed_positions(trajectory.states)}};
+          {"positions", packed_positions(trajectory.states)},
+          {"constraint", packed_constraints(trajectory.constraint)},
+          {"obstacles", page_obstacles(run, surfaces)}};
 }
 
-Json page_run(const results::RunRecord& run) {
+Json page_run(const results::RunRecord& run, Json& surfaces) {
   Json object;
   put_fields(object, results::run_fields, run);
   for (const results::WorkCount& work : run.work) object["work"][work.name] = work.count;
@@ -91,7 +105,7 @@ Json page_run(const results::RunRecord& run) {
     object["error"]["resolved"] = results::resolved(*run.error);
   }
   if (run.contact) put_fields(object["contact"], results::contact_fields, *run.contact);
-  if (run.trajectory) object["trajectory"] = page_trajectory(*run.trajectory);
+  if (run.trajectory) object["trajectory"] = page_trajectory(run, surfaces);
   return object;
 }
 
@@ -110,7 +124,8 @@ Json page_data(const std::filesystem::path& file) {
   for (const results::Table& table : results::read_tables(file)) data["tables"].push_back(page_table(table));
   const std::vector<results::RunRecord> runs = results::read_runs(file);
   data["runs"] = Json::array();
-  for (const results::RunRecord& run : runs) data["runs"].push_back(page_run(run));
+  data["surfaces"] = Json::array();
+  for (const results::RunRecord& run : runs) data["runs"].push_back(page_run(run, data["surfaces"]));
   if (!runs.empty()) data["runs_table"] = page_table(results::to_table(runs));
   return data;
 }

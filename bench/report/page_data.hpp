@@ -6,8 +6,9 @@
 namespace drape::bench {
 
 /// All that a report shows of one HDF5 file: its provenance, its tables, a table of its runs, and of each run its fields, steps
-/// (at most 500 of them, evenly chosen), errors and trajectory. Numbers that are not finite are null (NaN) or the texts "inf"
-/// and "-inf", which JSON has no numbers for. Throws results::FileError.
+/// (at most 500 of them, evenly chosen), errors and trajectory, whose obstacles have the surfaces of a list that the runs
+/// share. Numbers that are not finite are null (NaN) or the texts "inf" and "-inf", which JSON has no numbers for. Throws
+/// results::FileError.
 nlohmann::ordered_json page_data(const std::filesystem::path& file);
 
 }  // namespace drape::bench

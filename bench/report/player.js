@@ -11,6 +11,8 @@ function updateView(view, player) {
   position.needsUpdate = color.needsUpdate = true;
   if (!view.chain) geometry.computeVertexNormals();
   geometry.computeBoundingSphere();
+  for (const body of view.bodies) placeObstacle(body, motion.times, player.t);
+  for (const marks of view.marks) placeMarks(marks, motion, player.t);
   const ended = player.t > motion.times[motion.times.length - 1] + 1e-9 ? `; ended at ${shortNumber(motion.times[motion.times.length - 1])} s` : "";
   view.says.textContent = (view === player.truth ? "the others are measured from this one" : `RMS ${rootMeanSquare(view.off).toExponential(2)} m off`) + ended;
 }
@@ -18,10 +20,11 @@ function updateView(view, player) {
 /** One renderer draws all the views and hands each its picture: browsers allow but few at a time. */
 function renderViews(player) {
   const {renderer, camera} = player;
-  for (const {canvas, scene} of player.views) {
+  for (const {canvas, scene, marks} of player.views) {
     const size = Math.round(canvas.clientWidth * devicePixelRatio);
     if (!size) continue;
     if (canvas.width !== size) canvas.width = canvas.height = size;
+    for (const {mark, points} of marks) points.material.size = Math.max(3, Math.min(mark.size, canvas.clientWidth / 40)) * devicePixelRatio;
     renderer.setSize(size, size, false);
     renderer.render(scene, camera);
     const context = canvas.getContext("2d");
@@ -66,7 +69,9 @@ function hover(player, view, event) {
   const far = (i) => hit.point.distanceToSquared(new THREE.Vector3(...array.subarray(3 * i, 3 * i + 3)));
   const i = [hit.face.a, hit.face.b, hit.face.c].sort((p, q) => far(p) - far(q))[0], {nu} = view.motion;
   const place = [...array.subarray(3 * i, 3 * i + 3)].map((x) => x.toFixed(4)).join(", ");
-  view.canvas.title = view.says.textContent = `particle (${i % nu}, ${Math.floor(i / nu)}): (${place}) m, ${view.off[i].toExponential(2)} m off`;
+  const constrained = constraints.find(({kind}) => kind === constraintsAt(view.motion, player.t)[i]);
+  view.canvas.title = view.says.textContent =
+    `particle (${i % nu}, ${Math.floor(i / nu)})${constrained ? `, ${constrained.name}` : ""}: (${place}) m, ${view.off[i].toExponential(2)} m off`;
 }
 
 /** The arrow keys turn the camera. */
@@ -84,7 +89,7 @@ function makeCamera(player, grid) {
   const {center, radius} = bounds(player.views);
   player.camera = new THREE.PerspectiveCamera(35, 1, radius / 50, radius * 50);
   player.camera.up.set(0, 0, 1);
-  player.camera.position.copy(center).add(new THREE.Vector3(1.6, -2.3, 1).multiplyScalar(radius));
+  player.camera.position.copy(center).add(new THREE.Vector3(1.85, -2.65, 1.3).multiplyScalar(radius));
   player.controls = new THREE.OrbitControls(player.camera, grid);
   player.controls.target.copy(center);
   player.controls.enableKeys = false;
@@ -107,6 +112,15 @@ function scaleElement(player) {
   bar.style.background = `linear-gradient(to right, ${viridis.join(", ")})`;
   const labels = [0, 1, 2, 3, 4].map((k) => element("span", {}, `${k ? "" : "≤ "}${shortNumber(Number((player.scale.top * 10 ** (k - 4)).toPrecision(2)))} m`));
   return element("div", {}, bar, element("div", {className: "scale-labels"}, ...labels));
+}
+
+/** What the marks mean that there are, and what is not drawn. */
+function legendElement({views}) {
+  const entry = (picture, name) => element("span", {}, picture, ` ${name}`);
+  const entries = constraints.filter((mark) => views.some(({motion}) => hasMarks(motion, mark))).map((mark) => entry(markPicture(mark), mark.name));
+  if (views.some(({bodies}) => bodies.length)) entries.push(entry(element("span", {className: "body"}), "obstacle"));
+  const missing = unique(views.flatMap(({motion}) => motion.missing)).map((why) => element("p", {className: "bad"}, `An obstacle is not drawn: ${why}`));
+  return element("div", {}, element("p", {className: "legend"}, ...entries), ...missing);
 }
 
 function makeControls(player) {
@@ -137,7 +151,7 @@ function distanceFigure(file, name, player) {
     const curves = [...groupBy(rows.filter((row) => row.rms > 0), runLabel)].map(([label, of], k) => ({
       type: "scatter", mode: "lines+markers", name: label, x: of.map((row) => row.t), y: of.map((row) => row.rms),
       hovertemplate: `${label}<br>t = %{x:.4g} s: %{y:.3e} m<extra></extra>`, line: {color: style(k).color, dash: style(k).dash}, marker: {symbol: style(k).symbol, size: 5}}));
-    return {data: curves, layout: {...baseLayout(width, colours, curves.length), xaxis: axis("t [s]", colours), yaxis: axis("RMS distance [m]", colours, {type: "log"})}};
+    return {data: curves, layout: {...baseLayout(width, colours, curves.length), xaxis: timeAxis(colours), yaxis: axis("RMS distance [m]", colours, logTicks(rows.map((row) => row.rms)))}};
   };
   return {file, make, title: `Distance from ${truth}: ${name}`, says: "Root mean square distance of the recorded positions, frame by frame.",
           columns: () => ["method", "step", "t", "rms", "maximum"].map((column) => ({name: column, cells: rows.map((row) => row[column])}))};
@@ -145,7 +159,7 @@ function distanceFigure(file, name, player) {
 
 /** The motions of compared runs as an article; undefined if less than one was recorded. */
 function playerElement(file, name, runs, id) {
-  const all = runs.filter((run) => run.trajectory?.times.length).map(makeView);
+  const all = runs.filter((run) => run.trajectory?.times.length).map((run) => makeView(run, file.surfaces));
   if (!all.length) return undefined;
   const truth = mostAccurate(all), views = all.filter((view) => alike(view, truth));
   const player = {views, truth, t: 0, playing: false, end: Math.max(...views.map((view) => view.motion.times[view.motion.times.length - 1]))};
@@ -157,9 +171,9 @@ function playerElement(file, name, runs, id) {
   const controls = makeControls(player);
   for (const view of views) view.canvas.addEventListener("pointermove", (event) => hover(player, view, event));
   new ResizeObserver(() => renderViews(player)).observe(grid);
-  const says = `Drag to turn, wheel to come nearer, point at a particle for its numbers. Colours are distances from ${runLabel(truth.run)}, ${truth.run.error ? `which has the least error of these runs, ${shortNumber(truth.run.error.rms)} at the end` : "the one of the least step"}.`;
+  const says = `Drag to turn, wheel to come nearer, point at a particle for its numbers. Colours are distances from ${runLabel(truth.run)}, ${truth.run.error ? `which has the least error of these runs, ${shortNumber(truth.run.error.rms)} at the end` : "one of the least step"}.`;
   const figure = element("figure", {id}, element("figcaption", {}, element("h3", {}, `Motion: ${name}`), element("p", {}, says)), grid, controls, scaleElement(player),
-                         commandLine(file));
+                         legendElement(player), commandLine(file));
   return {figure, player, more: views.length > 1 ? [distanceFigure(file, name, player)] : []};
 }
 

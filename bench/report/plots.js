@@ -6,6 +6,9 @@ const palette = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9
 const marks = ["circle", "square", "diamond", "triangle-up", "triangle-down", "x", "cross", "star"];
 const dashes = ["solid", "dash", "dot", "dashdot"];
 
+/** The look of the k-th curve without marks: those that lie on each other are told apart, too. */
+const lineStyle = (k) => ({color: palette[k % palette.length], dash: dashes[k % dashes.length], width: 1.6});
+
 /** The look of the k-th curve: no two of the first 56 are alike. */
 function style(k) {
   const color = palette[k % palette.length], turn = Math.floor(k / palette.length);
@@ -28,6 +31,15 @@ function axis(title, colours, more = {}) {
   return {title: {text: title, standoff: 8}, gridcolor: colours.line, zeroline: false, linecolor: colours.line, ticks: "outside",
           tickcolor: colours.line, automargin: true, ...exponents, ...more};
 }
+
+/** What a log axis of such values needs: where they span few powers of ten, digits between these are labelled, too. */
+function logTicks(values) {
+  const seen = values.filter((value) => value > 0 && Number.isFinite(value)), decades = Math.log10(Math.max(...seen) / Math.min(...seen));
+  return {type: "log", dtick: decades < 1 ? "D1" : decades < 2 ? "D2" : 1};
+}
+
+/** The axis of times that begin at 0. */
+const timeAxis = (colours, more = {}) => axis("t [s]", colours, {rangemode: "tozero", ...more});
 
 /** The layout that all figures share: legend beside the plot, or below it where there is no room. */
 function baseLayout(width, colours, entries) {
@@ -56,7 +68,7 @@ function logRange(errors, reversed = false) {
   return reversed ? [high + edge, low - edge] : [low - edge, high + edge];
 }
 
-const plots = [];  // every plot that was made: {div, make}
+const plots = [];  // every plot that was made: {div, make, name}
 
 function drawPlot(plot) {
   const width = plot.div.clientWidth || 700;
@@ -65,16 +77,48 @@ function drawPlot(plot) {
   return Plotly.react(plot.div, data, layout, {displaylogo: false, modeBarButtonsToRemove: ["lasso2d", "select2d", "toImage"]});
 }
 
-/** Saves a plot as a file for papers: on white, of a set size. */
-async function savePlot(plot, format, name) {
+/** A plot for papers, on white, 900 pixels wide, as the text of an SVG. Unlike Plotly's, its lines scale with it, and its names are always the same. */
+async function svgOf(plot) {
   const {data, layout} = plot.make(900, paper);
   const shown = plot.div.data ?? data;
-  const visible = data.map((trace, k) => ({...trace, visible: shown[k]?.visible ?? true}));
-  const figure = {data: visible, layout};
-  const url = await Plotly.toImage(figure, {format, width: 900, height: layout.height, scale: format === "png" ? 3 : 1});
-  const link = element("a", {href: url, download: `${fileName(name)}.${format}`});
-  link.click();
-  return url;
+  const visible = data.map((trace, k) => ({...trace, uid: `t${k}`, visible: shown[k]?.visible ?? true}));
+  const svg = await Plotly.toImage({data: visible, layout}, {format: "svg", width: 900, height: layout.height, imageDataOnly: true});
+  const [, random] = svg.match(/id="defs-([0-9a-f]+)"/), known = `f${plots.indexOf(plot)}`;
+  return svg.replace(/vector-effect: ?non-scaling-stroke;?/g, "").replace(new RegExp(`\\b(defs-|topdefs-|clip|legend|g)${random}`, "g"), `$1${known}`);
+}
+
+/** The same as PNG with three dots a pixel: its bytes in base 64. */
+async function pngOf(svg) {
+  const image = new Image();
+  image.src = `data:image/svg+xml,${encodeURIComponent(svg)}`;
+  await image.decode();
+  const canvas = element("canvas", {width: 3 * image.width, height: 3 * image.height});
+  canvas.getContext("2d").drawImage(image, 0, 0, canvas.width, canvas.height);
+  return canvas.toDataURL("image/png").replace(/^.*,/, "");
+}
+
+/** Saves a plot as a file. */
+async function savePlot(plot, format) {
+  const svg = await svgOf(plot), url = format === "png" ? `data:image/png;base64,${await pngOf(svg)}` : `data:image/svg+xml,${encodeURIComponent(svg)}`;
+  element("a", {href: url, download: `${plot.name}.${format}`}).click();
+}
+
+/** All figures as such pictures: [{name, svg, png}]. */
+async function allPictures() {
+  const pictures = [];
+  for (const plot of plots) {
+    const svg = await svgOf(plot);
+    pictures.push({name: plot.name, svg, png: await pngOf(svg)});
+  }
+  return pictures;
+}
+
+/** A name for the files of a figure, as no other has it. */
+function plotName(title) {
+  const name = fileName(title).slice(0, 100), taken = (any) => plots.some((plot) => plot.name === any);
+  let free = name;
+  for (let k = 2; taken(free); ++k) free = `${name}-${k}`;
+  return free;
 }
 
 /**
@@ -82,14 +126,14 @@ async function savePlot(plot, format, name) {
  * Drawn when drawAll() is called, and again when colours or widths change.
  */
 function figureElement(figure, id) {
-  const plot = {div: element("div", {className: "plot", role: "img", "aria-label": `${figure.title}. ${figure.says}`}), make: figure.make};
+  const plot = {div: element("div", {className: "plot", role: "img", "aria-label": `${figure.title}. ${figure.says}`}), make: figure.make, name: plotName(figure.title)};
   plots.push(plot);
   for (const control of figure.controls ?? []) control.addEventListener("change", () => drawPlot(plot));
-  const save = (format) => element("button", {type: "button", on: {click: () => savePlot(plot, format, figure.title)}}, format.toUpperCase());
+  const save = (format) => element("button", {type: "button", on: {click: () => savePlot(plot, format)}}, format.toUpperCase());
   return element("figure", {id}, element("figcaption", {}, element("h3", {}, figure.title), element("p", {}, figure.says)),
                  figure.controls ? element("div", {className: "actions"}, ...figure.controls.map((control) => control.parentElement ?? control)) : null,
                  plot.div,
-                 element("div", {className: "actions"}, csvLink(figure.title, figure.columns), save("svg"), save("png")), commandLine(figure.file));
+                 element("div", {className: "actions"}, csvLink(plot.name, figure.columns), save("svg"), save("png")), commandLine(figure.file));
 }
 
 /** Draws all figures, one after the other so that the page answers meanwhile. */

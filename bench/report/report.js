@@ -60,7 +60,7 @@ function winnersCard() {
   const column = (name, title, unit, description) => ({name, title, unit, description, cells: rows.map((row) => row[name] ?? null)});
   const table = {description: "Who wins at which error", columns: [
     column("error", "error ≤", "1", "over the scene's size"), column("best", "quickest", "", "of all that were run"), column("ms", "time", "ms", "median"),
-    column("peer", "SUNDIALS", "1", "time of the best of SUNDIALS over it")]};
+    {...column("peer", "SUNDIALS", "1", "time of the best of SUNDIALS over it"), shown: rows.map(({peer}) => (peer > 0 ? `${shortNumber(peer)} ×` : ""))}]};
   const scenes = unique(rows.map((row) => row.scene));
   if (scenes.length > 1) table.columns.unshift(column("scene", "scene", "", "and what was set differently"));
   const wins = [...groupBy(rows, (row) => row.best.split(/[ ,/]/)[0])].sort((a, b) => b[1].length - a[1].length)[0];
@@ -82,7 +82,7 @@ function failuresCard() {
     return `${table.name}: ${describeRow(table, row)}: ${row.verdict}`;
   })));
   const all = [...failed, ...judged], trials = files.flatMap((file) => file.tables).filter((table) => table.name.startsWith("trials: ")).flatMap(rowsOf);
-  const outcomes = [...groupBy(trials.filter((row) => row.outcome !== "success"), (row) => row.outcome)].map(([outcome, of]) => `${of.length} trials: ${outcome}`);
+  const outcomes = [...groupBy(trials.filter((row) => row.outcome !== "success"), (row) => row.outcome)].map(([outcome, of]) => `${of.length} ${of.length > 1 ? "trials" : "trial"}: ${outcome}`);
   const lines = [...all, ...outcomes];
   const counts = [failed.length ? `${failed.length} of ${runs.length} runs` : "", judged.length ? `${judged.length} ${judged.length > 1 ? "verdicts" : "verdict"}` : ""];
   const list = element("div", {className: "scroll", tabIndex: 0, role: "region", "aria-label": "Failures"}, element("ul", {}, ...lines.map((line) => element("li", {}, line))));
@@ -102,7 +102,7 @@ function showAll() {
   const figures = files.flatMap((file) => [...figuresOfRuns(file), ...file.tables.flatMap((table) => figuresOfTable(file, table))]);
   document.getElementById("figures").append(...figures.map((figure, k) => figureElement(figure, `figure-${k + 1}`)));
   document.getElementById("figures").hidden = !figures.length;
-  const tables = files.flatMap((file) => [...(file.runs_table ? [file.runs_table] : []), ...file.tables].map((table) => ({file, table})));
+  const tables = files.flatMap((file) => [...(file.runs_table ? [{...file.runs_table, description: `Runs of ${file.file}`}] : []), ...file.tables].map((table) => ({file, table})));
   document.getElementById("tables").append(...tables.map(({file, table}, k) => tableSection(file, table, `table-${k + 1}`)));
   document.getElementById("contents").append(contentsElement());
 }

@@ -43,20 +43,29 @@ function stepChoice(runs) {
   return select;
 }
 
-/** What is drawn over time: value(steps) gives a list. */
+/** What is drawn over time: of(run) gives {t, value}, two lists; undefined if the run has none. */
+const ofSteps = (value) => ({steps}) => (steps.t.length ? {t: steps.t, value: value(steps)} : undefined);
+const fromZero = {rangemode: "tozero"};
 const quantities = [
   {title: "Energy", says: "Kinetic and potential energy together, after each step: it may only fall, but for what moves or blows.", label: "energy [J]",
-   value: (steps) => steps.kinetic_energy.map((kinetic, k) => toNumber(kinetic) + toNumber(steps.potential_energy[k]))},
-  {title: "Updates", says: "Updates of the iterate in each step: where they pile up the stage solver has a hard time.", label: "updates a step", value: (steps) => steps.updates},
-  {title: "CG iterations", says: "Iterations of conjugate gradients in each step.", label: "CG iterations a step", value: (steps) => steps.cg_iterations},
-  {title: "Contacts", says: "Particles that obstacles constrain at the end of each step.", label: "particles in contact", value: (steps) => steps.contacts},
-  {title: "Step size", says: "Size of the steps that were taken: where it falls the method was cut short.", label: "h [s]", value: (steps) => steps.h.map(toNumber)},
+   of: ofSteps((steps) => steps.kinetic_energy.map((kinetic, k) => toNumber(kinetic) + toNumber(steps.potential_energy[k])))},
+  {title: "Updates", says: "Updates of the iterate in each step: where they pile up the stage solver has a hard time.", label: "updates a step", axis: fromZero, of: ofSteps((steps) => steps.updates)},
+  {title: "CG iterations", says: "Iterations of conjugate gradients in each step.", label: "CG iterations a step", axis: fromZero, of: ofSteps((steps) => steps.cg_iterations)},
+  {title: "Contacts", says: "Particles that obstacles constrain at the end of each step.", label: "particles in contact", axis: fromZero, of: ofSteps((steps) => steps.contacts)},
+  {title: "Clearance", says: "Least distance of a particle from an obstacle in each recorded frame, negative inside.", label: "clearance [mm]", axis: fromZero, of: frameClearance},
+  {title: "Step size", says: "Size of the steps that were taken: where it falls the method was cut short.", label: "h [s]", axis: fromZero, of: ofSteps((steps) => steps.h.map(toNumber))},
 ];
+
+function frameClearance({trajectory}) {
+  const clearance = trajectory?.obstacles.clearance;
+  return clearance && {t: trajectory.times, value: clearance.map((metres) => 1000 * toNumber(metres))};
+}
 
 /** Whether there is anything to see in a quantity: step sizes must vary, others not be all zero. */
 function worthSeeing(quantity, runs) {
-  if (quantity.title !== "Step size") return runs.some((run) => quantity.value(run.steps).some((value) => value !== 0));
-  return runs.some((run) => Math.min(...quantity.value(run.steps).slice(0, -1)) < 0.99 * Math.max(...quantity.value(run.steps)));
+  const lists = runs.map((run) => quantity.of(run).value);
+  if (quantity.title !== "Step size") return lists.some((values) => values.some((value) => value !== 0));
+  return lists.some((values) => Math.min(...values.slice(0, -1)) < 0.99 * Math.max(...values));
 }
 
 function timeFigure(file, name, runs, quantity) {
@@ -64,27 +73,51 @@ function timeFigure(file, name, runs, quantity) {
   const chosen = () => runs.filter((run) => run.step === Number(choice.value));
   const make = (width, colours) => {
     const curves = chosen().map((run) => {
-      const look = style(methods.indexOf(run.method)), failed = run.outcome !== "success";
-      return {type: "scatter", mode: "lines", name: failed ? `${run.method}: ${run.outcome}` : run.method, x: run.steps.t, y: quantity.value(run.steps),
-              hovertemplate: `${run.method}, h = ${shortNumber(run.step)} s<br>t = %{x:.4g} s: %{y:.6g}<extra></extra>`, line: {color: look.color, dash: look.dash, width: 1.6}};
+      const failed = run.outcome !== "success";
+      return {type: "scatter", mode: "lines", name: failed ? `${run.method}: ${run.outcome}` : run.method, x: quantity.of(run).t, y: quantity.of(run).value,
+              hovertemplate: `${run.method}, h = ${shortNumber(run.step)} s<br>t = %{x:.4g} s: %{y:.6g}<extra></extra>`, line: lineStyle(methods.indexOf(run.method))};
     });
-    const layout = {...baseLayout(width, colours, curves.length), xaxis: axis("t [s]", colours), yaxis: axis(quantity.label, colours)};
+    const layout = {...baseLayout(width, colours, curves.length), xaxis: timeAxis(colours), yaxis: axis(quantity.label, colours, quantity.axis)};
     return {data: curves, layout};
   };
   const columns = () => {
-    const rows = chosen().flatMap((run) => quantity.value(run.steps).map((value, k) => ({method: run.method, step: run.step, t: run.steps.t[k], value})));
+    const rows = chosen().flatMap((run) => {
+      const {t, value} = quantity.of(run);
+      return t.map((time, k) => ({method: run.method, step: run.step, t: time, value: value[k]}));
+    });
     return ["method", "step", "t", "value"].map((column) => ({name: column === "value" ? quantity.label : column, cells: rows.map((row) => row[column])}));
   };
   const every = Math.max(...runs.map((run) => run.steps.every));
-  const says = quantity.says + (every > 1 ? ` Of long runs every ${every}th step is shown.` : "");
+  const says = quantity.says + (every > 1 && quantity.title !== "Clearance" ? ` Of long runs every ${every}th step is shown.` : "");
   return {file, make, columns, says, title: `${quantity.title}: ${name}`, controls: [choice]};
+}
+
+/** How near obstacles were at the nearest, a line for each run. */
+function clearanceFigure(file, name, runs) {
+  const rows = runs.map((run) => ({method: run.method, step: run.step, outcome: run.outcome, clearance: 1000 * toNumber(run.contact.clearance), energy_rise: toNumber(run.contact.energy_rise),
+                                   area: toNumber(run.contact.area), reference_area: toNumber(run.contact.reference_area)})).filter((row) => Number.isFinite(row.clearance));
+  if (!rows.length) return [];
+  const label = (row) => runLabel(row) + (row.outcome === "success" ? "" : `: ${row.outcome}`);
+  const make = (width, colours) => {
+    const dots = [...groupBy(rows, (row) => row.method)].map(([method, of], k) => ({
+      type: "scatter", mode: "markers", name: method, x: of.map((row) => row.clearance), y: of.map(label),
+      text: of.map((row) => `area in contact at the end ${shortNumber(row.area)}${Number.isNaN(row.reference_area) ? "" : ` (reference ${shortNumber(row.reference_area)})`}, energy rise ${shortNumber(row.energy_rise)}`),
+      hovertemplate: "%{y}<br>%{x:.4g} mm<br>%{text}<extra></extra>", marker: {color: style(k).color, symbol: style(k).symbol, size: 9}}));
+    const layout = {...baseLayout(width, colours, 0), height: 110 + 24 * rows.length, showlegend: false, xaxis: axis("least clearance [mm]", colours, {zeroline: true, zerolinecolor: colours.text, rangemode: "tozero"}),
+                    yaxis: axis("", colours, {type: "category", autorange: "reversed"})};
+    return {data: dots, layout};
+  };
+  return [{file, make, title: `Least clearance: ${name}`, says: "Least distance of a particle from an obstacle at the end of any step, negative inside.",
+           columns: () => ["method", "step", "clearance", "energy_rise", "area", "reference_area"].map((column) => ({name: column === "clearance" ? "clearance [mm]" : column, cells: rows.map((row) => row[column])}))}];
 }
 
 /** All figures of the runs of a file. */
 function figuresOfRuns(file) {
   return comparedRuns(file).flatMap(([name, runs]) => {
-    const moved = runs.filter((run) => run.steps.t.length);
-    const seen = quantities.filter((quantity) => moved.length && worthSeeing(quantity, moved));
-    return [...runWorkPrecision(file, name, runs), ...seen.map((quantity) => timeFigure(file, name, moved, quantity))];
+    const overTime = quantities.flatMap((quantity) => {
+      const known = runs.filter((run) => quantity.of(run));
+      return known.length && worthSeeing(quantity, known) ? [timeFigure(file, name, known, quantity)] : [];
+    });
+    return [...runWorkPrecision(file, name, runs), ...overTime, ...clearanceFigure(file, name, runs.filter((run) => run.contact))];
   });
 }

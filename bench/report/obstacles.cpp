@@ -1,0 +1,127 @@
+#include "bench/report/obstacles.hpp"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <exception>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "bench/polygons.hpp"
+#include "bench/report/base64.hpp"
+#include "model/contacts.hpp"
+#include "model/scene_file.hpp"
+
+namespace drape::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// A recorded scene with those of its obstacles that can still be read.
+struct Readable {
+  model::Scene scene;
+  std::vector<std::string> missing;  ///< why not, of each of the others
+};
+
+/// Obstacles are read one by one, as if each were the only one of its scene.
+Readable read_obstacles(const results::RunRecord& run) {
+  toml::table text = toml::parse(run.scene_toml);
+  const toml::node_view<toml::node> listed = text["obstacles"];
+  const toml::array obstacles = listed.is_array() ? *listed.as_array() : toml::array{};
+  const auto scene_with = [&](const toml::array& some) {
+    text.insert_or_assign("obstacles", some);
+    std::ostringstream out;
+    out << text;
+    return model::parse_scene(out.str(), run.scene);
+  };
+  Readable read{scene_with({}), {}};
+  for (const toml::node& obstacle : obstacles) {
+    toml::array one;
+    one.push_back(*obstacle.as_table());
+    try {
+      read.scene.obstacles.push_back(scene_with(one).obstacles.front());
+    } catch (const model::SceneError& error) {
+      read.missing.emplace_back(error.what());
+    }
+  }
+  return read;
+}
+
+/// Corners of triangles, polygons cut into fans.
+std::vector<int> triangles(const Polygons& polygons) {
+  std::vector<int> corners;
+  for (const std::vector<int>& face : polygons.faces)
+    for (std::size_t k = 2; k < face.size(); ++k) corners.insert(corners.end(), {face[0], face[k - 1], face[k]});
+  return corners;
+}
+
+template <class Number>
+std::string packed(const std::vector<Number>& numbers) {
+  return base64(std::as_bytes(std::span(numbers)));
+}
+
+Json page_surface(const model::ObstacleRule& rule, double plane_side) {
+  const Polygons polygons = obstacle_polygons(rule, plane_side);
+  std::vector<float> places;
+  for (const Eigen::Vector3d& vertex : polygons.vertices)
+    for (const double x : vertex) places.push_back(static_cast<float>(x));
+  const bool round = rule.kind == model::ShapeKind::sphere || rule.kind == model::ShapeKind::mesh;
+  return {{"vertices", packed(places)}, {"triangles", packed(triangles(polygons))}, {"smooth", round}};
+}
+
+std::size_t index_of(Json surface, Json& surfaces) {
+  const auto at = std::ranges::find(surfaces, surface);
+  const auto index = static_cast<std::size_t>(at - surfaces.begin());
+  if (at == surfaces.end()) surfaces.push_back(std::move(surface));
+  return index;
+}
+
+std::string packed_poses(const model::ObstacleRule& rule, const model::Obstacle& obstacle, const std::vector<double>& times) {
+  std::vector<float> numbers;
+  for (std::size_t k = 0; k < (rule.motion.size() > 1 ? times.size() : 1); ++k) {
+    const model::Pose pose = obstacle.pose(times[k]);
+    for (const double x : pose.position) numbers.push_back(static_cast<float>(x));
+    for (const double q : pose.rotation.coeffs()) numbers.push_back(static_cast<float>(q));
+  }
+  return packed(numbers);
+}
+
+/// Least distance of a particle from an obstacle, frame by frame.
+std::vector<double> clearances(const model::Contacts& contacts, const results::TrajectoryRecord& trajectory) {
+  std::vector<double> least;
+  for (std::size_t k = 0; k < trajectory.times.size(); ++k)
+    least.push_back(contacts.distances(trajectory.times[k], trajectory.states[k].x).minCoeff());
+  return least;
+}
+
+Json drawn_obstacles(const Readable& read, const results::TrajectoryRecord& trajectory, Json& surfaces) {
+  Json drawn = Json::array();
+  for (std::size_t k = 0; k < read.scene.obstacles.size(); ++k) {
+    const model::ObstacleRule& rule = read.scene.obstacles[k];
+    drawn.push_back({{"surface", index_of(page_surface(rule, 4 * model::size(read.scene)), surfaces)},
+                     {"poses", packed_poses(rule, model::Obstacle(rule), trajectory.times)}});
+  }
+  return drawn;
+}
+
+}  // namespace
+
+Json page_obstacles(const results::RunRecord& run, Json& surfaces) {
+  try {
+    const Readable read = read_obstacles(run);
+    Json page{{"drawn", drawn_obstacles(read, *run.trajectory, surfaces)}, {"missing", read.missing}};
+    if (!read.missing.empty() || read.scene.obstacles.empty()) return page;
+    solver::Work work;
+    page["clearance"] = clearances(model::Contacts(read.scene, work), *run.trajectory);
+    page["distance"] = read.scene.contact.distance;
+    return page;
+  } catch (const std::exception& error) {  // the record is of a program whose scenes were others
+    return {{"drawn", Json::array()}, {"missing", {error.what()}}};
+  }
+}
+
+}  // namespace drape::bench
