@@ -33,6 +33,20 @@ struct Temporary {
   ~Temporary() { unlink(path.c_str()); }
 };
 
+/// The same for a folder; it is gone if it has been renamed.
+struct TemporaryFolder {
+  fs::path path;
+  explicit TemporaryFolder(const fs::path& folder) : path(fmt::format("{}.tmp-{}", folder.string(), getpid())) {
+    create_folder(path);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  ~TemporaryFolder() {
+    std::error_code ignored;  // a destructor has nobody to tell
+    fs::remove_all(path, ignored);
+  }
+};
+
 }  // namespace
 
 void require_creatable(const fs::path& file) {
@@ -45,6 +59,21 @@ void create_folder(const fs::path& folder, std::string_view advice) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) throw FileError(fmt::format("{}: cannot be created ({}){}", folder.string(), error.message(), advice));
+}
+
+void require_empty_folder(const fs::path& folder, std::string_view content) {
+  std::error_code none;  // then there is nothing in it
+  if (fs::exists(folder, none) && !(fs::is_directory(folder, none) && fs::is_empty(folder, none)))
+    throw FileError(fmt::format("{}: expected a new or empty folder for {}", folder.string(), content));
+}
+
+void publish_folder(const fs::path& folder, const std::map<std::string, std::string>& files) {
+  const fs::path absolute = fs::absolute(folder).lexically_normal();
+  const fs::path target = absolute.has_filename() ? absolute : absolute.parent_path();
+  create_folder(target.parent_path());
+  const TemporaryFolder temporary(target);
+  for (const auto& [name, content] : files) publish(temporary.path / name, std::as_bytes(std::span(content)), Existing::refuse);
+  if (std::rename(temporary.path.c_str(), target.c_str()) != 0) fail(folder, "cannot be created");
 }
 
 void publish(const fs::path& file, std::span<const std::byte> content, Existing existing) {

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/foreign/measures.hpp"
+#include "bench/studies/work_precision_runs.hpp"
+
+namespace drape::bench {
+
+/// Those of our methods that stand beside another simulator unless others are asked for.
+inline const std::vector<std::string> usual_methods{"imex-euler", "implicit-euler", "sbdf2", "bdf2", "midpoint", "verlet"};
+
+/// Our methods with many steps on the scene of another simulator, to its last frame.
+struct Ours {
+  std::vector<Family> families;
+  std::vector<Trial> trials;
+  std::optional<std::size_t> as_right;  ///< the quickest trial that is at most as wrong
+  std::optional<std::size_t> at_cost;   ///< the least wrong one that takes at most as long, if that is known
+};
+
+/// The error of a motion is the largest of its frames' rms, over the size, as in the study work-precision.
+double largest_rms(const std::vector<FrameScore>& frames);
+
+/// Tries the methods from coarse to fine until they are well below the error, or, if its cost [s] is known, take well longer
+/// than that; what may be the quickest is timed, interleaved.
+Ours try_ours(const TrueMotion& truth, const std::vector<FrameScore>& frames, const std::vector<std::string>& methods,
+              std::optional<double> cost, int repetitions, Units& units);
+
+/// Throws std::invalid_argument if one of the methods does not exist or cannot do the scene.
+void check_methods(const std::vector<std::string>& methods, const model::Scene& scene);
+
+}  // namespace drape::bench
