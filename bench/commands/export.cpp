@@ -1,7 +1,6 @@
 #include "bench/foreign/export.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "bench/argument_checks.hpp"
 #include "bench/commands/commands.hpp"
@@ -21,13 +20,6 @@ struct ExportArguments {
   double agreement = SweepOptions().agreement;
 };
 
-/// The scene as a shell takes it.
-std::string words(const SceneChoice& choice) {
-  std::string all = choice.scene;
-  for (const std::string& set : choice.sets) all += fmt::format(" --set '{}'", set);
-  return all;
-}
-
 void export_scene(const ExportArguments& a) {
   const model::Scene scene = a.choice.load();
   check_frames("--every", a.every, scene.end);
@@ -36,7 +28,7 @@ void export_scene(const ExportArguments& a) {
     throw std::invalid_argument(fmt::format("--every: expected at most the scene's end, {:g} s, not {:g}", scene.end, a.every));
   times.insert(times.begin(), 0);
   results::require_empty_folder(a.out, "the exported scene");
-  const auto files = exported(true_motion(scene, times, a.agreement), times, words(a.choice));
+  const auto files = exported(true_motion(scene, times, a.agreement), times);
   results::publish_folder(a.out, files);
   for (const auto& [name, content] : files) fmt::print("{}\n", (std::filesystem::path(a.out) / name).string());
 }

@@ -31,8 +31,7 @@ std::string reference_file(const TrueMotion& truth, std::span<const double> time
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};  // NOLINT
 }
 
-std::string readme(const TrueMotion& truth, std::span<const double> times, const std::string& choice) {
-  const std::string measure = fmt::format("bench_integrators score --scene {}", choice);
+std::string readme(const TrueMotion& truth, std::span<const double> times) {
   return fmt::format(R"(The scene {0}, as a benchmark for simulators of cloth.
 
 {1}.
@@ -50,27 +49,27 @@ z is up where there is gravity along -z. A simulator starts from start.obj with 
 its positions at times of its choice, from t = 0 to at most {4:g} s, as an HDF5 file with /time, /positions and, if it can,
 /velocities; or as a sequence of meshes (OBJ, PLY, VTK, VTU), one a frame. How far off it is, is measured by
 
-    {5} motion.h5
-    {5} --frame-time {6:g} frame-*.obj
+    bench_integrators score --scene scene.toml motion.h5
+    bench_integrators score --scene scene.toml --frame-time {5:g} frame-*.obj
 
 The order of the vertices does not matter, nor do additional ones. With --cost SECONDS, what the simulator took on the
 same machine, its cost is compared, too.
 )",
                      truth.scene.name, truth.scene.description.empty() ? "It has no description" : truth.scene.description,
                      truth.scene.obstacles.empty() ? "" : "\nobstacle-k.obj  obstacle k of scene.json, where it is at t = 0",
-                     truth.families, truth.scene.end, measure, times[1]);
+                     truth.families, truth.scene.end, times[1]);
 }
 
 }  // namespace
 
-std::map<std::string, std::string> exported(const TrueMotion& truth, std::span<const double> times, const std::string& choice) {
+std::map<std::string, std::string> exported(const TrueMotion& truth, std::span<const double> times) {
   const model::Scene& scene = truth.scene;
   std::map<std::string, std::string> files{
       {"scene.json", scene_json(truth, times)},
       {"scene.toml", model::to_toml(scene)},
       {"start.obj", obj(0, sheet_polygons(scene.sheet.grid, truth.motion.states.front().x))},
       {"reference.h5", reference_file(truth, times)},
-      {"README.txt", readme(truth, times, choice)}};
+      {"README.txt", readme(truth, times)}};
   for (std::size_t k = 0; k < scene.obstacles.size(); ++k) {
     const PosedObstacle obstacle(scene.obstacles[k], 4 * model::size(scene));
     files[fmt::format("obstacle-{}.obj", k)] = obj(0, obstacle.at(0));

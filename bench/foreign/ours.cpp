@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numeric>
+#include <cmath>
 #include <stdexcept>
 
 #include "bench/cell.hpp"
@@ -25,19 +25,25 @@ Problem problem_of(const TrueMotion& truth, const std::vector<FrameScore>& frame
   return problem;
 }
 
-/// The trial with the least error among those that take no longer [ms].
-std::optional<std::size_t> least_wrong(const std::vector<results::Measured>& trials, double longest) {
-  std::optional<std::size_t> best;
-  for (std::size_t k = 0; k < trials.size(); ++k)
-    if (!trials[k].times.empty() && results::quartiles(trials[k].times).median <= longest &&
-        (!best || trials[k].error < trials[*best].error))
-      best = k;
-  return best;
+double time_of(const Trial& trial) {
+  return trial.measured.times.empty() ? INFINITY : results::quartiles(trial.measured.times).median;
 }
 
-std::vector<results::Measured> measured(const std::vector<Trial>& trials) {
-  std::vector<results::Measured> all;
-  for (const Trial& trial : trials) all.push_back(trial.measured);
+/// `longest` [ms]: NaN if it is not known.
+void take_in(Answers& answers, const Trial& trial, double error, double longest) {
+  if (trial.measured.error <= error && (answers.as_right == nullptr || time_of(trial) < time_of(*answers.as_right)))
+    answers.as_right = &trial;
+  if (time_of(trial) <= longest && (answers.at_cost == nullptr || trial.measured.error < answers.at_cost->measured.error))
+    answers.at_cost = &trial;
+}
+
+std::vector<Answers> answers_of(const Ours& ours, double error, double longest) {
+  std::vector<Answers> all;
+  for (const Family& family : ours.families) {
+    Answers& answers = all.emplace_back();
+    for (const Trial& trial : ours.trials)
+      if (trial.family == &family) take_in(answers, trial, error, longest);
+  }
   return all;
 }
 
@@ -57,17 +63,14 @@ Ours try_ours(const TrueMotion& truth, const std::vector<FrameScore>& frames, co
   Ours ours;
   for (const std::string& method : methods) ours.families.push_back(ladder(problem.scene, method));
   ours.trials = try_all(problem, ours.families, effort, units);
+  const double longest = cost ? 1e3 * *cost : NAN;
   problem.asked = {error};
-  if (cost)
-    if (const auto best = least_wrong(measured(ours.trials), 1e3 * *cost))
-      problem.asked.push_back(ours.trials[*best].measured.error);
+  for (const Answers& answers : answers_of(ours, error, longest))  // by a first run each, to know what to time
+    if (answers.at_cost != nullptr) problem.asked.push_back(answers.at_cost->measured.error);
   units.show("timing " + problem.name);
   time_fronts(problem, ours.trials, effort, units);
-  Contender all{"ours", std::vector<std::size_t>(ours.trials.size())};
-  std::iota(all.members.begin(), all.members.end(), 0);
-  const std::vector<results::Measured> repeated = timed(all, ours.trials);
-  ours.as_right = results::quickest(repeated, error);
-  if (cost) ours.at_cost = least_wrong(repeated, 1e3 * *cost);
+  ours.answers = answers_of(ours, error, longest);
+  for (const Trial& trial : ours.trials) take_in(ours.best, trial, error, longest);
   return ours;
 }
 

@@ -12,12 +12,18 @@ namespace drape::bench {
 /// Those of our methods that stand beside another simulator unless others are asked for.
 inline const std::vector<std::string> usual_methods{"imex-euler", "implicit-euler", "sbdf2", "bdf2", "midpoint", "verlet"};
 
+/// The trials of one method that answer two questions; null where none does.
+struct Answers {
+  const Trial* as_right = nullptr;  ///< the quickest that is at most as wrong
+  const Trial* at_cost = nullptr;   ///< the least wrong one that takes at most as long, if that is known
+};
+
 /// Our methods with many steps on the scene of another simulator, to its last frame.
 struct Ours {
   std::vector<Family> families;
   std::vector<Trial> trials;
-  std::optional<std::size_t> as_right;  ///< the quickest trial that is at most as wrong
-  std::optional<std::size_t> at_cost;   ///< the least wrong one that takes at most as long, if that is known
+  std::vector<Answers> answers;  ///< of each family
+  Answers best;                  ///< of all
 };
 
 /// The error of a motion is the largest of its frames' rms, over the size, as in the study work-precision.

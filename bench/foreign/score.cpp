@@ -24,6 +24,7 @@ struct Scoring {
   ScoreOptions options;
   std::optional<TrueMotion> truth;
   std::vector<FrameScore> frames;
+  Ours ours;
 
   double size() const { return model::size(scene); }
 };
@@ -65,11 +66,11 @@ Table over_time(Scoring& s, Units& units) {
   return table.finish();
 }
 
-/// A column and one for its uncertainty, which people see, too.
+/// A column and one for its uncertainty.
 void add(TableBuilder& table, const std::string& name, const char* title, const char* unit, const char* description,
          const Uncertain& number, double divided_by = 1) {
   table.number(name.c_str(), title, unit, description, number.value / divided_by);
-  table.number((name + "_uncertainty").c_str(), "±", unit, "by what the reference is uncertain",
+  table.number((name + "_uncertainty").c_str(), *title == 0 ? "" : "±", unit, "by what the reference is uncertain",
                number.uncertainty / divided_by);
 }
 
@@ -111,38 +112,53 @@ Table summary(const Scoring& s) {
   return table.finish();
 }
 
-void add_trial(TableBuilder& table, const Trial& trial) {
-  table.text("method", "method", "time integrator, with what controls it", trial.family->name);
-  table.number("value", "value", "1", "step [s], or fraction of the stability limit", trial.candidate->value);
-  table.text("outcome", "outcome", "success, or why there is none", trial.outcome);
-  table.count("steps", "steps", "steps", trial.steps);
-  if (trial.measured.times.empty()) return;
-  const results::Quartiles q = results::quartiles(trial.measured.times);
-  table.number("error", "rms error", "1", "largest of the frames' rms distances, over the size", trial.measured.error);
-  table.number("time", "time", "ms", "median wall time to the last frame", q.median);
-  table.number("lower", "", "ms", "lower quartile", q.lower);
-  table.number("upper", "", "ms", "upper quartile", q.upper);
-  table.count("repetitions", "timed", "times it was run for this", std::ssize(trial.measured.times));
+/// All that was tried, for files.
+Table trials(const Scoring& s) {
+  TableBuilder table("score-trials", "All that was tried of our methods");
+  for (const Trial& trial : s.ours.trials) {
+    table.row();
+    table.text("method", "", "time integrator, with what controls it", trial.family->name);
+    table.number("value", "", "1", "step [s], or fraction of the stability limit", trial.candidate->value);
+    table.text("outcome", "", "success, or why there is none", trial.outcome);
+    table.count("steps", "", "steps", trial.steps);
+    if (trial.measured.times.empty()) continue;
+    const results::Quartiles q = results::quartiles(trial.measured.times);
+    table.number("error", "", "1", "largest of the frames' rms distances, over the size", trial.measured.error);
+    table.number("time", "", "ms", "median wall time to the last frame", q.median);
+    table.number("lower", "", "ms", "lower quartile", q.lower);
+    table.number("upper", "", "ms", "upper quartile", q.upper);
+    table.count("repetitions", "", "times it was run for this", std::ssize(trial.measured.times));
+  }
+  return table.finish();
 }
 
-Table beside_ours(const Scoring& s, Units& units) {
-  const Ours ours = try_ours(*s.truth, s.frames, s.options.methods, s.options.cost, s.options.repetitions, units);
-  TableBuilder table("score-ours",
-                     fmt::format("Our methods on {} to {:g} s, beside {}", s.scene.name, s.frames.back().t, s.foreign.name));
-  table.row();
-  table.text("choice", "choice", "why this row is of interest", "what was measured");
-  table.text("method", "method", "time integrator, with what controls it", s.foreign.name);
-  table.number("error", "rms error", "1", "largest of the frames' rms distances, over the size",
-               largest_rms(s.frames) / s.size());
-  if (s.options.cost) table.number("time", "time", "ms", "median wall time to the last frame", 1e3 * *s.options.cost);
-  for (std::size_t k = 0; k < ours.trials.size(); ++k) {
-    std::vector<std::string> choice;
-    if (ours.as_right == k) choice.emplace_back("quickest at most as wrong");
-    if (ours.at_cost == k) choice.emplace_back("least wrong at the cost");
+/// A trial in columns whose names begin with `prefix`.
+void add_answer(TableBuilder& table, const std::string& prefix, const char* question, const Trial* trial, bool best) {
+  if (trial == nullptr) return;
+  const auto name = [&](const char* end) { return prefix + end; };
+  table.number(name("value").c_str(), question, "1", "step [s], or fraction of the stability limit", trial->candidate->value);
+  table.number(name("error").c_str(), "rms error", "1", "largest of the frames' rms distances, over the size",
+               trial->measured.error);
+  table.number(name("time").c_str(), "time", "ms", "median wall time to the last frame",
+               results::quartiles(trial->measured.times).median);
+  if (best) table.text(name("best").c_str(), "best", "which method it is", "best");
+}
+
+Table beside_ours(Scoring& s, Units& units) {
+  s.ours = try_ours(*s.truth, s.frames, s.options.methods, s.options.cost, s.options.repetitions, units);
+  const double error = largest_rms(s.frames) / s.size();
+  TableBuilder table(
+      "score-ours",
+      fmt::format(
+          "Our methods on {} to {:g} s: the quickest at most as wrong as {} (rms error {:.3g}){}", s.scene.name,
+          s.frames.back().t, s.foreign.name, error,
+          s.options.cost ? fmt::format(", and the least wrong that take no longer ({:g} ms)", 1e3 * *s.options.cost) : ""));
+  for (std::size_t k = 0; k < s.ours.families.size(); ++k) {
+    const Answers &answers = s.ours.answers[k], &best = s.ours.best;
     table.row();
-    if (!choice.empty())
-      table.text("choice", "choice", "why this row is of interest", fmt::format("{}", fmt::join(choice, "; ")));
-    add_trial(table, ours.trials[k]);
+    table.text("method", "method", "time integrator, with what controls it", s.ours.families[k].name);
+    add_answer(table, "", "as right with", answers.as_right, answers.as_right == best.as_right);
+    add_answer(table, "cost_", "no longer with", answers.at_cost, answers.at_cost == best.at_cost);
   }
   return table.finish();
 }
@@ -158,10 +174,11 @@ std::string bits(const std::vector<solver::State>& states) {
 }  // namespace
 
 std::vector<TableJob> score_jobs(const model::Scene& scene, const ForeignMotion& foreign, const ScoreOptions& options) {
-  const auto shared = std::make_shared<Scoring>(Scoring{scene, foreign, options, {}, {}});
+  const auto shared = std::make_shared<Scoring>(Scoring{scene, foreign, options, {}, {}, {}});
   return {{1, [=](Units& units) { return over_time(*shared, units); }},
           {0, [=](Units&) { return summary(*shared); }},
-          {static_cast<int>(options.methods.size()), [=](Units& units) { return beside_ours(*shared, units); }}};
+          {static_cast<int>(options.methods.size()), [=](Units& units) { return beside_ours(*shared, units); }},
+          {0, [=](Units&) { return trials(*shared); }}};
 }
 
 std::string score_identity(const model::Scene& scene, const ForeignMotion& foreign, const ScoreOptions& options) {

@@ -17,7 +17,7 @@ struct ScoreOptions {
   int repetitions;                   ///< of those of ours that are timed
 };
 
-/// The tables `score` (over time), `score-summary` and `score-ours`.
+/// The tables `score` (over time), `score-summary`, `score-ours` and, for files, `score-trials`.
 std::vector<TableJob> score_jobs(const model::Scene& scene, const ForeignMotion& foreign, const ScoreOptions& options);
 
 /// Of all that determines them.
