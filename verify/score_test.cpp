@@ -72,7 +72,7 @@ Motion delayed(const Motion& motion, std::size_t frames) {
 TEST(Score, OfTheReferenceIsNothingAndOfADelayedOneItsDelay) {
   const BenchIntegrators program;
   program.output(Words{"export"} + sheet + Words{"--every", "0.01", "--out", "a"});
-  const json same = summary(program, sheet, {"a/reference.h5"});
+  const json with_velocities = score(program, sheet, {"a/reference.h5"}), &same = with_velocities.at("score-summary")[0];
   EXPECT_LE(number(same, "error"), number(same, "reference_error"));
   EXPECT_LE(std::abs(number(same, "lag")), number(same, "lag_uncertainty"));
   EXPECT_LT(number(same, "lag_uncertainty"), 1e-4);
@@ -87,11 +87,21 @@ TEST(Score, OfTheReferenceIsNothingAndOfADelayedOneItsDelay) {
   EXPECT_NEAR(number(late, "lag"), 0.03, 1e-5);
   EXPECT_GT(number(late, "mean_error"), 0.01);
   EXPECT_LT(number(late, "left"), 1e-5);
+  EXPECT_NEAR(number(late, "damping"), 0, 1e-3);
   EXPECT_EQ(late.at("velocities"), "differences of the frames");
+
+  Motion damped = motion;
+  for (std::size_t k = 0; k < motion.times.size(); ++k) damped.velocities[k] *= std::sqrt(1 - 0.5 * motion.times[k]);
+  write(program, "damped.h5", damped);
+  EXPECT_NEAR(number(summary(program, sheet, {"damped.h5"}), "damping"), 0.5, 1e-6);
 
   motion.velocities.clear();
   write(program, "positions.h5", motion);
-  const json positions = summary(program, sheet, {"positions.h5"});
+  const json all = score(program, sheet, {"positions.h5"}), &positions = all.at("score-summary")[0];
+  for (const std::size_t k : {0u, 5u, 20u}) {
+    const double kinetic = number(with_velocities.at("score")[k], "kinetic");
+    EXPECT_NEAR(number(all.at("score")[k], "kinetic"), kinetic, 2e-3 * kinetic + 1e-6) << k;
+  }
   EXPECT_LE(std::abs(number(positions, "damping")), number(positions, "damping_uncertainty") + 1e-12);
 }
 

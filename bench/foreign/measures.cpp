@@ -48,28 +48,21 @@ std::pair<double, double> scan(const ForeignMotion& foreign, const reference::Tr
   return {best, step};
 }
 
-/// ∫ 2 E_kin dt of the reference from the start to each of the times [J s], by the trapezoidal rule.
-std::vector<double> actions(const TrueMotion& truth, const std::vector<double>& times) {
-  const reference::Trajectory& motion = truth.motion;
+/// Kinetic energies of frames [J].
+std::vector<double> kinetic_energies(const model::Cloth& cloth, std::span<const double> times, std::vector<State> states,
+                                     bool differenced) {
+  if (differenced) difference(times, states);
   std::vector<double> all;
-  double action = 0, before = 0, last = solver::kinetic_energy(truth.cloth.ode, motion.states[0].v);
-  std::size_t k = 1;
-  for (const double t : times) {
-    for (; k < motion.times.size() && motion.times[k] <= t * (1 + 1e-9); ++k) {
-      const double kinetic = solver::kinetic_energy(truth.cloth.ode, motion.states[k].v);
-      action += (kinetic + last) * (motion.times[k] - before);
-      before = motion.times[k], last = kinetic;
-    }
-    all.push_back(action);
-  }
+  for (const State& y : states) all.push_back(solver::kinetic_energy(cloth.ode, y.v));
   return all;
 }
 
-/// Slope of the line through the origin.
-double slope(const std::vector<double>& x, const std::vector<double>& y) {
-  double xy = 0, xx = 0;
-  for (std::size_t k = 0; k < x.size(); ++k) xy += x[k] * y[k], xx += x[k] * x[k];
-  return xy / xx;  // NaN if nothing moves
+/// δ of a motion with kinetic energies K against one with R.
+double rate(std::span<const double> times, const std::vector<double>& K, const std::vector<double>& R) {
+  double lost = 0, all = 0;
+  for (std::size_t k = 0; k < times.size(); ++k)
+    lost += times[k] * R[k] * (R[k] - K[k]), all += times[k] * times[k] * R[k] * R[k];
+  return lost / all;  // NaN if nothing moves
 }
 
 }  // namespace
@@ -110,17 +103,18 @@ Lag lag(const ForeignMotion& foreign, const TrueMotion& truth) {
   return {{tau, uncertainty / std::sqrt(best.speed)}, {std::sqrt(best.square), uncertainty}};
 }
 
-Uncertain damping(const std::vector<FrameScore>& frames, const ForeignMotion& foreign, const TrueMotion& truth) {
-  const std::vector<double> action = actions(truth, foreign.times);
-  std::vector<State> witness = states_at(truth.witness, foreign.times);
-  if (foreign.differenced) difference(foreign.times, witness);
-  std::vector<double> lost, lost_by_witness;
-  for (std::size_t k = 0; k < frames.size(); ++k) {
-    const double energy = frames[k].truth.value.total;
-    lost.push_back(energy - frames[k].own.total);
-    lost_by_witness.push_back(energy - observe(truth.scene, truth.cloth, foreign.times[k], witness[k]).total);
-  }
-  return {slope(action, lost), std::abs(slope(action, lost_by_witness))};
+Uncertain damping(const ForeignMotion& foreign, const TrueMotion& truth, const Lag& late) {
+  const double tau = std::isnan(late.seconds.value) ? 0 : late.seconds.value, end = truth.motion.times.back() * (1 + 1e-9);
+  std::vector<double> times = foreign.times, earlier;
+  std::erase_if(times, [&](double t) { return t - tau > end; });
+  for (const double t : times) earlier.push_back(t - tau);
+  const auto energies = [&](std::vector<State> states) {
+    states.resize(times.size());
+    return kinetic_energies(truth.cloth, times, std::move(states), foreign.differenced);
+  };
+  const std::vector<double> R = energies(states_at(truth.motion, times));
+  return {rate(times, energies(foreign.states), energies(states_at(truth.motion, earlier))),
+          std::abs(rate(times, energies(states_at(truth.witness, times)), R))};
 }
 
 }  // namespace drape::bench

@@ -43,10 +43,10 @@ std::vector<FrameScore> frame_scores(const ForeignMotion& foreign, const TrueMot
 /// if nothing moves.
 Lag lag(const ForeignMotion& foreign, const TrueMotion& truth);
 
-/// How much faster a motion loses energy than the reference, as a rate δ [1/s]: an additional force −δ m v on each particle
-/// takes δ ∫ 2 E_kin dt. So δ is the least-squares slope through the origin, over all frames, of E_ref(t) − E(t) against
-/// ∫ 2 E_kin,ref dt. The amplitude of a free oscillation then decays by exp(−δ t/2) more than it should; below zero, the motion
-/// gains energy. Its uncertainty is the δ of the reference's other family. NaN if nothing moves.
-Uncertain damping(const std::vector<FrameScore>& frames, const ForeignMotion& foreign, const TrueMotion& truth);
+/// How much faster than the reference's the kinetic energy of a motion falls: the rate δ [1/s] for which (1 − δ t) K_ref(t − τ)
+/// comes nearest to K(t), in the sum of squares over all frames. The lag τ is taken out first: what is late is not damped.
+/// Where velocities are differences of frames, the reference's are, too. Below zero: the motion is too lively. The uncertainty
+/// is the δ of the reference's other family. NaN if nothing moves.
+Uncertain damping(const ForeignMotion& foreign, const TrueMotion& truth, const Lag& late);
 
 }  // namespace drape::bench

@@ -49,12 +49,15 @@ std::vector<Answers> answers_of(const Ours& ours, double error, double longest) 
 
 }  // namespace
 
-double largest_rms(const std::vector<FrameScore>& frames) { return std::ranges::max(frames, {}, &FrameScore::rms).rms; }
+double known_error(const std::vector<FrameScore>& frames) {
+  return std::max(std::ranges::max(frames, {}, &FrameScore::rms).rms,
+                  std::ranges::max(frames, {}, &FrameScore::uncertainty).uncertainty);
+}
 
 Ours try_ours(const TrueMotion& truth, const std::vector<FrameScore>& frames, const std::vector<std::string>& methods,
               std::optional<double> cost, int repetitions, Units& units) {
   Problem problem = problem_of(truth, frames);
-  const double error = largest_rms(frames) / problem.length;
+  const double error = known_error(frames) / problem.length;
   Effort effort{.repetitions = repetitions};
   if (cost)
     effort.cap = std::max(effort.cap, well * *cost);

@@ -26,8 +26,9 @@ struct Ours {
   Answers best;                  ///< of all
 };
 
-/// The error of a motion is the largest of its frames' rms, over the size, as in the study work-precision.
-double largest_rms(const std::vector<FrameScore>& frames);
+/// The error of a motion is the largest of its frames' rms, as in the study work-precision; or what the reference is uncertain
+/// by, if that is more: no method can be told to be better [m].
+double known_error(const std::vector<FrameScore>& frames);
 
 /// Tries the methods from coarse to fine until they are well below the error, or, if its cost [s] is known, take well longer
 /// than that; what may be the quickest is timed, interleaved.

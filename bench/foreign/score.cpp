@@ -99,8 +99,8 @@ Table summary(const Scoring& s) {
   const Lag late = lag(s.foreign, *s.truth);
   add(table, "lag", "lag", "s", "delay against the reference", late.seconds);
   add(table, "left", "left", "1", "as mean_error, the delay taken out", late.left, size);
-  add(table, "damping", "damping", "1/s", "rate of uniform damping that takes as much energy more than the reference loses",
-      damping(s.frames, s.foreign, *s.truth));
+  add(table, "damping", "damping", "1/s", "rate at which the kinetic energy falls behind the reference's, the delay taken out",
+      damping(s.foreign, *s.truth, late));
   add(table, "energy", "", "J", "total at the last frame", {last.own.total, last.truth.uncertainty.total});
   table.number("reference_energy", "", "J", "the same of the reference", last.truth.value.total);
   if (!s.truth->cloth.contacts) return table.finish();
@@ -146,7 +146,7 @@ void add_answer(TableBuilder& table, const std::string& prefix, const char* ques
 
 Table beside_ours(Scoring& s, Units& units) {
   s.ours = try_ours(*s.truth, s.frames, s.options.methods, s.options.cost, s.options.repetitions, units);
-  const double error = largest_rms(s.frames) / s.size();
+  const double error = known_error(s.frames) / s.size();
   TableBuilder table(
       "score-ours",
       fmt::format(
@@ -160,7 +160,9 @@ Table beside_ours(Scoring& s, Units& units) {
     add_answer(table, "", "as right with", answers.as_right, answers.as_right == best.as_right);
     add_answer(table, "cost_", "no longer with", answers.at_cost, answers.at_cost == best.at_cost);
   }
-  return table.finish();
+  Table ours = table.finish();
+  std::ranges::stable_partition(ours.columns, [](const results::Column& column) { return !column.name.starts_with("cost_"); });
+  return ours;
 }
 
 std::string bits(const std::vector<solver::State>& states) {

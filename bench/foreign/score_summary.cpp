@@ -53,8 +53,8 @@ std::string lag_line(const Table& s) {
 std::string damping_line(const Table& s) {
   const double rate = number(s, "damping");
   if (std::isnan(rate)) return "";
-  return fmt::format("damping      {:.3g} 1/s too {} (± {:.1e})\n", std::abs(rate), rate < 0 ? "little" : "much",
-                     number(s, "damping_uncertainty"));
+  return fmt::format("damping      the kinetic energy falls by {:.3g} 1/s too {} (± {:.1e})\n", std::abs(rate),
+                     rate < 0 ? "little" : "much", number(s, "damping_uncertainty"));
 }
 
 std::string energy_line(const Table& s) {
