@@ -11,7 +11,7 @@
 namespace drape::bench {
 namespace {
 
-using json = nlohmann::ordered_json;
+using Json = nlohmann::ordered_json;
 
 /// Units of the keys that have any; "bend" and its damping depend on the form.
 constexpr std::pair<std::string_view, const char*> units[] = {{"material.density", "kg/m²"},
@@ -41,12 +41,12 @@ std::string unit_of(const std::string& path, const model::Scene& scene) {
 }
 
 /// All keys of a section. Numbers, flags, words and lists of them are written in TOML as in JSON.
-json section(const std::string& name, const model::Scene& scene) {
+Json section(const std::string& name, const model::Scene& scene) {
   const auto values = model::key_values(scene);
-  json all = json::object();
+  Json all = Json::object();
   for (const model::KeyHelp& key : model::scene_keys()) {
     if (!key.path.starts_with(name + ".")) continue;
-    json entry{{"value", json::parse(values.at(key.path))}};
+    Json entry{{"value", Json::parse(values.at(key.path))}};
     if (const std::string unit = unit_of(key.path, scene); !unit.empty()) entry["unit"] = unit;
     entry["meaning"] = key.description;
     all[key.path.substr(name.size() + 1)] = entry;
@@ -54,15 +54,15 @@ json section(const std::string& name, const model::Scene& scene) {
   return all;
 }
 
-json list(const Eigen::Vector3d& a) { return {a[0], a[1], a[2]}; }
+Json list(const Eigen::Vector3d& a) { return {a[0], a[1], a[2]}; }
 
-json rows(const solver::Vectors& vectors) {
-  json all = json::array();
+Json rows(const solver::Vectors& vectors) {
+  Json all = Json::array();
   for (Eigen::Index i = 0; i < vectors.rows(); ++i) all.push_back(list(vectors.row(i)));
   return all;
 }
 
-json particles(const model::Scene& scene, const model::Cloth& cloth) {
+Json particles(const model::Scene& scene, const model::Cloth& cloth) {
   const model::Grid& grid = scene.sheet.grid;
   return {{"count", grid.particles()},
           {"nu", grid.nu},
@@ -79,16 +79,16 @@ json particles(const model::Scene& scene, const model::Cloth& cloth) {
           {"mass", std::vector<double>(cloth.ode.mass.begin(), cloth.ode.mass.end())}};
 }
 
-json pins(const model::Cloth& cloth, std::span<const double> times) {
-  json all = json::array();
+Json pins(const model::Cloth& cloth, std::span<const double> times) {
+  Json all = Json::array();
   for (const solver::Pin& pin : cloth.ode.pins) {
-    json entry{{"particle", pin.particle}, {"fixed", pin.fixed}, {"velocity", list(pin.velocity)}};
+    Json entry{{"particle", pin.particle}, {"fixed", pin.fixed}, {"velocity", list(pin.velocity)}};
     if (!pin.velocity.isZero(0)) {
-      entry["positions"] = json::array();  // at the times of the frames; null in free directions
+      entry["positions"] = Json::array();  // at the times of the frames; null in free directions
       for (const double t : times) {
-        json position = json::array();
+        Json position = Json::array();
         for (int c = 0; c < 3; ++c)
-          position.push_back(pin.fixed[c] ? json(cloth.start.x(pin.particle, c) + t * pin.velocity[c]) : json());
+          position.push_back(pin.fixed[c] ? Json(cloth.start.x(pin.particle, c) + t * pin.velocity[c]) : Json());
         entry["positions"].push_back(position);
       }
     }
@@ -97,7 +97,7 @@ json pins(const model::Cloth& cloth, std::span<const double> times) {
   return all;
 }
 
-json shape(const model::ObstacleRule& rule) {
+Json shape(const model::ObstacleRule& rule) {
   switch (rule.kind) {
     case model::ShapeKind::plane: return {{"shape", "plane"}, {"meaning", "the half-space below z = 0 of its own frame"}};
     case model::ShapeKind::sphere: return {{"shape", "sphere"}, {"radius", rule.radius}};
@@ -108,11 +108,11 @@ json shape(const model::ObstacleRule& rule) {
   throw std::invalid_argument("unknown shape of an obstacle");
 }
 
-json obstacles(const model::Scene& scene) {
-  json all = json::array();
+Json obstacles(const model::Scene& scene) {
+  Json all = Json::array();
   for (std::size_t k = 0; k < scene.obstacles.size(); ++k) {
     const model::ObstacleRule& rule = scene.obstacles[k];
-    json entry = shape(rule);
+    Json entry = shape(rule);
     entry["file"] = fmt::format("obstacle-{}.obj", k);
     entry["friction"] = rule.friction;
     for (const model::KeyFrame& frame : rule.motion)
@@ -123,22 +123,22 @@ json obstacles(const model::Scene& scene) {
   return all;
 }
 
-json equations(const model::Cloth& cloth) {
-  json all{{"source", "O. Etzmuß, Animation of Surfaces with Applications to Cloth Modelling, Tübingen 2002"},
+Json equations(const model::Cloth& cloth) {
+  Json all{{"source", "O. Etzmuß, Animation of Surfaces with Applications to Cloth Modelling, Tübingen 2002"},
            {"motion", "(3.20): M dv/dt = K x + D v + f(t, x, v), dx/dt = v, with lumped masses"},
-           {"forces", json::object()}};
+           {"forces", Json::object()}};
   for (const model::TermKind& kind : model::term_kinds())
     if (std::ranges::count(cloth.plan.terms, kind.name) > 0) all["forces"][std::string(kind.name)] = kind.description;
   if (cloth.contacts) all["contact"] = "4.3 (reaction) and 4.4 (constraint)";
   return all;
 }
 
-json expected(const TrueMotion& truth, std::span<const double> times) {
-  json all = json::array();
+Json expected(const TrueMotion& truth, std::span<const double> times) {
+  Json all = Json::array();
   const auto observed = observe(truth, times);
   for (std::size_t k = 0; k < times.size(); ++k) {
     const Observables &value = observed[k].value, &unsure = observed[k].uncertainty;
-    const auto pair = [](double v, double u) { return json{{"value", v}, {"uncertainty", u}}; };
+    const auto pair = [](double v, double u) { return Json{{"value", v}, {"uncertainty", u}}; };
     all.push_back({{"time", times[k]},
                    {"kinetic_energy", pair(value.kinetic, unsure.kinetic)},
                    {"potential_energy", pair(value.potential, unsure.potential)},
@@ -155,7 +155,7 @@ json expected(const TrueMotion& truth, std::span<const double> times) {
 
 std::string scene_json(const TrueMotion& truth, std::span<const double> times) {
   const model::Scene& scene = truth.scene;
-  json all{{"name", scene.name},
+  Json all{{"name", scene.name},
            {"description", scene.description},
            {"units",
             {{"length", "m"},

@@ -161,7 +161,8 @@ Table beside_ours(Scoring& s, Units& units) {
     add_answer(table, "cost_", "no longer with", answers.at_cost, answers.at_cost == best.at_cost);
   }
   Table ours = table.finish();
-  std::ranges::stable_partition(ours.columns, [](const results::Column& column) { return !column.name.starts_with("cost_"); });
+  std::stable_partition(ours.columns.begin(), ours.columns.end(),
+                        [](const results::Column& column) { return !column.name.starts_with("cost_"); });
   return ours;
 }
 
