@@ -90,6 +90,9 @@ TEST(Score, OfTheReferenceIsNothingAndOfADelayedOneItsDelay) {
   EXPECT_NEAR(number(late, "damping"), 0, 1e-3);
   EXPECT_EQ(late.at("velocities"), "differences of the frames");
 
+  write(program, "too-late.h5", delayed(motion, 10));
+  EXPECT_DOUBLE_EQ(number(summary(program, sheet, {"too-late.h5"}), "lag"), 0.05);  // a quarter of it, no more is sought
+
   Motion damped = motion;
   for (std::size_t k = 0; k < motion.times.size(); ++k) damped.velocities[k] *= std::sqrt(1 - 0.5 * motion.times[k]);
   write(program, "damped.h5", damped);

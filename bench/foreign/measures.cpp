@@ -40,7 +40,7 @@ Misfit misfit(const ForeignMotion& foreign, const reference::Trajectory& motion,
 /// The best delay of a scan over a quarter of the motion either way, and how far apart they were [s].
 std::pair<double, double> scan(const ForeignMotion& foreign, const reference::Trajectory& motion) {
   constexpr int each_way = 50;
-  const double step = foreign.times.back() / (4 * each_way);
+  const double step = longest_lag * foreign.times.back() / each_way;
   double best = 0, least = misfit(foreign, motion, 0).square;
   for (int k = 1; k <= each_way; ++k)
     for (const double tau : {k * step, -k * step})
@@ -91,11 +91,12 @@ Lag lag(const ForeignMotion& foreign, const TrueMotion& truth) {
   constexpr int steps = 20;
   const double between = interpolation_error(truth.motion), known = std::ranges::max(truth.uncertainty);
   const double uncertainty = std::hypot(between, known);
+  const double longest = longest_lag * foreign.times.back();
   auto [tau, width] = scan(foreign, truth.motion);
   Misfit best = misfit(foreign, truth.motion, tau);
   if (!(best.speed > 0)) return {{}, {std::sqrt(best.square), uncertainty}};
   for (int k = 0; k < steps; ++k) {  // r(τ) = x(t) − x_ref(t − τ), dr/dτ = v_ref
-    const double next = tau - std::clamp(best.slope / best.speed, -width, width);
+    const double next = std::clamp(tau - std::clamp(best.slope / best.speed, -width, width), -longest, longest);
     const Misfit there = misfit(foreign, truth.motion, next);
     if (!(there.square < best.square)) break;
     tau = next, best = there;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bench/foreign/measures.hpp"
 #include "bench/foreign/score.hpp"
 #include "results/run_record.hpp"
 
@@ -45,9 +46,9 @@ std::string lag_line(const Table& s) {
   const double lag = number(s, "lag");
   if (std::isnan(lag)) return "lag          nothing moves\n";
   return fmt::format(
-      "lag          {:.3g} ms {} (± {:.1e}); the error falls from {:.3g} to {:.3g} (rms over all frames) without it\n",
-      std::abs(1e3 * lag), lag < 0 ? "ahead" : "late", 1e3 * number(s, "lag_uncertainty"), number(s, "mean_error"),
-      number(s, "left"));
+      "lag          {:.3g} ms {}{} (± {:.1e}); the error falls from {:.3g} to {:.3g} (rms over all frames) without it\n",
+      std::abs(1e3 * lag), lag < 0 ? "ahead" : "late", std::abs(lag) < 0.999 * longest_lag * number(s, "end") ? "" : " or more",
+      1e3 * number(s, "lag_uncertainty"), number(s, "mean_error"), number(s, "left"));
 }
 
 std::string damping_line(const Table& s) {
