@@ -67,6 +67,8 @@ int run_command_line(int argc, const char* const* argv) {
   add_inspect(app, exit_code);
   add_compare(app, exit_code);
   add_report(app);
+  add_export(app);
+  add_score(app, command_line);
   app.footer(
       "Examples:\n"
       "  bench_integrators run --scene hung-edge --method bdf2,sbdf2 --step 0.01,0.005 --set material.damping=0.5\n"

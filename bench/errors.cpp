@@ -56,6 +56,11 @@ reference::Reference References::operator()(const model::Scene& scene, const mod
   constexpr int outputs = 10;
   std::vector<double> times;
   for (int k = 1; k <= outputs; ++k) times.push_back(scene.end * k / outputs);
+  return (*this)(scene, cloth, times);
+}
+
+reference::Reference References::operator()(const model::Scene& scene, const model::Cloth& cloth,
+                                            const std::vector<double>& times) {
   const reference::SolveOptions options{.rtol = rtol_, .size = model::size(scene)};
   const auto key = reference::cache_key(model::to_toml(scene), 0, times, options);
   reference::Reference reference = reference::cached(cache_, key, [&] { return compute_reference(cloth, times, options); });

@@ -21,6 +21,9 @@ class References {
   /// reference::ReferenceError if there is none, and reference::NotCertified, naming the scene, if it cannot be trusted.
   reference::Reference operator()(const model::Scene& scene, const model::Cloth& cloth);
 
+  /// The same at other times [s], which ascend.
+  reference::Reference operator()(const model::Scene& scene, const model::Cloth& cloth, const std::vector<double>& times);
+
  private:
   double agreement_, rtol_;
   reference::Cache cache_;

@@ -32,25 +32,12 @@ void write(const fs::path& file, double t, const Polygons& polygons) {
   if (!out) throw results::FileError(fmt::format("{}: cannot be written; choose another --frames", file.string()));
 }
 
-/// An obstacle with its surface.
-struct Seen {
-  model::Obstacle obstacle;
-  Polygons surface;
-
-  Polygons at(double t) const {
-    Polygons posed = surface;
-    for (Eigen::Vector3d& vertex : posed.vertices) vertex = obstacle.pose(t).to_world(vertex);
-    return posed;
-  }
-};
-
 class Writer {
  public:
   Writer(const Cell& cell, const Frames& frames)
       : folder_(frames.folder / run_name(cell)), every_(frames.every), grid_(cell.scene.sheet.grid) {
     results::create_folder(folder_);
-    for (const model::ObstacleRule& rule : cell.scene.obstacles)
-      obstacles_.push_back({model::Obstacle(rule), obstacle_polygons(rule, 4 * model::size(cell.scene))});
+    for (const model::ObstacleRule& rule : cell.scene.obstacles) obstacles_.emplace_back(rule, 4 * model::size(cell.scene));
   }
 
   void see(double t, const solver::State& y) {
@@ -67,18 +54,12 @@ class Writer {
   fs::path folder_;
   double every_;
   model::Grid grid_;
-  std::vector<Seen> obstacles_;
+  std::vector<PosedObstacle> obstacles_;
   double due_ = 0;
   int frame_ = 0;
 };
 
 }  // namespace
-
-void make_folder(const Frames& frames) {
-  results::create_folder(frames.folder);
-  if (!fs::is_empty(frames.folder))
-    throw results::FileError(fmt::format("{}: expected a new or empty folder for the frames", frames.folder.string()));
-}
 
 solver::Observer frame_writer(const Cell& cell, const Frames& frames) {
   return [writer = Writer(cell, frames)](const solver::StepReport& step) mutable { writer.see(step.t, step.y); };

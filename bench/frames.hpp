@@ -12,9 +12,6 @@ struct Frames {
   double every = 0.04;  ///< [s] of simulated time, at most one frame a step
 };
 
-/// Makes the folder. Throws results::FileError if it cannot, or if there is something in it.
-void make_folder(const Frames& frames);
-
 /// Writes the run that it observes to the folder `scene-method-step`: `sheet-0000.obj` at the start and so on, beside the
 /// k-th obstacle of the scene, where it is at that time, as `obstacle-k-0000.obj`. Each file begins with its time. Throws
 /// results::FileError where a file cannot be written.

@@ -100,6 +100,13 @@ Polygons obstacle_polygons(const model::ObstacleRule& rule, double plane_side) {
   throw std::invalid_argument("unknown shape of an obstacle");
 }
 
+Polygons PosedObstacle::at(double t) const {
+  Polygons posed = surface_;
+  const model::Pose pose = obstacle_.pose(t);
+  for (Vector3d& vertex : posed.vertices) vertex = pose.to_world(vertex);
+  return posed;
+}
+
 void write_obj(std::ostream& out, const Polygons& polygons) {
   for (const Vector3d& v : polygons.vertices) fmt::print(out, "v {} {} {}\n", v[0], v[1], v[2]);
   for (std::vector<int> corners : polygons.faces) {

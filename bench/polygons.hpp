@@ -20,6 +20,20 @@ Polygons sheet_polygons(const model::Grid& grid, const solver::Vectors& x);
 /// The surface of an obstacle in its own frame; of a plane a square with the given side [m]. Throws as Obstacle does.
 Polygons obstacle_polygons(const model::ObstacleRule& rule, double plane_side);
 
+/// An obstacle with its surface, as obstacle_polygons() has it.
+class PosedObstacle {
+ public:
+  PosedObstacle(const model::ObstacleRule& rule, double plane_side)
+      : obstacle_(rule), surface_(obstacle_polygons(rule, plane_side)) {}
+
+  /// The surface where it is at a time [s].
+  Polygons at(double t) const;
+
+ private:
+  model::Obstacle obstacle_;
+  Polygons surface_;
+};
+
 /// In Wavefront's OBJ format, numbers to the last bit.
 void write_obj(std::ostream& out, const Polygons& polygons);
 

@@ -54,7 +54,7 @@ void measure_error(const Cell& cell, results::RunRecord& run, const Truth& truth
 
 /// Before anything is computed.
 void require_trajectories(const std::vector<Group>& groups, const SweepOptions& options) {
-  for (const Group& group : groups) check_frames(*options.frames_every, group.front().scene.end);
+  for (const Group& group : groups) check_frames("--trajectory", *options.frames_every, group.front().scene.end);
   if (options.start == results::Start::fresh) results::require_creatable(results::xdmf_path(options.out));
 }
 

@@ -11,14 +11,6 @@
 namespace drape::bench {
 namespace {
 
-/// Multiples of `every` after the start.
-std::vector<double> frame_times(double every, double end) {
-  std::vector<double> times;
-  const double last = end / every * (1 + 1e-9);  // round-off, not intention
-  for (int k = 1; k <= last; ++k) times.push_back(k * every);
-  return times;
-}
-
 /// Of the edges that meet in each particle.
 Eigen::VectorXd mean_strain(const std::vector<model::Edge>& edges, const solver::Vectors& x) {
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(x.rows()), count = sum;
@@ -41,12 +33,19 @@ std::vector<int> constraints(const model::Scene& scene, const model::Cloth& clot
 
 }  // namespace
 
-void check_frames(double every, double end) {
+void check_frames(const char* option, double every, double end) {
   constexpr double most = 1e5;
   if (!(end / every <= most))
     throw std::invalid_argument(
-        fmt::format("--trajectory: expected at most {:g} frames to t = {:g} s, so every={:g} at least, not {:g}", most, end,
+        fmt::format("{}: expected at most {:g} frames to t = {:g} s, so every {:g} s at least, not {:g}", option, most, end,
                     end / most, every));
+}
+
+std::vector<double> frame_times(double every, double end) {
+  std::vector<double> times;
+  const double last = end / every * (1 + 1e-9);  // round-off, not intention
+  for (int k = 1; k <= last; ++k) times.push_back(k * every);
+  return times;
 }
 
 TrajectoryWatch::TrajectoryWatch(const model::Scene& scene, const model::Cloth& cloth, double every)

@@ -8,8 +8,11 @@
 
 namespace drape::bench {
 
-/// Throws std::invalid_argument if there are too many frames so far apart up to the end [s].
-void check_frames(double every, double end);
+/// Throws std::invalid_argument, naming the option, if there are too many frames so far apart up to the end [s].
+void check_frames(const char* option, double every, double end);
+
+/// Multiples of `every` after the start, up to the end [s].
+std::vector<double> frame_times(double every, double end);
 
 /// Takes the motion out of a run at multiples of `every` [s], beginning with the start, by dense output of its steps.
 class TrajectoryWatch {

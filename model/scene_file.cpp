@@ -157,4 +157,10 @@ std::vector<KeyHelp> scene_keys() {
   return keys;
 }
 
+std::map<std::string, std::string> key_values(const Scene& scene) {
+  std::map<std::string, std::string> values;
+  for (const SceneKey& key : scene_key_table()) values[std::string(key.path)] = key.write(scene);
+  return values;
+}
+
 }  // namespace drape::model

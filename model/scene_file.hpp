@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -47,5 +48,8 @@ struct KeyHelp {
   std::string description;
 };
 std::vector<KeyHelp> scene_keys();
+
+/// The values that all keys have in a scene, as TOML, by their paths.
+std::map<std::string, std::string> key_values(const Scene& scene);
 
 }  // namespace drape::model

@@ -54,9 +54,9 @@ using Solve = std::function<Trajectory(const State& start, bool loose)>;
 Reference compare(const SplitOde& ode, const State& y0, double duration, double size, const Solve& a, const Solve& b) {
   Reference result;
   result.trajectory = a(y0, false);
-  const Trajectory witness = b(y0, false);
-  result.error = distances(result.trajectory, witness);
-  const auto effect_a = distances(result.trajectory, a(y0, true)), effect_b = distances(witness, b(y0, true));
+  result.witnessed = b(y0, false);
+  result.error = distances(result.trajectory, result.witnessed);
+  const auto effect_a = distances(result.trajectory, a(y0, true)), effect_b = distances(result.witnessed, b(y0, true));
   std::ranges::transform(effect_a, effect_b, std::back_inserter(result.tolerance_effect),
                          [](double p, double q) { return std::max(p, q); });
 

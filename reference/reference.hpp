@@ -13,6 +13,7 @@ struct Reference {
   std::vector<double> tolerance_effect;  ///< [m], the larger of their distances from themselves at 100 times the tolerance
   std::vector<double> growth;            ///< of a small perturbation of the start, at each time: its distance over the first
   Trajectory trajectory;
+  Trajectory witnessed;  ///< what the witness computed
   Trajectory perturbed;  ///< what the second perturbed start led to
 };
 

@@ -80,7 +80,8 @@ std::string encode(std::string_view key, const Reference& reference) {
   put(out, &reference.tolerance, 1);
   for (const auto* series : {&reference.error, &reference.tolerance_effect, &reference.growth})
     put(out, series->data(), series->size());
-  for (const Trajectory* trajectory : {&reference.trajectory, &reference.perturbed}) put_trajectory(out, *trajectory);
+  for (const Trajectory* trajectory : {&reference.trajectory, &reference.witnessed, &reference.perturbed})
+    put_trajectory(out, *trajectory);
   return out + checksum(out);
 }
 
@@ -95,7 +96,8 @@ Reference decode(std::string_view bytes, std::string_view key) {
   reference.tolerance = reader.take<std::vector<double>>().at(0);
   for (auto* series : {&reference.error, &reference.tolerance_effect, &reference.growth})
     *series = reader.take<std::vector<double>>();
-  for (Trajectory* trajectory : {&reference.trajectory, &reference.perturbed}) *trajectory = take_trajectory(reader);
+  for (Trajectory* trajectory : {&reference.trajectory, &reference.witnessed, &reference.perturbed})
+    *trajectory = take_trajectory(reader);
   return reference;
 }
 

@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "results/descriptor.hpp"
+#include "results/temporary_folder.hpp"
 
 namespace drape::results {
 namespace fs = std::filesystem;
@@ -33,6 +34,14 @@ struct Temporary {
   ~Temporary() { unlink(path.c_str()); }
 };
 
+TemporaryFolder folder_in(const fs::path& parent) {
+  try {
+    return TemporaryFolder(parent);
+  } catch (const std::system_error& error) {
+    throw FileError(fmt::format("{}: cannot create files in it ({})", parent.string(), error.code().message()));
+  }
+}
+
 }  // namespace
 
 void require_creatable(const fs::path& file) {
@@ -45,6 +54,23 @@ void create_folder(const fs::path& folder, std::string_view advice) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) throw FileError(fmt::format("{}: cannot be created ({}){}", folder.string(), error.message(), advice));
+}
+
+void require_empty_folder(const fs::path& folder, std::string_view content) {
+  std::error_code none;  // then there is nothing in it
+  if (fs::exists(folder, none) && !(fs::is_directory(folder, none) && fs::is_empty(folder, none)))
+    throw FileError(fmt::format("{}: expected a new or empty folder for {}", folder.string(), content));
+}
+
+void publish_folder(const fs::path& folder, const std::map<std::string, std::string>& files) {
+  const fs::path absolute = fs::absolute(folder).lexically_normal();
+  const fs::path target = absolute.has_filename() ? absolute : absolute.parent_path();
+  create_folder(target.parent_path());
+  const TemporaryFolder beside = folder_in(target.parent_path());  // in the same file system, so that a rename does
+  const fs::path made = beside / "new";
+  create_folder(made);
+  for (const auto& [name, content] : files) publish(made / name, std::as_bytes(std::span(content)), Existing::refuse);
+  if (std::rename(made.c_str(), target.c_str()) != 0) fail(folder, "cannot be created");
 }
 
 void publish(const fs::path& file, std::span<const std::byte> content, Existing existing) {

@@ -32,6 +32,7 @@ Reference some_reference() {
           .tolerance_effect = {1e-9 / 7, 1},
           .growth = {0.3, 1e300},
           .trajectory = {{0.1, 0.2}, {{x, v}, {x * 7, x / 3}}},
+          .witnessed = {{0.1, 0.2}, {{x / 13, v}, {x * 3, x / 7}}},
           .perturbed = {{0.1, 0.2}, {{x / 5, v}, {x * 7, x / 11}}}};
 }
 
@@ -47,7 +48,7 @@ bool equal(const Reference& a, const Reference& b) {
   };
   return a.name == b.name && a.witness == b.witness && a.tolerance == b.tolerance && a.error == b.error &&
          a.tolerance_effect == b.tolerance_effect && a.growth == b.growth && same_trajectory(a.trajectory, b.trajectory) &&
-         same_trajectory(a.perturbed, b.perturbed);
+         same_trajectory(a.witnessed, b.witnessed) && same_trajectory(a.perturbed, b.perturbed);
 }
 
 std::string read(const fs::path& path) {

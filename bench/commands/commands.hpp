@@ -10,6 +10,8 @@ void add_list(CLI::App& app);
 void add_run(CLI::App& app, const std::string& command_line);
 void add_study(CLI::App& app, const std::string& command_line);
 void add_report(CLI::App& app);
+void add_export(CLI::App& app);
+void add_score(CLI::App& app, const std::string& command_line);
 
 /// These set the program's exit code.
 void add_inspect(CLI::App& app, int& exit_code);

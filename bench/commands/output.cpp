@@ -44,7 +44,15 @@ std::filesystem::path sweep_and_print(const std::vector<Group>& groups, Output o
   return output.sweep.out;
 }
 
-void add_output_options(CLI::App& command, Output& output) {
+void add_agreement(CLI::App& command, double& agreement) {
+  command
+      .add_option("--agreement", agreement, "largest disagreement of the two solvers behind a reference, over the scene's size")
+      ->type_name("X")
+      ->check(between(1e-15, 1.0))
+      ->capture_default_str();
+}
+
+void add_table_options(CLI::App& command, Output& output) {
   command.add_option("--repeat", output.sweep.repetitions, "timed repetitions of every run, interleaved")
       ->type_name("R")
       ->check(between(1, 1000))
@@ -63,6 +71,11 @@ void add_output_options(CLI::App& command, Output& output) {
       ->type_name("table|csv|json")
       ->check(CLI::IsMember({"table", "csv", "json"}).description(""))
       ->capture_default_str();
+  add_agreement(command, output.sweep.agreement);
+}
+
+void add_output_options(CLI::App& command, Output& output) {
+  add_table_options(command, output);
   command
       .add_option("--time-limit", output.sweep.limits.seconds, "wall time of a run, which ends as out of time beyond it [none]")
       ->type_name("SECONDS")
@@ -80,12 +93,6 @@ void add_output_options(CLI::App& command, Output& output) {
           "keep the motion of every run in frames so far apart; ParaView opens FILE.h5.xdmf")
       ->type_name("every=SECONDS")
       ->check(every_seconds());
-  command
-      .add_option("--agreement", output.sweep.agreement,
-                  "largest disagreement of the two solvers behind a reference, over the scene's size")
-      ->type_name("X")
-      ->check(between(1e-15, 1.0))
-      ->capture_default_str();
 }
 
 }  // namespace drape::bench

@@ -16,6 +16,13 @@ struct Output {
   std::string format = "table";
 };
 
+/// The option --agreement.
+void add_agreement(CLI::App& command, double& agreement);
+
+/// Of what is made of tables only.
+void add_table_options(CLI::App& command, Output& output);
+
+/// Of runs, too.
 void add_output_options(CLI::App& command, Output& output);
 
 /// The file asked for, or one named after the job.

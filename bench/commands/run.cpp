@@ -82,7 +82,8 @@ void run(const RunArguments& a) {
       throw std::invalid_argument("--frames: expected no --resume beside it, frames of finished runs are not written again");
     output.sweep.out = out_file(output, "run");
     results::require_creatable(output.sweep.out);  // before a folder is made
-    make_folder(a.frames);
+    results::create_folder(a.frames.folder);
+    results::require_empty_folder(a.frames.folder, "the frames");
     output.sweep.look = [&](const Cell& cell) { return frame_writer(cell, a.frames); };
   }
   sweep_and_print(groups, output, "run");

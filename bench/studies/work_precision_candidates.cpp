@@ -200,6 +200,11 @@ std::vector<double> divided_steps(double end, int parts) {
   }
 }
 
+Family ladder(const model::Scene& scene, const std::string& method) {
+  const Cell chosen = cell(scene, method);
+  return chosen.method->implicit() ? by_steps(chosen, "drape", finest_parts(Search::usual)) : by_fraction(chosen, 10);
+}
+
 std::vector<Family> families(const model::Scene& scene, Search search) {
   std::vector<Family> all;
   add_ours(all, scene, search);

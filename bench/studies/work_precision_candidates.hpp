@@ -40,6 +40,10 @@ enum class Search {
 /// Everything that is compared on a scene.
 std::vector<Family> families(const model::Scene& scene, Search search);
 
+/// One of our methods with the program's choice of stage and linear solvers, if its name has none: by steps, or, where
+/// sub-steps follow the stability limit, by fractions of that. Throws std::invalid_argument as choose_method() does.
+Family ladder(const model::Scene& scene, const std::string& method);
+
 /// A fifth of the end, and steps that divide a tenth of it into 1 to so many parts, each about √2 times the next.
 std::vector<double> divided_steps(double end, int parts);
 

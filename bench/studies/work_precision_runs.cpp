@@ -105,7 +105,8 @@ std::vector<Tried> try_family(const Problem& problem, const Family& family, doub
     times_outdone = seconds > before && outdone(trial.measured, rivals) ? times_outdone + 1 : 0;
     before = seconds;
     rivals.push_back(trial.measured);
-    if ((too_long && succeeded) || trial.measured.error < too_exact * problem.uncertainty || times_outdone > 1) break;
+    const bool exact = trial.measured.error < std::max(too_exact * problem.uncertainty, problem.enough);
+    if ((too_long && succeeded) || exact || times_outdone > 1) break;
     k += too_long ? leap : 1;
   }
   return trials;

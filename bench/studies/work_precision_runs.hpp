@@ -24,6 +24,7 @@ struct Problem {
   std::vector<solver::Vectors> truth = {};
   double uncertainty = 0;          ///< of the truth, over `length`
   double growth = 0;               ///< of a small perturbation of the start; 0 if not known
+  double enough = 0;               ///< smaller errors are not sought
   std::vector<double> asked = {};  ///< errors at which somebody asks for the quickest, beside the usual ones
 };
 

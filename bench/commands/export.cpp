@@ -1,0 +1,52 @@
+#include "bench/foreign/export.hpp"
+
+#include <fmt/format.h>
+
+#include "bench/argument_checks.hpp"
+#include "bench/commands/commands.hpp"
+#include "bench/commands/output.hpp"
+#include "bench/commands/scene_choice.hpp"
+#include "bench/sweep.hpp"
+#include "bench/trajectory_record.hpp"
+#include "results/atomic_file.hpp"
+
+namespace drape::bench {
+namespace {
+
+struct ExportArguments {
+  SceneChoice choice;
+  std::string out;
+  double every = 0.04;
+  double agreement = SweepOptions().agreement;
+};
+
+void export_scene(const ExportArguments& a) {
+  const model::Scene scene = a.choice.load();
+  check_frames("--every", a.every, scene.end);
+  std::vector<double> times = frame_times(a.every, scene.end);
+  if (times.empty())
+    throw std::invalid_argument(fmt::format("--every: expected at most the scene's end, {:g} s, not {:g}", scene.end, a.every));
+  times.insert(times.begin(), 0);
+  results::require_empty_folder(a.out, "the exported scene");
+  const auto files = exported(true_motion(scene, times, a.agreement), times);
+  results::publish_folder(a.out, files);
+  for (const auto& [name, content] : files) fmt::print("{}\n", (std::filesystem::path(a.out) / name).string());
+}
+
+}  // namespace
+
+void add_export(CLI::App& app) {
+  CLI::App& command = *app.add_subcommand("export", "a scene with its reference as a benchmark for other simulators");
+  const auto a = std::make_shared<ExportArguments>();
+  command.add_option("--scene", a->choice.scene, "built-in scene or TOML file")->required()->type_name("NAME|FILE.toml");
+  command.add_option("--out", a->out, "new or empty folder for it")->required()->type_name("DIR")->check(not_empty());
+  add_overrides(command, a->choice);
+  command.add_option("--every", a->every, "simulated seconds between two frames of the reference")
+      ->type_name("SECONDS")
+      ->check(positive())
+      ->capture_default_str();
+  add_agreement(command, a->agreement);
+  command.callback([=] { export_scene(*a); });
+}
+
+}  // namespace drape::bench
