@@ -15,14 +15,13 @@
 namespace drape::results {
 namespace {
 
-/// The texts that people see in a row, but for its verdict and what only its table says.
+/// The texts that people see in a row, but for its verdict and how it varies.
 std::string row_title(const Table& table, std::size_t row) {
   std::string title;
   for (const Column& column : table.columns) {
-    const bool told = column.name == "verdict" || column.name == "spread" || column.name == "scene";
+    const bool told = column.name == "verdict" || column.name == "spread";
     if (const std::string text = text_in(&column, row); !told && !column.title.empty() && !text.empty())
       title += (title.empty() ? "" : " ") + text;
-    if (column.name == "error") title += fmt::format(" at {:g}", number_in(&column, row));
   }
   return title;
 }
@@ -138,7 +137,9 @@ void add_not_met(const Table& table, TableBuilder& overview) {
     if (!verdict.starts_with("NOT")) continue;
     overview.row();
     overview.text("table", "table", "its name", table.name);
-    overview.text("row", "row", "what it is about", row_title(table, row));
+    const double error = number_in(find_column(table, "error"), row);
+    overview.text("row", "row", "what it is about",
+                  row_title(table, row) + (std::isfinite(error) ? fmt::format(" at {:g}", error) : ""));
     overview.text("verdict", "verdict", "what the program says", verdict);
   }
 }

@@ -36,13 +36,14 @@ void make_report(const ReportArguments& a) {
 }  // namespace
 
 void report(const std::vector<std::filesystem::path>& files, const std::filesystem::path& folder) {
-  const std::string page = report_page(files);
+  std::vector<results::Recording> recordings;
+  for (const auto& recorded : files) recordings.push_back(results::read_recording(recorded));
+  const std::vector<results::Table> overview = results::overview(recordings);
+  const std::string page = report_page(files, overview);
   const std::filesystem::path file = folder / "index.html";
   results::create_folder(folder);
   results::publish(file, std::as_bytes(std::span(page)), results::Existing::replace);
-  std::vector<results::Recording> recordings;
-  for (const auto& recorded : files) recordings.push_back(results::read_recording(recorded));
-  print_tables(results::overview(recordings), "table");
+  print_tables(overview, "table");
   fmt::print("\nreport: {}\n", file.string());
 }
 

@@ -1,7 +1,7 @@
 "use strict";
 // What is in the page: the files, their tables by column, and the texts that numbers are shown as.
 
-const files = JSON.parse(document.getElementById("data").textContent);
+const {files, overview} = JSON.parse(document.getElementById("data").textContent);
 
 /** An element with properties and children; strings become text, never HTML. */
 function element(name, properties = {}, ...children) {

@@ -33,15 +33,16 @@ void add_script(std::string& page, std::string_view script) {
 
 }  // namespace
 
-std::string report_page(const std::vector<std::filesystem::path>& files) {
-  nlohmann::ordered_json data = nlohmann::ordered_json::array();
-  for (const std::filesystem::path& file : files) data.push_back(page_data(file));
+std::string report_page(const std::vector<std::filesystem::path>& files, const std::vector<results::Table>& overview) {
+  nlohmann::ordered_json data{{"files", nlohmann::ordered_json::array()}, {"overview", nlohmann::ordered_json::array()}};
+  for (const std::filesystem::path& file : files) data["files"].push_back(page_data(file));
+  for (const results::Table& table : overview) data["overview"].push_back(page_table(table));
 
   std::string page(embedded::head_html);
   page.append("<style>\n").append(embedded::style_css).append("</style>\n").append(embedded::body_html);
   page.append(fmt::format("<script type=\"application/json\" id=\"data\">{}</script>\n", script_data(data)));
   add_script(page, embedded::plotly_js);
-  if (std::ranges::any_of(data, has_trajectory)) {
+  if (std::ranges::any_of(data["files"], has_trajectory)) {
     add_script(page, embedded::three_js);
     add_script(page, embedded::orbit_controls_js);
   }

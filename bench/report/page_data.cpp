@@ -47,12 +47,6 @@ Json page_column(const results::Column& column) {
   return object;
 }
 
-Json page_table(const results::Table& table) {
-  Json columns = Json::array();
-  for (const results::Column& column : table.columns) columns.push_back(page_column(column));
-  return {{"name", table.name}, {"description", table.description}, {"columns", std::move(columns)}};
-}
-
 /// A list for each quantity; of long runs every so many steps, and the last.
 Json page_steps(const std::vector<results::StepRecord>& steps) {
   const std::size_t stride = (steps.size() + most_steps_shown - 1) / most_steps_shown;
@@ -117,6 +111,12 @@ Json page_provenance(const results::Provenance& provenance) {
 }
 
 }  // namespace
+
+nlohmann::ordered_json page_table(const results::Table& table) {
+  Json columns = Json::array();
+  for (const results::Column& column : table.columns) columns.push_back(page_column(column));
+  return {{"name", table.name}, {"description", table.description}, {"columns", std::move(columns)}};
+}
 
 Json page_data(const std::filesystem::path& file) {
   Json data{{"file", file.filename().string()}, {"provenance", page_provenance(results::read_provenance(file))}};

@@ -3,6 +3,8 @@
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 
+#include "results/table.hpp"
+
 namespace drape::bench {
 
 /// All that a report shows of one HDF5 file: its provenance, its tables, a table of its runs, and of each run its fields, steps
@@ -10,5 +12,8 @@ namespace drape::bench {
 /// share. Numbers that are not finite are null (NaN) or the texts "inf" and "-inf", which JSON has no numbers for. Throws
 /// results::FileError.
 nlohmann::ordered_json page_data(const std::filesystem::path& file);
+
+/// A table of the page.
+nlohmann::ordered_json page_table(const results::Table& table);
 
 }  // namespace drape::bench
