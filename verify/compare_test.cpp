@@ -287,7 +287,29 @@ TEST(CompareTables, JudgeOrdersErrorsAndCountersButNoTimes) {
   EXPECT_EQ(against(orders(2.01, "2 as declared", 1.1e-4, 10, 1)).accuracy.judgement, Judgement::regression);
   EXPECT_EQ(against(orders(2.01, "2 as declared", 0.9e-4, 10, 1)).accuracy.judgement, Judgement::better);
   EXPECT_EQ(against(orders(2.01, "2 as declared", 1e-4, 11, 1)).work.judgement, Judgement::regression);
+  EXPECT_THAT(against(good).work.reason, HasSubstr("1 cells"));
   EXPECT_EQ(compare({{}, {}, {good}}, {{}, {}, {}}).accuracy.judgement, Judgement::not_comparable);
+}
+
+/// A row with one number, and what the reference of its error is uncertain by.
+Table one_number(const char* name, double value, double uncertainty) {
+  TableBuilder table("numbers", "");
+  table.row();
+  table.number(name, "", "1", "", value);
+  table.number("uncertainty", "", "1", "", uncertainty);
+  return table.finish();
+}
+
+TEST(CompareTables, JudgeNoNoise) {
+  const auto judgement = [](const char* name, double a, double b, double uncertainty) {
+    return compare({{}, {}, {one_number(name, a, uncertainty)}}, {{}, {}, {one_number(name, b, 2 * uncertainty)}})
+        .accuracy.judgement;
+  };
+  EXPECT_EQ(judgement("error", 1e-8, 2e-8, 1e-9), Judgement::regression);
+  EXPECT_EQ(judgement("error", 1e-8, 2e-8, 1e-8), Judgement::same);
+  EXPECT_EQ(judgement("swing", 1e-8, 2e-8, 0), Judgement::regression);
+  EXPECT_EQ(judgement("swing", 0, 1e-13, 0), Judgement::same) << "round-off";
+  for (const char* consequence : {"residual", "order"}) EXPECT_EQ(judgement(consequence, 1e-8, 2e-8, 0), Judgement::same);
 }
 
 }  // namespace
