@@ -13,6 +13,7 @@
 #include "bench/script.hpp"
 #include "model/scene.hpp"
 #include "results/hdf5.hpp"
+#include "results/temporary_folder.hpp"
 
 namespace drape::bench {
 namespace {
@@ -21,26 +22,6 @@ namespace fs = std::filesystem;
 using solver::Vectors;
 
 constexpr double matched_within = 0.01;  ///< of the shorter spacing
-
-/// A file name in a new folder, which is gone at the end.
-class TemporaryFile {
- public:
-  TemporaryFile() {
-    std::string folder = fs::temp_directory_path() / "drape-score-XXXXXX";
-    if (mkdtemp(folder.data()) == nullptr) throw std::runtime_error(folder + ": cannot be created");
-    folder_ = folder;
-  }
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
-  ~TemporaryFile() {
-    std::error_code ignored;  // a destructor has nobody to tell
-    fs::remove_all(folder_, ignored);
-  }
-  fs::path path() const { return folder_ / "motion.h5"; }
-
- private:
-  fs::path folder_;
-};
 
 bool is_hdf5(const fs::path& file) { return file.extension() == ".h5" || file.extension() == ".hdf5"; }
 
@@ -60,15 +41,16 @@ std::string title(const std::vector<std::string>& files) {
 }
 
 results::Motion read(const std::vector<std::string>& files, std::optional<double> frame_time) {
-  const TemporaryFile plain;
-  std::vector<std::string> arguments{plain.path(), frame_time ? fmt::format("{}", *frame_time) : "none"};
+  const results::TemporaryFolder folder;
+  const fs::path plain = folder / "motion.h5";
+  std::vector<std::string> arguments{plain, frame_time ? fmt::format("{}", *frame_time) : "none"};
   arguments.insert(arguments.end(), files.begin(), files.end());
   const ScriptResult result = run_script("foreign_motion.py", arguments);
   if (!result.success)
     throw std::invalid_argument(result.said.starts_with("foreign_motion.py")
                                     ? fmt::format("{}: {}: it is damaged", title(files), result.said)
                                     : result.said);
-  return results::read_motion(plain.path());
+  return results::read_motion(plain);
 }
 
 void check_times(const std::string& name, const std::vector<double>& times, double end) {
