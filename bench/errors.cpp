@@ -68,8 +68,7 @@ reference::Reference References::operator()(const model::Scene& scene, const mod
   try {
     reference::certify(reference, agreement_, results::comparable_growth, options.size);
   } catch (const reference::NotCertified& error) {
-    throw reference::NotCertified(
-        fmt::format("{}: {}; allow more by --agreement, or measure no errors (--no-reference)", scene.name, error.what()));
+    throw reference::NotCertified(fmt::format("{}: {}; allow more by --agreement", scene.name, error.what()));
   }
   return reference;
 }
