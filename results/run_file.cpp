@@ -143,6 +143,20 @@ Handle open_run_file(const fs::path& path) {
   return file;
 }
 
+std::vector<RunRecord> runs_of(const Handle& file) {
+  const Handle runs = hdf5::open_group(file, "runs");
+  std::vector<RunRecord> records;
+  for (std::size_t i = 0; hdf5::has(runs, run_name(i)); ++i) records.push_back(read_run(hdf5::open_group(runs, run_name(i))));
+  return records;
+}
+
+std::vector<Table> tables_of(const Handle& file) {
+  const Handle tables = hdf5::open_group(file, "tables");
+  std::vector<Table> result;
+  for (const std::string& name : hdf5::groups(tables)) result.push_back(read_table(tables, name));
+  return result;
+}
+
 Provenance facts_of(const Handle& file) {
   Provenance facts;
   for (const std::string& name : hdf5::described_texts(file))
@@ -273,29 +287,22 @@ RunRecord run_of(std::span<const std::byte> bytes) {
 }
 
 std::vector<RunRecord> read_runs(const fs::path& path) {
-  return with_file_named(path, [&] {
-    const Handle file = open_run_file(path);
-    const Handle runs = hdf5::open_group(file, "runs");
-    std::vector<RunRecord> records;
-    for (std::size_t i = 0; hdf5::has(runs, run_name(i)); ++i) records.push_back(read_run(hdf5::open_group(runs, run_name(i))));
-    return records;
-  });
+  return with_file_named(path, [&] { return runs_of(open_run_file(path)); });
 }
 
 std::vector<Table> read_tables(const fs::path& path) {
-  return with_file_named(path, [&] {
-    const Handle file = open_run_file(path);
-    const Handle tables = hdf5::open_group(file, "tables");
-    std::vector<Table> result;
-    for (const std::string& name : hdf5::groups(tables)) result.push_back(read_table(tables, name));
-    return result;
-  });
+  return with_file_named(path, [&] { return tables_of(open_run_file(path)); });
 }
 
 Provenance read_provenance(const fs::path& path) {
   return with_file_named(path, [&] { return facts_of(open_run_file(path)); });
 }
 
-Recording read_recording(const fs::path& path) { return {read_provenance(path), read_runs(path), read_tables(path)}; }
+Recording read_recording(const fs::path& path) {
+  return with_file_named(path, [&] {
+    const Handle file = open_run_file(path);
+    return Recording{facts_of(file), runs_of(file), tables_of(file)};
+  });
+}
 
 }  // namespace drape::results

@@ -36,10 +36,14 @@ void make_report(const ReportArguments& a) {
 }  // namespace
 
 void report(const std::vector<std::filesystem::path>& files, const std::filesystem::path& folder) {
+  std::vector<std::string> names;
   std::vector<results::Recording> recordings;
-  for (const auto& recorded : files) recordings.push_back(results::read_recording(recorded));
+  for (const auto& recorded : files) {
+    names.push_back(recorded.filename().string());
+    recordings.push_back(results::read_recording(recorded));
+  }
   const std::vector<results::Table> overview = results::overview(recordings);
-  const std::string page = report_page(files, overview);
+  const std::string page = report_page(names, recordings, overview);
   const std::filesystem::path file = folder / "index.html";
   results::create_folder(folder);
   results::publish(file, std::as_bytes(std::span(page)), results::Existing::replace);

@@ -19,6 +19,26 @@ double largest_strain(const model::Grid& grid, const solver::Vectors& x) {
 constexpr double Observables::*numbers[] = {&Observables::kinetic, &Observables::potential, &Observables::total,
                                             &Observables::lowest, &Observables::stretch};
 
+/// Velocities at all times by differences of second order.
+std::vector<solver::Vectors> velocities_of(std::span<const double> times, const std::vector<solver::State>& states) {
+  const std::size_t last = times.size() - 1;
+  const auto slope = [&](std::size_t k) -> solver::Vectors {
+    return (states[k + 1].x - states[k].x) / (times[k + 1] - times[k]);
+  };
+  std::vector<solver::Vectors> all;
+  for (std::size_t k = 0; k <= last; ++k) {
+    if (last == 1) {
+      all.push_back(slope(0));
+      continue;
+    }
+    const std::size_t middle = std::clamp<std::size_t>(k, 1, last - 1);  // the parabola through it and its neighbours
+    const solver::Vectors before = slope(middle - 1);
+    const solver::Vectors curvature = (slope(middle) - before) / (times[middle + 1] - times[middle - 1]);
+    all.emplace_back(before + curvature * (2 * times[k] - times[middle - 1] - times[middle]));
+  }
+  return all;
+}
+
 }  // namespace
 
 Observables observe(const model::Scene& scene, const model::Cloth& cloth, double t, const solver::State& y) {
@@ -45,25 +65,6 @@ std::vector<UncertainObservables> observe(const TrueMotion& truth, std::span<con
       now.uncertainty.*number = std::max(now.uncertainty.*number, std::abs(now.value.*number - other.*number));
     now.centre_distance = std::max(now.centre_distance, (now.value.centre - other.centre).norm());
     all.push_back(now);
-  }
-  return all;
-}
-
-std::vector<solver::Vectors> velocities_of(std::span<const double> times, const std::vector<solver::State>& states) {
-  const std::size_t last = times.size() - 1;
-  const auto slope = [&](std::size_t k) -> solver::Vectors {
-    return (states[k + 1].x - states[k].x) / (times[k + 1] - times[k]);
-  };
-  std::vector<solver::Vectors> all;
-  for (std::size_t k = 0; k <= last; ++k) {
-    if (last == 1) {
-      all.push_back(slope(0));
-      continue;
-    }
-    const std::size_t middle = std::clamp<std::size_t>(k, 1, last - 1);  // the parabola through it and its neighbours
-    const solver::Vectors before = slope(middle - 1);
-    const solver::Vectors curvature = (slope(middle) - before) / (times[middle + 1] - times[middle - 1]);
-    all.emplace_back(before + curvature * (2 * times[k] - times[middle - 1] - times[middle]));
   }
   return all;
 }

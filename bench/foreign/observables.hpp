@@ -26,10 +26,7 @@ struct UncertainObservables {
 /// may agree by chance. `differenced`: velocities are differences of the positions at these times.
 std::vector<UncertainObservables> observe(const TrueMotion& truth, std::span<const double> times, bool differenced = false);
 
-/// Velocities at all times by differences of second order.
-std::vector<solver::Vectors> velocities_of(std::span<const double> times, const std::vector<solver::State>& states);
-
-/// Replaces the velocities by these.
+/// Replaces the velocities by differences of second order of the positions.
 void difference(std::span<const double> times, std::vector<solver::State>& states);
 
 }  // namespace drape::bench

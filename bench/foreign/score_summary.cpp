@@ -16,24 +16,12 @@ const Table& named(const std::vector<Table>& tables, std::string_view name) {
   return *std::ranges::find(tables, name, &Table::name);
 }
 
-const results::Cell* find(const Table& table, std::string_view column, std::size_t row) {
-  const auto found = std::ranges::find(table.columns, column, &results::Column::name);
-  return found == table.columns.end() ? nullptr : &found->cells.at(row);
-}
-
-/// NaN if there is none.
 double number(const Table& table, std::string_view column, std::size_t row = 0) {
-  const results::Cell* cell = find(table, column, row);
-  if (cell == nullptr) return std::nan("");
-  if (const auto* count = std::get_if<std::int64_t>(cell)) return static_cast<double>(*count);
-  const auto* value = std::get_if<double>(cell);
-  return value == nullptr ? std::nan("") : *value;
+  return number_in(find_column(table, column), row);
 }
 
 std::string text(const Table& table, std::string_view column, std::size_t row = 0) {
-  const results::Cell* cell = find(table, column, row);
-  const auto* value = cell == nullptr ? nullptr : std::get_if<std::string>(cell);
-  return value == nullptr ? "" : *value;
+  return text_in(find_column(table, column), row);
 }
 
 std::string error_line(const Table& s) {
@@ -73,8 +61,7 @@ std::string penetration_line(const Table& s) {
 
 /// `prefix`: of the columns that answer the question.
 std::string best_line(const Table& ours, const std::string& prefix, const char* question) {
-  const std::size_t rows = ours.columns.front().cells.size();
-  for (std::size_t k = 0; k < rows; ++k)
+  for (std::size_t k = 0; k < rows(ours); ++k)
     if (!text(ours, prefix + "best", k).empty())
       return fmt::format("ours         {}: {}, {:.2g}: error {:.3g} in {:.3g} ms\n", question, text(ours, "method", k),
                          number(ours, prefix + "value", k), number(ours, prefix + "error", k),

@@ -12,11 +12,6 @@ function paretoFront(rows) {
   return front;
 }
 
-const median = (numbers) => {
-  const sorted = [...numbers].sort((a, b) => a - b), half = (sorted.length - 1) / 2;
-  return (sorted[Math.floor(half)] + sorted[Math.ceil(half)]) / 2;
-};
-
 /** One curve of time against error, with the quartiles of the times as bars. */
 function workPrecisionTrace(name, rows, look, text, mode = "lines+markers") {
   return {

@@ -33,9 +33,10 @@ void add_script(std::string& page, std::string_view script) {
 
 }  // namespace
 
-std::string report_page(const std::vector<std::filesystem::path>& files, const std::vector<results::Table>& overview) {
+std::string report_page(std::span<const std::string> names, std::span<const results::Recording> recordings,
+                        std::span<const results::Table> overview) {
   nlohmann::ordered_json data{{"files", nlohmann::ordered_json::array()}, {"overview", nlohmann::ordered_json::array()}};
-  for (const std::filesystem::path& file : files) data["files"].push_back(page_data(file));
+  for (std::size_t k = 0; k < names.size(); ++k) data["files"].push_back(page_data(names[k], recordings[k]));
   for (const results::Table& table : overview) data["overview"].push_back(page_table(table));
 
   std::string page(embedded::head_html);

@@ -1,16 +1,17 @@
 #pragma once
 
-#include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
-#include "results/table.hpp"
+#include "results/run_file.hpp"
 
 namespace drape::bench {
 
 /// One HTML page about some HDF5 files that needs nothing else, no network either: data, styles, scripts and the libraries for
-/// plots (Plotly) and, if a run has a trajectory, for 3-D (three.js) are inside. `overview`: tables
-/// that it begins with. Throws results::FileError.
-std::string report_page(const std::vector<std::filesystem::path>& files, const std::vector<results::Table>& overview);
+/// plots (Plotly) and, if a run has a trajectory, for 3-D (three.js) are inside. `names`: of the files, as many as recordings.
+/// `overview`: tables that it begins with.
+std::string report_page(std::span<const std::string> names, std::span<const results::Recording> recordings,
+                        std::span<const results::Table> overview);
 
 }  // namespace drape::bench

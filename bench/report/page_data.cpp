@@ -7,7 +7,6 @@
 
 #include "bench/report/base64.hpp"
 #include "bench/report/obstacles.hpp"
-#include "results/run_file.hpp"
 #include "results/runs_table.hpp"
 #include "results/schema.hpp"
 
@@ -118,11 +117,11 @@ nlohmann::ordered_json page_table(const results::Table& table) {
   return {{"name", table.name}, {"description", table.description}, {"columns", std::move(columns)}};
 }
 
-Json page_data(const std::filesystem::path& file) {
-  Json data{{"file", file.filename().string()}, {"provenance", page_provenance(results::read_provenance(file))}};
+Json page_data(const std::string& name, const results::Recording& recording) {
+  const auto& [provenance, runs, tables] = recording;
+  Json data{{"file", name}, {"provenance", page_provenance(provenance)}};
   data["tables"] = Json::array();
-  for (const results::Table& table : results::read_tables(file)) data["tables"].push_back(page_table(table));
-  const std::vector<results::RunRecord> runs = results::read_runs(file);
+  for (const results::Table& table : tables) data["tables"].push_back(page_table(table));
   data["runs"] = Json::array();
   data["surfaces"] = Json::array();
   for (const results::RunRecord& run : runs) data["runs"].push_back(page_run(run, data["surfaces"]));
