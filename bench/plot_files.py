@@ -1,10 +1,34 @@
 """What the plot scripts share: tables in, pictures out."""
+import json
+import pathlib
+
 import h5py
 import matplotlib
 
 matplotlib.use("Agg")
 matplotlib.rcParams.update({"svg.fonttype": "none", "svg.hashsalt": "drape"})
 import matplotlib.pyplot as plt
+
+
+MARKS = {"circle": "o", "square": "s", "square-open": "s", "diamond": "D", "diamond-open": "d", "triangle-up": "^", "triangle-down": "v", "cross": "P", "x": "X",
+         "star": "*", "pentagon": "p", "hexagon": "h", "star-diamond": "8", "hourglass": "<"}
+
+
+def looks():
+    """The looks of curves as the report has them: report/looks.js without what makes it a script."""
+    text = (pathlib.Path(__file__).parent / "report/looks.js").read_text()
+    return json.loads(text[text.index("const looks = ") + len("const looks = "):text.rindex(";")])
+
+
+def style(name):
+    """Colour and mark of a method with its solvers or of a package, as style() in report/plots.js has them."""
+    known = looks()
+    hashed = lambda text: 7 if not text else (31 * hashed(text[:-1]) + ord(text[-1])) % 1000003
+    other = lambda several, text: several[hashed(text) % len(several)]
+    method, _, solver = name.partition("/")
+    colour = known["methods"].get(method) or other(known["other_colours"], method)
+    mark, _ = known["solvers"].get(solver) or other(known["other_marks"], solver)
+    return colour, MARKS[mark]
 
 
 def read_table(path, name):

@@ -23,6 +23,9 @@ constexpr int renewal_cost = 40;            ///< of making it
 constexpr int longest_stay = 64;            ///< stages after which `auto` tries the constant matrix again
 constexpr double cheap = 50;                ///< cost of a stage for which the constant matrix need not be tried
 constexpr double mean_weight = 0.2;         ///< of the second estimate of the error
+constexpr double reduction_memory = 0.5;    ///< part of the reduction seen before that is the least to be expected
+constexpr double reduction_ages = 1.3;      ///< how much less is expected of it in each further stage
+constexpr double sudden = 1.2;              ///< growth of the first |d| from stage to stage from which on nothing is expected
 constexpr double stiffest = 1e4;            ///< A over A without springs, beyond which `auto` does not trust it
 
 }  // namespace
@@ -31,7 +34,9 @@ AcceleratedLoop::AcceleratedLoop(const SplitOde& ode, const Options& options, St
     : ode_(ode),
       options_(options),
       system_(system),
-      drag_(ode.damping.diagonal()),
+      mass_(thrice(ode.mass)),
+      drag_(thrice(ode.damping.diagonal())),
+      inverse_mass_(mass_.inverse()),
       anderson_(ode.particles()),
       newton_(ode, options, system, false),
       lean_newton_(ode, options, system, true),
@@ -66,31 +71,47 @@ void AcceleratedLoop::begin(const Stage& stage, const State& y) {
   matrix_ = nullptr;
   renewals_here_ = 0;
   searched_ = false;
-  forget();
+  start_iteration();
 }
 
-/// With another P the iteration is another one.
-void AcceleratedLoop::forget() {
-  best_ = infinity;
+void AcceleratedLoop::start_iteration() {
+  best_ = last_ = infinity;
   part_ = 1;
   rate_ = 0;
   since_renewal_ = 0;
   made_here_ = true;
+}
+
+/// With another P the iteration is another one.
+void AcceleratedLoop::forget() {
+  start_iteration();
+  reduction_ = 1;
   anderson_.restart();
+}
+
+/// Takes over what the stage before has learnt of the iteration, if it was the same.
+void AcceleratedLoop::recycle() {
+  if (matrix_ == recycled_matrix_ && system_.gamma() == recycled_gamma_) {
+    reduction_ = std::min(1.0, reduction_ages * reduction_);
+    anderson_.begin();
+  } else {
+    reduction_ = 1;
+    anderson_.restart();
+  }
 }
 
 /// Finds the P that the stage begins with; false, with the outcome, if there is none.
 bool AcceleratedLoop::find_matrix(State& y) {
-  NewtonSystem* const matrix = preferred();
-  if (matrix == nullptr) {
+  matrix_ = preferred();
+  if (matrix_ == nullptr) {
     result_.outcome = system_.prepare(stage_->gamma, similar_gamma);
-    return result_.outcome == Outcome::success;
+  } else {
+    const bool usable = !matrix_->empty() && std::abs(matrix_->gamma() / stage_->gamma - 1) <= different_gamma;
+    if (!usable) return use_newton(matrix_, y);
+    made_here_ = false;
   }
-  const bool usable = !matrix->empty() && std::abs(matrix->gamma() / stage_->gamma - 1) <= different_gamma;
-  if (!usable) return use_newton(matrix, y);
-  matrix_ = matrix;
-  made_here_ = false;
-  return true;
+  recycle();
+  return result_.outcome == Outcome::success;
 }
 
 /// Makes the matrix at y; false, with the outcome, if that is impossible.
@@ -103,11 +124,29 @@ bool AcceleratedLoop::use_newton(NewtonSystem* matrix, State& y) {
   return result_.outcome == Outcome::success;
 }
 
+/// Finds the norms of r in one pass.
+void AcceleratedLoop::measure() {
+  if (unsprung_gamma_ != stage_->gamma) {
+    unsprung_gamma_ = stage_->gamma;
+    unsprung_inverse_ = (mass_ - unsprung_gamma_ * drag_).inverse();
+  }
+  const double *const r = system_.residual().data(), *const m = inverse_mass_.data(), *const u = unsprung_inverse_.data();
+  const Eigen::Index n = system_.residual().size();
+  double plain = 0, by_mass = 0, unsprung = 0;
+#pragma omp simd reduction(+ : plain, by_mass, unsprung)
+  for (Eigen::Index i = 0; i < n; ++i) {
+    plain += r[i] * r[i];
+    by_mass += (m[i] * r[i]) * (m[i] * r[i]);
+    unsprung += (u[i] * r[i]) * (u[i] * r[i]);
+  }
+  residual_ = std::sqrt(plain);
+  bound_ = std::sqrt(by_mass);
+  unsprung_ = std::sqrt(unsprung);
+}
+
 /// d = P⁻¹ r; false if the solve fails.
 bool AcceleratedLoop::correct() {
   const Vectors& r = system_.residual();
-  bound_ = (ode_.mass.cwiseInverse().asDiagonal() * r).norm();
-  if (may_escalate()) unsprung_ = ((ode_.mass - stage_->gamma * drag_).cwiseInverse().asDiagonal() * r).norm();
   size_ = infinity;
   if (!std::isfinite(residual_)) return true;
   const LinearResult solved =
@@ -164,7 +203,19 @@ bool AcceleratedLoop::escalate(State& y) {
   return use_newton(&lean_newton_, y);
 }
 
+/// What an update reduces |d| by, as far as it has been seen; nothing where a stage begins farther off than the one before.
+void AcceleratedLoop::expect() {
+  if (std::isfinite(last_)) {
+    reduction_ = std::clamp(size_ / last_, reduction_memory * reduction_, 1.0);
+  } else {
+    if (size_ > sudden * first_) reduction_ = 1;
+    first_ = size_;
+  }
+  last_ = size_;
+}
+
 void AcceleratedLoop::advance(State& y) {
+  expect();
   if (size_ <= best_) {
     made_here_ = matrix_ == nullptr || !std::isfinite(best_);
     best_v_ = y.v;
@@ -180,8 +231,9 @@ void AcceleratedLoop::advance(State& y) {
   }
 }
 
+/// The estimates are of the error before the update; what was seen of updates tells what they leave of it   [as in CVODE].
 bool AcceleratedLoop::close_enough(const State& y) const {
-  const double error = std::max(size_ / anderson_.weakest(), mean_weight * std::sqrt(bound_ * size_));
+  const double error = reduction_ * std::max(size_ / anderson_.weakest(), mean_weight * std::sqrt(bound_ * size_));
   return part_ == 1 && error <= StageSystem::allowed_error(*stage_, guess_, y);
 }
 
@@ -210,7 +262,7 @@ StageResult AcceleratedLoop::solve(const Stage& stage, State& y) {
     if (result_.updates >= options_.max_updates) return ended(Outcome::not_converged);
     system_.evaluate(stage, nullptr, y);
     system_.filter_residual(stage.gamma);
-    residual_ = system_.residual().norm();
+    measure();
     if (result_.updates == 0) noise_ = system_.noise(y, stage.gamma);
     if (result_.updates > 0 && residual_ <= noise_) break;
     if (!correct()) return result_;
@@ -233,6 +285,8 @@ StageResult AcceleratedLoop::solve(const Stage& stage, State& y) {
     }
   }
   y.x = stage.ax + stage.gamma * y.v;
+  recycled_matrix_ = matrix_;
+  recycled_gamma_ = system_.gamma();
   plan_next();
   return ended(Outcome::success);
 }

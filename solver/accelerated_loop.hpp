@@ -25,13 +25,17 @@ class AcceleratedLoop {
   using Matrix = StageKind::Matrix;
 
   void begin(const Stage& stage, const State& y);
+  void start_iteration();
   void forget();
   bool find_matrix(State& y);
+  void recycle();
+  void measure();
   bool use_newton(NewtonSystem* matrix, State& y);
   bool correct();
   bool retreat(State& y);
   bool search(State& y);
   bool escalate(State& y);
+  void expect();
   void advance(State& y);
   bool close_enough(const State& y) const;
   bool may_escalate() const;
@@ -44,7 +48,10 @@ class AcceleratedLoop {
   const SplitOde& ode_;
   const Options& options_;
   StageSystem& system_;
-  const Eigen::VectorXd drag_;  ///< diagonal of D
+  const Eigen::ArrayXd mass_, drag_;   ///< M and the diagonal of D, each value three times, as coordinates lie in memory
+  const Eigen::ArrayXd inverse_mass_;  ///< M⁻¹ in the same way
+  Eigen::ArrayXd unsprung_inverse_;    ///< (M − γD)⁻¹, of which only the diagonal counts
+  double unsprung_gamma_ = 0;          ///< its γ [s]
   Anderson anderson_;
   NewtonSystem newton_, lean_newton_;
   NewtonSearch search_;
@@ -62,10 +69,17 @@ class AcceleratedLoop {
   double unsprung_ = 0;             ///< the same with M − γD, of which only the diagonal counts
   double best_ = 0;                 ///< smallest |d|
   double part_ = 1;                 ///< of an update that is made
+  double last_ = 0;                 ///< |d| before the last update
   double rate_ = 0;                 ///< by which |d| changed last
   int since_renewal_ = 0, renewals_here_ = 0;
   bool made_here_ = false;  ///< P was made at best_v_; A is what it is everywhere
   bool searched_ = false;   ///< the stage was solved by line searches
+
+  // What serves on in the next stage, if P is the same.
+  NewtonSystem* recycled_matrix_ = nullptr;
+  double recycled_gamma_ = 0;  ///< of A [s]
+  double first_ = 0;
+  double reduction_ = 1;  ///< by which an update reduces |d|, as seen last
 
   // What `auto` remembers.
   int newton_stages_ = 0;  ///< still to be solved with Newton's matrix

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include "solver/state.hpp"
 
@@ -15,8 +17,19 @@ class Anderson {
   /// The fields are N × 3.
   explicit Anderson(Eigen::Index particles);
 
-  /// Forgets the past: the fixed point is another one now.
-  void restart() { count_ = 0; }
+  /// Past differences of a smaller response than this do not serve on in the next stage. What is slack now may be taut then,
+  /// while stiff directions hardly turn from step to step.
+  static constexpr double lasting_response = 0.2;
+
+  /// Forgets the past: the iteration is another one.
+  void restart() {
+    pairs_ = 0;
+    follows_ = false;
+  }
+
+  /// The same iteration, but towards another fixed point, as in the next step in time: past differences serve on, none is taken
+  /// across   [Degroote, Bathe, Vierendeels 2009, reuse of time steps].
+  void begin();
 
   /// Replaces v by the next iterate; d: its update without acceleration, replaced by the accelerated one.
   void advance(Vectors& v, Vectors& d);
@@ -30,15 +43,19 @@ class Anderson {
   using Small = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, depth, 1>;
   using Gram = Eigen::Matrix<double, depth, depth>;
 
-  int kept() const { return std::min(count_ - 1, depth); }
-  void remember(const Eigen::Ref<const Eigen::VectorXd>& v, const Eigen::Ref<const Eigen::VectorXd>& d);
+  int kept() const { return std::min(pairs_, depth); }
+  double response(int slot) const { return std::sqrt(gram_(slot, slot)) / lengths_[slot]; }
+  void remember(const Vectors& v, const Vectors& d);
+  void add_pair(const double* v, const double* d);
   Small weights() const;
 
-  int count_ = 0;                                          ///< iterates since the restart
+  int pairs_ = 0;                                          ///< differences taken since the restart
+  bool follows_ = false;                                   ///< whether the next iterate follows the last
   Eigen::VectorXd v_, d_;                                  ///< of the last iterate, as they lie in memory
   Columns dd_, dg_;                                        ///< Δd and Δ(v + d)
   Gram gram_ = Gram::Zero();                               ///< <Δd_i, Δd_j>
   Eigen::Matrix<double, depth, 1> projections_, lengths_;  ///< <Δd_i, d>, |Δv_i|
+  std::array<bool, depth> serves_{};                       ///< whether a difference takes part
 };
 
 }  // namespace drape::solver

@@ -17,8 +17,8 @@ void ConjugateGradients::analyze(const SparseMatrix& A) {
 
 Outcome ConjugateGradients::factor(const SparseMatrix& A) {
   ++work_.factorizations;
-  star_ = five_point(A);
   const Outcome outcome = preconditioner_->factor(A);
+  star_ = preconditioner_->exact() ? std::nullopt : five_point(A);  // an exact factor needs no products
   ++work_.factorizations_of(preconditioner_->name());
   return outcome;
 }

@@ -28,6 +28,9 @@ class StageSystem {
   /// Makes A for this γ, unless the one there is is for a γ that differs by less than this part.
   Outcome prepare(double gamma, double different = 1e-12);
 
+  /// The γ [s] that A is for.
+  double gamma() const { return gamma_; }
+
   /// Sets x = ax + γ v, imposes contacts and sets r in all coordinates; f = K x + D v + f̂ if f̂ is given.
   void evaluate(const Stage& stage, const Vectors* f_explicit, State& y);
 

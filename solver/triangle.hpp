@@ -29,8 +29,17 @@ void eliminate(const Triangle& T, std::vector<Lanes>& work, const Begin& begin, 
   Lanes* const w = work.data();
   for (int k = 0, e = 0; k < n; ++k) {
     const int i = row[k];
-    Lanes s = begin(i);
-    for (const int last = start[k + 1]; e < last; ++e) s -= value[e] * w[column[e]];
+    Lanes s = begin(i), other = Lanes::Zero();
+    const int last = start[k + 1];
+    for (; e + 1 < last; e += 2) {
+      other += value[e] * w[column[e]];
+      s -= value[e + 1] * w[column[e + 1]];
+    }
+    if (e < last) {
+      s -= value[e] * w[column[e]];
+      ++e;
+    }
+    s -= other;
     w[i] = s;
     end(i, s);
   }

@@ -48,6 +48,15 @@ Ended run(const model::Cloth& cloth, const char* method, const Options& options,
 
 double rms(const Vectors& difference) { return difference.norm() / std::sqrt(difference.rows()); }
 
+TEST(AcceleratedStages, ServeTheNextOnes) {
+  const model::Cloth cloth = sheet({{"material.damping", "50"}});
+  Integrator integrator(cloth.ode, solver::method("bdf2"), stage("anderson"), cloth.start);
+  std::vector<int> updates;
+  integrate(integrator, 1, 0.01, [&](const solver::StepReport& step) { updates.push_back(step.updates); });
+  ASSERT_EQ(updates.size(), 100U);
+  EXPECT_LE(std::accumulate(updates.begin() + 80, updates.end(), 0), 30);  // of 20 steps
+}
+
 class StageKinds : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(, StageKinds,
                          testing::Values("anderson", "newton", "lean-newton", "auto", "newton/multigrid", "lean-newton/ic0"),

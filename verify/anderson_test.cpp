@@ -57,6 +57,34 @@ TEST(Anderson, ForgetsTheProblemBefore) {
   EXPECT_EQ(relaxation.left(used, 4), relaxation.left(fresh, 4));
 }
 
+/// Iterates towards a fixed point, then towards one nearby of the same map. Returns |d| after one update of the second.
+double left_of_the_next(double weakest, void (Anderson::*between)()) {
+  Anderson anderson(2);
+  Relaxation relaxation(weakest);
+  relaxation.theta = relaxation.theta.cwiseMax(weakest);
+  relaxation.left(anderson, 6);
+  relaxation.b.array() *= 1.1;
+  (anderson.*between)();
+  return relaxation.left(anderson, 1);
+}
+
+TEST(Anderson, ServesTheNextFixedPointOfTheSameMap) {
+  EXPECT_LE(left_of_the_next(0.4, &Anderson::begin), 1e-2 * left_of_the_next(0.4, &Anderson::restart));
+}
+
+TEST(Anderson, DoesNotTrustWhatRespondedWeakly) {
+  Anderson anderson(2);
+  Relaxation weak(0.01);
+  weak.theta.setConstant(0.5 * Anderson::lasting_response);
+  weak.left(anderson, 3);
+  anderson.begin();
+  Vectors v = Vectors::Zero(2, 3), d = weak.update(v);
+  const Vectors plain = d;
+  anderson.advance(v, d);
+  EXPECT_EQ(v, plain);
+  EXPECT_LE(anderson.weakest(), 0.51 * Anderson::lasting_response);  // but knows that there are such
+}
+
 TEST(Anderson, KnowsTheWeakestResponseItHasSeen) {
   const double weakest = 1e-3;
   Anderson anderson(2);

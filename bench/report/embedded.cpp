@@ -16,6 +16,7 @@ DRAPE_EMBED(three_js, DRAPE_THREE);
 DRAPE_EMBED(orbit_controls_js, DRAPE_ORBIT_CONTROLS);
 DRAPE_EMBED(data_js, DRAPE_REPORT "/data.js");
 DRAPE_EMBED(tables_js, DRAPE_REPORT "/tables.js");
+DRAPE_EMBED(looks_js, DRAPE_REPORT "/looks.js");
 DRAPE_EMBED(plots_js, DRAPE_REPORT "/plots.js");
 DRAPE_EMBED(figures_js, DRAPE_REPORT "/figures.js");
 DRAPE_EMBED(run_figures_js, DRAPE_REPORT "/run_figures.js");

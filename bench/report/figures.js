@@ -47,8 +47,7 @@ function trialsFigure(file, table) {
     const dots = rows.filter((row) => own.includes(row.code));
     const all = {type: "scatter", mode: "markers", name: "all of ours", x: dots.map((row) => row.error), y: dots.map((row) => row.time), text: dots.map(text),
                  hovertemplate: "%{text}<br>error %{x:.3e}, %{y:.4g} ms<extra></extra>", marker: {color: "#999999", size: 3}};
-    const curves = [...kinds].filter(([, of]) => of.length).map(([name, of], k) =>
-      workPrecisionTrace(name, paretoFront(of), k ? style(k - 1) : {color: colours.text, symbol: "circle", dash: "solid"}, text));
+    const curves = labelled([...kinds].filter(([, of]) => of.length).map(([name, of]) => workPrecisionTrace(name, paretoFront(of), style(name), text)), width);
     return {data: [all, ...curves], layout: workPrecisionLayout(width, colours, rows, uncertainty, curves.length + 1)};
   };
   return [{
@@ -85,13 +84,13 @@ function convergenceFigures(file, table) {
     const fits = new Map([...groupBy(all, (row) => row[inner])].map(([key, of]) => [key, of.find((row) => row.fitted_order > 0)?.fitted_order]));
     const uncertainty = Math.max(0, ...rows.map((row) => row.uncertainty || 0));
     const make = (width, colours) => {
-      const curves = series.map(([key, of], k) => {
-        const look = style(k), fitted = fits.get(key);
+      const curves = labelled(series.map(([key, of]) => {
+        const look = style(key), fitted = fits.get(key);
         return {type: "scatter", mode: "lines+markers", name: fitted ? `${key}: ${fitted.toFixed(2)}` : key, x: of.map((row) => row[over]), y: of.map((row) => row.error),
                 text: of.map((row) => (Number.isFinite(row.order) ? `order ${row.order.toFixed(3)} from the one before` : "")),
                 hovertemplate: `${key}<br>${over === "n" ? "n" : "h"} = %{x}, error %{y:.3e}<br>%{text}<extra></extra>`,
                 line: {color: look.color, dash: look.dash, width: 1.5}, marker: {color: look.color, symbol: look.symbol, size: 7}};
-      });
+      }), width, () => 0);
       const slopes = slopeLines([...fits.values()].filter((fitted) => fitted), rows, over);
       const range = logRange(rows.map((row) => row.error));
       const layout = {
@@ -105,7 +104,7 @@ function convergenceFigures(file, table) {
     return [{
       file, make, title: `Convergence: ${name}`,
       says: `Error against ${over === "n" ? "resolution" : "time step"}; the legend has the order fitted over the window that the program found.` +
-            (uncertainty ? ` In the grey band, below 10 × the uncertainty of ${shortNumber(uncertainty)}, errors say nothing.` : ""),
+            (uncertainty ? ` In the grey band, below 10 × the uncertainty of ${shortNumber(uncertainty)}, errors say nothing.` : "") + moreCurves(series.length),
       columns: () => columnsWhere(table, (row) => row[outer] === name),
     }];
   });
@@ -187,9 +186,9 @@ const isOverTime = (table) => hasColumns(table, "t") && methodsOverTime(table).l
 function overTimeFigure(file, table) {
   const t = cellsOf(table, "t"), methods = methodsOverTime(table);
   const make = (width, colours) => {
-    const curves = methods.flatMap((method, k) => curvesOverTime.map(([curve, label], row) => ({
+    const curves = methods.flatMap((method) => curvesOverTime.map(([curve, label], row) => ({
       type: "scatter", mode: "lines", name: method, legendgroup: method, showlegend: row === 0, x: t, y: cellsOf(table, `${method}_${curve}`), yaxis: `y${row ? row + 1 : ""}`,
-      hovertemplate: `${method}<br>t = %{x:.4g} s: %{y:.4g} ${label}<extra></extra>`, line: lineStyle(k)})));
+      hovertemplate: `${method}<br>t = %{x:.4g} s: %{y:.4g} ${label}<extra></extra>`, line: lineStyle(method)})));
     const rows = Object.fromEntries(curvesOverTime.map(([, label], row) => [`yaxis${row ? row + 1 : ""}`, axis(label, colours, {domain: [(2 - row) * 0.35, (2 - row) * 0.35 + 0.3], rangemode: "tozero"})]));
     const layout = {...baseLayout(width, colours, methods.length), height: 660, ...rows, xaxis: timeAxis(colours, {anchor: "y3"})};
     return {data: curves, layout};

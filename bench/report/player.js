@@ -148,9 +148,9 @@ function distanceRows(player) {
 function distanceFigure(file, name, player) {
   const rows = distanceRows(player), truth = runLabel(player.truth.run);
   const make = (width, colours) => {
-    const curves = [...groupBy(rows.filter((row) => row.rms > 0), runLabel)].map(([label, of], k) => ({
+    const curves = labelled([...groupBy(rows.filter((row) => row.rms > 0), runLabel)].map(([label, of]) => ({
       type: "scatter", mode: "lines+markers", name: label, x: of.map((row) => row.t), y: of.map((row) => row.rms),
-      hovertemplate: `${label}<br>t = %{x:.4g} s: %{y:.3e} m<extra></extra>`, line: {color: style(k).color, dash: style(k).dash}, marker: {symbol: style(k).symbol, size: 5}}));
+      hovertemplate: `${label}<br>t = %{x:.4g} s: %{y:.3e} m<extra></extra>`, line: lineStyle(of[0].method), marker: {symbol: style(of[0].method).symbol, size: 5}})), width, along);
     return {data: curves, layout: {...baseLayout(width, colours, curves.length), xaxis: timeAxis(colours), yaxis: axis("RMS distance [m]", colours, logTicks(rows.map((row) => row.rms)))}};
   };
   return {file, make, title: `Distance from ${truth}: ${name}`, says: "Root mean square distance of the recorded positions, frame by frame.",

@@ -1,19 +1,40 @@
 "use strict";
 // Figures around Plotly: colours of the page, its width, and what is saved from them.
 
-// Okabe and Ito's colours, which the colour-blind tell apart; marks and dashes tell apart what shares one.
-const palette = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#888888"];
-const marks = ["circle", "square", "diamond", "triangle-up", "triangle-down", "x", "cross", "star"];
-const dashes = ["solid", "dash", "dot", "dashdot"];
+/** A number that depends on nothing but the text. */
+const hashed = (text) => [...text].reduce((sum, letter) => (31 * sum + letter.codePointAt(0)) % 1000003, 7);
 
-/** The look of the k-th curve without marks: those that lie on each other are told apart, too. */
-const lineStyle = (k) => ({color: palette[k % palette.length], dash: dashes[k % dashes.length], width: 1.6});
-
-/** The look of the k-th curve: no two of the first 56 are alike. */
-function style(k) {
-  const color = palette[k % palette.length], turn = Math.floor(k / palette.length);
-  return {color, symbol: marks[(k + turn) % marks.length], dash: dashes[turn % dashes.length]};
+/** The look of a method with its solvers, "bdf2/newton/cholesky", or of a package: {color, symbol, dash}. What looks.js does not know has a look of its own, too. */
+function style(name) {
+  const [method, ...solvers] = name.split("/"), solver = solvers.join("/");
+  const other = (list, text) => list[hashed(text) % list.length];
+  const [symbol, dash] = looks.solvers[solver] ?? other(looks.other_marks, solver);
+  return {color: looks.methods[method] ?? other(looks.other_colours, method), symbol, dash};
 }
+
+/** The look of a curve without marks. */
+function lineStyle(name) {
+  const {color, dash} = style(name);
+  return {color, dash, width: 1.6};
+}
+
+const mostCurves = 8;  // shown at first; a click in the legend shows the others
+
+/** The curves with their names beside them where there is room, the first shown and the others in the legend. `share`: where along a curve its name stands. */
+function labelled(curves, width, share = () => 1) {
+  return curves.map((curve, k) => {
+    const points = curve.x.length, at = Math.min(points - 1, Math.round(share(k, curves.length) * (points - 1)));
+    const named = isNarrow(width) ? {} : {mode: `${curve.mode}+text`, texttemplate: curve.x.map((_, place) => (place === at ? curve.name : "")), textposition: "top center",
+                                          textfont: {size: 11, color: curve.line.color}, cliponaxis: false};
+    return {...curve, ...named, visible: k < mostCurves ? true : "legendonly"};
+  });
+}
+
+/** What is said where not all curves are shown. */
+const moreCurves = (count) => (count > mostCurves ? ` ${count - mostCurves} more curves are in the legend: a click shows them.` : "");
+
+/** Where names stand on curves that begin and end together. */
+const along = (k, count) => 0.25 + (0.65 * (k % mostCurves)) / Math.max(1, Math.min(count, mostCurves) - 1);
 
 const paper = {text: "#000000", line: "#cccccc", band: "rgba(120, 130, 140, 0.16)", page: "#ffffff"};
 

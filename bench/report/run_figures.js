@@ -17,19 +17,26 @@ function workPrecisionRow(run) {
           unresolved: !run.error.resolved, lower: share(0.25), time: share(0.5), upper: share(0.75)};
 }
 
+/** Methods in the order of how little more time than the quickest they take for an error that they reach. */
+function byUse(methods, rows) {
+  const excess = (row) => row.time / Math.min(...rows.filter((other) => other.error <= row.error).map((other) => other.time));
+  const least = new Map(methods.map((method) => [method, Math.min(...rows.filter((row) => row.method === method).map(excess))]));
+  return [...methods].sort((a, b) => least.get(a) - least.get(b));
+}
+
 function runWorkPrecision(file, name, runs) {
   const rows = runs.map(workPrecisionRow).filter((row) => row);
   if (rows.length < 2) return [];
-  const methods = unique(runs.map((run) => run.method));
+  const methods = byUse(unique(rows.map((row) => row.method)), rows);
   const uncertainty = Math.max(...rows.map((row) => row.uncertainty));
   const make = (width, colours) => {
-    const curves = methods.map((method, k) => [method, rows.filter((row) => row.method === method).sort((a, b) => b.step - a.step), k]).filter(([, of]) => of.length)
-      .map(([method, of, k]) => workPrecisionTrace(method, of, style(k), (row) => `${method}, h = ${shortNumber(row.step)} s`));
+    const curves = labelled(methods.map((method) => workPrecisionTrace(method, rows.filter((row) => row.method === method).sort((a, b) => b.step - a.step), style(method),
+                                                                       (row) => `${method}, h = ${shortNumber(row.step)} s`)), width);
     return {data: curves, layout: workPrecisionLayout(width, colours, rows, uncertainty, curves.length)};
   };
   return [{
     file, make, title: `Work–precision of runs: ${name}`,
-    says: `Lower is quicker, further right more accurate; bars are quartiles of the times. Marks are hollow where the error is below 10 × the reference's own of ${shortNumber(uncertainty)} (grey band).`,
+    says: `Lower is quicker, further right more accurate; bars are quartiles of the times. Marks are hollow where the error is below 10 × the reference's own of ${shortNumber(uncertainty)} (grey band).` + moreCurves(methods.length),
     columns: () => ["method", "step", "error", "uncertainty", "time", "lower", "upper"].map((column) => ({name: column, cells: rows.map((row) => row[column])})),
   }];
 }
@@ -69,14 +76,14 @@ function worthSeeing(quantity, runs) {
 }
 
 function timeFigure(file, name, runs, quantity) {
-  const methods = unique(runs.map((run) => run.method)), choice = stepChoice(runs);
-  const chosen = () => runs.filter((run) => run.step === Number(choice.value));
+  const rank = (run) => (run.outcome === "success" ? toNumber(run.error?.rms) || 0 : Infinity), choice = stepChoice(runs);
+  const chosen = () => runs.filter((run) => run.step === Number(choice.value)).sort((a, b) => rank(a) - rank(b));
   const make = (width, colours) => {
-    const curves = chosen().map((run) => {
+    const curves = labelled(chosen().map((run) => {
       const failed = run.outcome !== "success";
       return {type: "scatter", mode: "lines", name: failed ? `${run.method}: ${run.outcome}` : run.method, x: quantity.of(run).t, y: quantity.of(run).value,
-              hovertemplate: `${run.method}, h = ${shortNumber(run.step)} s<br>t = %{x:.4g} s: %{y:.6g}<extra></extra>`, line: lineStyle(methods.indexOf(run.method))};
-    });
+              hovertemplate: `${run.method}, h = ${shortNumber(run.step)} s<br>t = %{x:.4g} s: %{y:.6g}<extra></extra>`, line: lineStyle(run.method)};
+    }), width, along);
     const layout = {...baseLayout(width, colours, curves.length), xaxis: timeAxis(colours), yaxis: axis(quantity.label, colours, quantity.axis)};
     return {data: curves, layout};
   };
@@ -88,7 +95,7 @@ function timeFigure(file, name, runs, quantity) {
     return ["method", "step", "t", "value"].map((column) => ({name: column === "value" ? quantity.label : column, cells: rows.map((row) => row[column])}));
   };
   const every = Math.max(...runs.map((run) => run.steps.every));
-  const says = quantity.says + (every > 1 && quantity.title !== "Clearance" ? ` Of long runs every ${every}th step is shown.` : "");
+  const says = quantity.says + (every > 1 && quantity.title !== "Clearance" ? ` Of long runs every ${every}th step is shown.` : "") + moreCurves(chosen().length);
   return {file, make, columns, says, title: `${quantity.title}: ${name}`, controls: [choice]};
 }
 
@@ -99,10 +106,10 @@ function clearanceFigure(file, name, runs) {
   if (!rows.length) return [];
   const label = (row) => runLabel(row) + (row.outcome === "success" ? "" : `: ${row.outcome}`);
   const make = (width, colours) => {
-    const dots = [...groupBy(rows, (row) => row.method)].map(([method, of], k) => ({
+    const dots = [...groupBy(rows, (row) => row.method)].map(([method, of]) => ({
       type: "scatter", mode: "markers", name: method, x: of.map((row) => row.clearance), y: of.map(label),
       text: of.map((row) => `area in contact at the end ${shortNumber(row.area)}${Number.isNaN(row.reference_area) ? "" : ` (reference ${shortNumber(row.reference_area)})`}, energy rise ${shortNumber(row.energy_rise)}`),
-      hovertemplate: "%{y}<br>%{x:.4g} mm<br>%{text}<extra></extra>", marker: {color: style(k).color, symbol: style(k).symbol, size: 9}}));
+      hovertemplate: "%{y}<br>%{x:.4g} mm<br>%{text}<extra></extra>", marker: {color: style(method).color, symbol: style(method).symbol, size: 9}}));
     const layout = {...baseLayout(width, colours, 0), height: 110 + 24 * rows.length, showlegend: false, xaxis: axis("least clearance [mm]", colours, {zeroline: true, zerolinecolor: colours.text, rangemode: "tozero"}),
                     yaxis: axis("", colours, {type: "category", autorange: "reversed"})};
     return {data: dots, layout};
