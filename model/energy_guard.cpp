@@ -58,6 +58,8 @@ void EnergyGuard::Work::go_on(double t, const State& y) {
 
 EnergyGuard::EnergyGuard(const Scene& scene, const Cloth& cloth)
     : cloth_(cloth),
+      wind_(scene.sheet.wind),
+      areas_(scene.sheet.grid.cell_areas()),
       weight_(weight_of(scene.sheet)),
       x_(cloth.start.x),
       start_(kinetic_and_elastic(0, start_of(cloth))),
@@ -70,17 +72,26 @@ double EnergyGuard::kinetic_and_elastic(double t, const State& y) const {
   return solver::kinetic_energy(cloth_.ode, y.v) + cloth_.ode.potential_energy(t, y.x) - gravity;
 }
 
+/// What a wind may have done in a step that is longer than its swing [J].
+double EnergyGuard::unresolved(const solver::StepReport& step, const Vectors& moved) const {
+  if (!wind_.blows() || !(wind_.frequency * step.h > 1)) return 0;
+  const double load = (std::abs(wind_.constant) + 1) * wind_.load.norm() * std::max(std::abs(wind_.drag), std::abs(wind_.lift));
+  return load * areas_.dot(moved.rowwise().norm());
+}
+
 bool EnergyGuard::exceeded(const solver::StepReport& step) {
   const Vectors moved = step.y.x - x_;
   if (cloth_.ode.damping.nonZeros() > 0) damped_ -= moved.cwiseProduct(cloth_.ode.damping * moved).sum() / step.h;
   contact_work_ += step.contacts.work;
   work_.go_on(step.t, step.y);
+  unresolved_ += unresolved(step, moved);
   x_ = step.y.x;
   const double given = start_ + weight_.cwiseProduct(x_ - cloth_.start.x).sum() + work_.value() + contact_work_;
   most_given_ = std::max(most_given_, given);
   energy_ = kinetic_and_elastic(step.t, step.y);
-  limit_ = given - damped_ + tolerated * most_given_ + work_.doubt() + noise_;
-  judges_ = judges_ && work_.doubt() <= tolerated * most_given_ + noise_;
+  const double doubt = work_.doubt() + unresolved_, tolerance = tolerated * most_given_ + noise_;
+  limit_ = given - damped_ + tolerance + doubt;
+  judges_ = judges_ && doubt <= tolerance;
   return !(energy_ <= limit_);
 }
 

@@ -53,14 +53,17 @@ class EnergyGuard {
     double doubt_ = 0, pending_ = 0;  ///< of all pairs, and of the step that has none yet [J]
   };
 
+  double unresolved(const solver::StepReport& step, const solver::Vectors& moved) const;
   double kinetic_and_elastic(double t, const solver::State& y) const;
 
   const Cloth& cloth_;
+  Wind wind_;
+  Eigen::VectorXd areas_;   ///< [m²]
   solver::Vectors weight_;  ///< [N]
   solver::Vectors x_;       ///< after the last step
   double start_, noise_;    ///< [J]
   double most_given_;       ///< [J]
-  double damped_ = 0, contact_work_ = 0, energy_ = 0, limit_ = 0;
+  double damped_ = 0, contact_work_ = 0, unresolved_ = 0, energy_ = 0, limit_ = 0;
   Work work_;
   bool judges_ = true;
 };
