@@ -34,7 +34,7 @@ struct Exceeded {
 
 }  // namespace
 
-EnergyGuard::Work::Work(const solver::SplitOde::Force& given, const State& start) : given_(given) {
+EnergyGuard::Work::Work(const solver::SplitOde::Force& given, const State& start, bool jumps) : given_(given), jumps_(jumps) {
   if (!given_) return;
   last_.x = start.x;
   given_(0, start.x, start.v, last_.f);
@@ -46,7 +46,9 @@ void EnergyGuard::Work::go_on(double t, const State& y) {
   now_.x = y.x;
   given_(t, y.x, y.v, now_.f);
   fine_ += last_.work_to(now_);
-  pending_ = halfway_ ? 0 : std::abs(0.5 * (now_.f - last_.f).cwiseProduct(now_.x - last_.x).sum());
+  const Vectors difference = (now_.f - last_.f).cwiseProduct(now_.x - last_.x);
+  pending_ = halfway_ ? 0 : 0.5 * std::abs(difference.sum());
+  if (jumps_) doubt_ += 0.5 * difference.rowwise().sum().cwiseAbs().sum();
   if (halfway_) {
     coarse_ += pair_.work_to(now_);
     doubt_ = std::max(doubt_, std::abs(fine_ - coarse_));
@@ -65,7 +67,7 @@ EnergyGuard::EnergyGuard(const Scene& scene, const Cloth& cloth)
       start_(kinetic_and_elastic(0, start_of(cloth))),
       noise_(noise_of(scene.sheet, weight_, x_)),
       most_given_(std::max(0.0, start_)),
-      work_(cloth.given, start_of(cloth)) {}
+      work_(cloth.given, start_of(cloth), !scene.obstacles.empty() && scene.contact.response == ResponseKind::reaction) {}
 
 double EnergyGuard::kinetic_and_elastic(double t, const State& y) const {
   const double gravity = -weight_.cwiseProduct(y.x).sum();
@@ -95,6 +97,10 @@ bool EnergyGuard::exceeded(const solver::StepReport& step) {
   return !(energy_ <= limit_);
 }
 
+std::string EnergyGuard::message(double t) const {
+  return fmt::format("at t = {:.4g} s its energy was {:.3g} J where the scene can have {:.3g} J", t, energy_, limit_);
+}
+
 solver::RunResult integrate(solver::Integrator& integrator, EnergyGuard& guard, double t_end, double h,
                             const solver::Observer& observer) {
   double good = integrator.time();
@@ -108,8 +114,7 @@ solver::RunResult integrate(solver::Integrator& integrator, EnergyGuard& guard, 
     });
   } catch (const Exceeded& e) {
     run.outcome = solver::Outcome::unstable;
-    run.message = fmt::format("at t = {:.4g} s its energy was {:.3g} J where the scene can have {:.3g} J", e.t, guard.energy(),
-                              guard.limit());
+    run.message = guard.message(e.t);
     run.last_good_time = e.last_good_time;
     return run;
   }

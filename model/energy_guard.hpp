@@ -25,6 +25,9 @@ class EnergyGuard {
   /// Follows the run by an accepted step; whether the energy is above its limit now, or no number.
   bool exceeded(const solver::StepReport& step);
 
+  /// What a run that ends at t is told.
+  std::string message(double t) const;
+
   double energy() const { return energy_; }  ///< kinetic and elastic, after the last step [J]
   double limit() const { return limit_; }    ///< of that [J]
 
@@ -35,7 +38,8 @@ class EnergyGuard {
   /// The work of Cloth::given.
   class Work {
    public:
-    Work(const solver::SplitOde::Force& given, const solver::State& start);
+    /// `jumps`: whether forces are switched on and off within steps, whose work then stays uncertain.
+    Work(const solver::SplitOde::Force& given, const solver::State& start, bool jumps);
     void go_on(double t, const solver::State& y);
     double value() const { return fine_; }
     double doubt() const { return doubt_ + pending_; }
@@ -48,7 +52,7 @@ class EnergyGuard {
     };
     const solver::SplitOde::Force& given_;
     Point pair_, last_, now_;  ///< the begin of the pair of steps, and of the step
-    bool halfway_ = false;
+    bool jumps_, halfway_ = false;
     double fine_ = 0, coarse_ = 0;    ///< by single and by double steps [J]
     double doubt_ = 0, pending_ = 0;  ///< of all pairs, and of the step that has none yet [J]
   };
