@@ -93,7 +93,7 @@ bool EnergyGuard::exceeded(const solver::StepReport& step) {
   energy_ = kinetic_and_elastic(step.t, step.y);
   const double doubt = work_.doubt() + unresolved_, tolerance = tolerated * most_given_ + noise_;
   limit_ = given - damped_ + tolerance + doubt;
-  judges_ = judges_ && doubt <= tolerance;
+  judges_ = doubt <= tolerance;
   return !(energy_ <= limit_);
 }
 

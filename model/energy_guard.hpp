@@ -31,7 +31,7 @@ class EnergyGuard {
   double energy() const { return energy_; }  ///< kinetic and elastic, after the last step [J]
   double limit() const { return limit_; }    ///< of that [J]
 
-  /// False once the work was more uncertain than the tolerance is wide: then the limit may be wider than stated.
+  /// False if the work is more uncertain than the tolerance is wide: then the limit is wider than stated.
   bool judges() const { return judges_; }
 
  private:
