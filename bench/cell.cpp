@@ -147,7 +147,7 @@ results::RunRecord record(const Cell& cell, const solver::Observer& look, std::o
     contact.emplace(cell.scene, *cloth);
     contact->see(0, cloth->start, solver::kinetic_energy(ode, cloth->start.v), ode.potential_energy(0, cloth->start.x));
     if (frames_every) frames.emplace(cell.scene, *cloth, *frames_every);
-    const model::EnergyGuard guard(cell.scene, *cloth);
+    model::EnergyGuard guard(cell.scene, *cloth);
     const auto see = [&](const solver::StepReport& step) {
       const double kinetic = solver::kinetic_energy(ode, step.y.v), potential = ode.potential_energy(step.t, step.y.x);
       run.steps.push_back({step.t, step.h, step.updates, step.cg_iterations, kinetic, potential, step.contacts.constrained});
@@ -155,7 +155,7 @@ results::RunRecord record(const Cell& cell, const solver::Observer& look, std::o
       if (frames) frames->see(step.t, step.y);
       if (look) look(step);
     };
-    const solver::RunResult result = integrate(*integrator, ode, guard, cell.scene.end, cell.step, see);
+    const solver::RunResult result = integrate(*integrator, guard, cell.scene.end, cell.step, see);
     run.outcome = to_string(result.outcome);
     run.message = result.message;
     run.last_good_time = result.last_good_time;

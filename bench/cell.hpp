@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,6 +19,7 @@ struct Cell {
   const solver::Method* method;
   double step;  ///< [s]
   solver::Options options;
+  std::size_t most_steps = std::numeric_limits<std::size_t>::max();  ///< after which a timed repetition ends
 
   /// The method with its stage and linear solvers where they are not the usual ones: "bdf2", "bdf2/fixed-point/ic0".
   std::string method_name() const;

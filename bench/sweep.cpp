@@ -58,17 +58,29 @@ void require_trajectories(const std::vector<Group>& groups, const SweepOptions& 
   if (options.start == results::Start::fresh) results::require_creatable(results::xdmf_path(options.out));
 }
 
-/// Times those runs of a group that have kept their limits.
+/// A run that the energy guard ended went one step further than it has recorded.
+std::size_t steps_of(const results::RunRecord& run) {
+  return run.steps.size() + (run.outcome == to_string(solver::Outcome::unstable) ? 1 : 0);
+}
+
+/// Times those runs of a group that have kept their limits, as far as they went.
 void time_all(const Group& group, int repetitions, std::vector<results::RunRecord>& runs, Units& units) {
   Group timed;
   std::vector<results::RunRecord*> places;
   for (std::size_t k = 0; k < group.size(); ++k) {
     if (runs[k].outcome == out_of_time || runs[k].outcome == out_of_memory) continue;
     timed.push_back(group[k]);
+    timed.back().most_steps = steps_of(runs[k]);
     places.push_back(&runs[k]);
   }
-  auto times = time_group(timed, repetitions, [&] { units.advance(); });
-  for (std::size_t k = 0; k < timed.size(); ++k) places[k]->times_ms = std::move(times[k]);
+  std::vector<std::size_t> steps;
+  auto times = time_group(
+      timed, repetitions, [&] { units.advance(); }, &steps);
+  for (std::size_t k = 0; k < timed.size(); ++k) {
+    places[k]->times_ms = std::move(times[k]);
+    places[k]->work.push_back(
+        {"timed_steps", "accepted steps of a repetition that was timed", static_cast<std::int64_t>(steps[k])});
+  }
 }
 
 /// Runs a group and records it as a whole. Each cell is a unit of work, their repetitions are not: they must be interleaved.

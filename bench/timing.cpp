@@ -26,11 +26,21 @@ class Collector : public benchmark::BenchmarkReporter {
   std::vector<std::vector<double>>& times_;
 };
 
-Prepare prepared(const Cell& cell) {
-  return [&cell] {
-    return [&cell, cloth = model::compile(cell.scene)] {
+/// Ends a repetition from within its observer.
+struct Ended {};
+
+Prepare prepared(const Cell& cell, std::size_t& steps) {
+  return [&cell, &steps] {
+    return [&cell, &steps, cloth = model::compile(cell.scene)] {
       solver::Integrator integrator(cloth.ode, *cell.method, cell.options, cloth.start);
-      integrate(integrator, cell.scene.end, cell.step, [](const solver::StepReport&) { check_interruption(); });
+      steps = 0;
+      try {
+        integrate(integrator, cell.scene.end, cell.step, [&](const solver::StepReport&) {
+          check_interruption();
+          if (++steps >= cell.most_steps) throw Ended();
+        });
+      } catch (const Ended&) {
+      }
     };
   };
 }
@@ -70,10 +80,14 @@ std::vector<std::vector<double>> time_runs(const std::vector<Prepare>& runs, int
   return times;
 }
 
-std::vector<std::vector<double>> time_group(const Group& group, int repetitions, const std::function<void()>& done) {
+std::vector<std::vector<double>> time_group(const Group& group, int repetitions, const std::function<void()>& done,
+                                            std::vector<std::size_t>* steps) {
   std::vector<Prepare> runs;
-  for (const Cell& cell : group) runs.push_back(prepared(cell));
-  return time_runs(runs, repetitions, done);
+  std::vector<std::size_t> taken(group.size());
+  for (std::size_t k = 0; k < group.size(); ++k) runs.push_back(prepared(group[k], taken[k]));
+  auto times = time_runs(runs, repetitions, done);
+  if (steps != nullptr) *steps = std::move(taken);
+  return times;
 }
 
 }  // namespace drape::bench

@@ -16,7 +16,9 @@ std::vector<std::vector<double>> time_runs(const std::vector<Prepare>& runs, int
                                            const std::function<void()>& done);
 
 /// Wall times [ms] of the solver for every cell of a group: as time_runs() has them. Compiling the scene is outside,
-/// building the matrix and all steps are inside.
-std::vector<std::vector<double>> time_group(const Group& group, int repetitions, const std::function<void()>& done);
+/// building the matrix and all steps are inside, up to `most_steps` of the cell; energies are not evaluated. `steps`: how many
+/// steps the last repetition of each cell took.
+std::vector<std::vector<double>> time_group(const Group& group, int repetitions, const std::function<void()>& done,
+                                            std::vector<std::size_t>* steps = nullptr);
 
 }  // namespace drape::bench

@@ -69,11 +69,11 @@ std::string Attempt::reason() const {
 Attempt attempt(const Specimen& specimen, const Conditions& conditions) {
   Attempt trial;
   const solver::SplitOde ode = metered(specimen.cloth.ode, conditions.budget, trial);
-  const model::EnergyGuard guard(specimen.scene, specimen.cloth);
+  model::EnergyGuard guard(specimen.scene, specimen.cloth);
   solver::Integrator integrator(ode, *conditions.method, conditions.options, specimen.cloth.start);
   const std::clock_t begin = std::clock();
   try {
-    trial.run = model::integrate(integrator, ode, guard, conditions.until, conditions.step);
+    trial.run = model::integrate(integrator, guard, conditions.until, conditions.step);
   } catch (const Exhausted&) {
     trial.finished = false;
     trial.run.last_good_time = integrator.time();

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "model/exact_jacobian.hpp"
 #include "model/grid_sweep.hpp"
 #include "model/newton_matrix.hpp"
@@ -17,24 +19,41 @@ struct CountedTerm {
   std::int64_t* evaluations;
 };
 
+/// A part of all forces.
+struct Part {
+  GridLaw Term::*law;
+  std::function<void(const Configuration&, Vectors& f)> Term::*force;
+};
+constexpr Part whole_part{&Term::law, &Term::force}, explicit_part{&Term::explicit_law, &Term::explicit_force},
+    active_part{&Term::active_law, &Term::active_force};
+
 /// The forces of one compiled scene with the memory they need.
 class Forces {
  public:
   Forces(const Sheet& sheet, solver::Work& work, Plan& plan);
 
+  /// Sets f and counts.
   void force(double t, const Vectors& x, const Vectors& v, Vectors& f, bool whole);
+
+  /// For the energy guard, whose evaluations are no work of a method: sets f, uncounted.
+  void whole(double t, const Vectors& x, const Vectors& v, Vectors& f) { add_up(whole_part, {t, x, v, normals_of(x)}, f); }
+  void active(double t, const Vectors& x, const Vectors& v, Vectors& f) { add_up(active_part, {t, x, v, normals_of(x)}, f); }
+  bool has_active() const;
+
   double energy(const Vectors& x) const;
   void jacobian(double t, const Vectors& x, const Vectors& v, ExactJacobian& matrix, SparseMatrix& df_dx, SparseMatrix& df_dv);
   void newton_matrix(double t, const Vectors& x, const Vectors& v, double gamma, NewtonMatrix& matrix, SparseMatrix& J);
   SparseMatrix scalar_matrix(std::function<void(std::vector<Eigen::Triplet<double>>&)> Term::*part) const;
 
  private:
+  const Vectors& normals_of(const Vectors& x);
   Configuration configuration(double t, const Vectors& x, const Vectors& v);
+  void add_up(const Part& part, const Configuration& c, Vectors& f);
   void visit(const Configuration& c, const JacobianEntries& entries) const;
 
   int particles_;
   std::vector<CountedTerm> terms_;
-  std::unique_ptr<GridSweep> whole_law_, explicit_law_;  ///< null if the law is zero
+  std::unique_ptr<GridSweep> whole_law_, explicit_law_, active_law_;  ///< null if the law is zero
   Vectors normals_;
   Normals vertex_normals_;
   bool needs_normals_ = false;
@@ -49,7 +68,7 @@ Forces::Forces(const Sheet& sheet, solver::Work& work, Plan& plan)
       jacobians_(work.counter("jacobians", "evaluations of the exact Jacobian")),
       newton_matrices_(work.counter("newton_matrices", "assemblies of the Newton matrix from the exact Jacobian")),
       normal_evaluations_(work.counter("normals", "evaluations of all vertex normals")) {
-  GridLaw whole, rest;
+  GridLaw whole, rest, active;
   for (const TermKind& kind : term_kinds()) {
     const std::string name(kind.name);
     std::int64_t& evaluations = work.counter("force/" + name, "evaluations of: " + std::string(kind.description));
@@ -59,35 +78,47 @@ Forces::Forces(const Sheet& sheet, solver::Work& work, Plan& plan)
     needs_normals_ = needs_normals_ || term->needs_normals;
     whole += term->law;
     rest += term->explicit_law;
+    active += term->active_law;
     terms_.push_back({std::move(*term), &evaluations});
   }
   if (whole.acts()) whole_law_ = std::make_unique<GridSweep>(sheet.grid, whole);
   if (rest.acts()) explicit_law_ = std::make_unique<GridSweep>(sheet.grid, rest);
+  if (active.acts()) active_law_ = std::make_unique<GridSweep>(sheet.grid, active);
   if (needs_normals_) normals_.resize(particles_, 3);
   plan.normals = needs_normals_;
 }
 
+const Vectors& Forces::normals_of(const Vectors& x) {
+  if (needs_normals_) vertex_normals_.evaluate(x, normals_);
+  return normals_;
+}
+
 Configuration Forces::configuration(double t, const Vectors& x, const Vectors& v) {
-  if (needs_normals_) {
-    vertex_normals_.evaluate(x, normals_);
-    ++normal_evaluations_;
-  }
-  return {t, x, v, normals_};
+  normal_evaluations_ += needs_normals_;
+  return {t, x, v, normals_of(x)};
+}
+
+void Forces::add_up(const Part& part, const Configuration& c, Vectors& f) {
+  f.resize(particles_, 3);
+  const auto& sweep = part.law == whole_part.law ? whole_law_ : part.law == explicit_part.law ? explicit_law_ : active_law_;
+  if (sweep)
+    (*sweep)(c.x, c.v, f);
+  else
+    f.setZero();
+  for (const auto& [term, evaluations] : terms_)
+    if (const auto& add = term.*part.force) add(c, f);
 }
 
 void Forces::force(double t, const Vectors& x, const Vectors& v, Vectors& f, bool whole) {
   ++(whole ? forces_ : explicit_forces_);
-  const Configuration c = configuration(t, x, v);
-  f.resize(particles_, 3);
-  if (const auto& sweep = whole ? whole_law_ : explicit_law_)
-    (*sweep)(x, v, f);
-  else
-    f.setZero();
-  for (const auto& [term, evaluations] : terms_) {
-    const auto& part = whole ? term.force : term.explicit_force;
-    if (part) part(c, f);
-    if (part || (whole ? term.law : term.explicit_law).acts()) ++*evaluations;
-  }
+  const Part& part = whole ? whole_part : explicit_part;
+  add_up(part, configuration(t, x, v), f);
+  for (const auto& [term, evaluations] : terms_)
+    if (term.*part.force || (term.*part.law).acts()) ++*evaluations;
+}
+
+bool Forces::has_active() const {
+  return active_law_ || std::ranges::any_of(terms_, [](const CountedTerm& counted) { return bool(counted.term.active_force); });
 }
 
 double Forces::energy(const Vectors& x) const {
@@ -137,13 +168,13 @@ int count_fixed(const std::vector<solver::Pin>& pins) {
   return count;
 }
 
-/// Lets the obstacles act, by constraints in the solver or by forces.
-void respond(const ContactRule& rule, const std::shared_ptr<Contacts>& contacts, solver::SplitOde& ode) {
+/// Lets the obstacles act, by constraints in the solver, or by forces, which it returns.
+std::shared_ptr<Reaction> respond(const ContactRule& rule, const std::shared_ptr<Contacts>& contacts, solver::SplitOde& ode) {
   if (rule.response == ResponseKind::constraint) {
     ode.contacts = [contacts](double t, double h, const solver::State& y, std::vector<solver::Contact>& found) {
       contacts->find(t, h, y, found);
     };
-    return;
+    return {};
   }
   const auto reaction = std::make_shared<Reaction>(contacts, rule, ode.mass);
   const auto whole = std::make_shared<Vectors>(ode.particles(), 3);
@@ -157,6 +188,42 @@ void respond(const ContactRule& rule, const std::shared_ptr<Contacts>& contacts,
     if (!reaction->acts(t, x)) return;
     force(t, x, v, *whole);
     reaction->add(v, *whole, f);
+  };
+  return reaction;
+}
+
+/// Where pins move: there the whole force.
+void keep_moved(const std::vector<solver::Pin>& pins, const Vectors& whole, Vectors& f) {
+  for (const solver::Pin& pin : pins)
+    for (int c = 0; c < 3; ++c)
+      if (pin.fixed[c] && pin.velocity[c] != 0) f(pin.particle, c) -= whole(pin.particle, c);
+}
+
+bool moves(const solver::Pin& pin) {
+  return (pin.fixed[0] && pin.velocity[0] != 0) || (pin.fixed[1] && pin.velocity[1] != 0) ||
+         (pin.fixed[2] && pin.velocity[2] != 0);
+}
+
+/// Cloth::given.
+solver::SplitOde::Force given(const std::shared_ptr<Forces>& forces, const std::shared_ptr<Reaction>& reaction,
+                              const solver::SplitOde& ode) {
+  const bool moved = std::ranges::any_of(ode.pins, moves), active = forces->has_active();
+  std::int64_t& evaluations = ode.work->counter("guard_forces", "evaluations of forces by the energy guard");
+  if (!moved && !active && !reaction) return {};
+  return [=, &evaluations, work = ode.work, pins = ode.pins, whole = Vectors(), total = Vectors()](
+             double t, const Vectors& x, const Vectors& v, Vectors& f) mutable {
+    ++evaluations;
+    if (active)
+      forces->active(t, x, v, f);
+    else
+      f.setZero(x.rows(), 3);
+    const bool reacts = reaction && reaction->acts(t, x);
+    if (!moved && !reacts) return;
+    forces->whole(t, x, v, whole);
+    total = whole;
+    if (reacts) reaction->add(v, whole, total);
+    f += total - whole;
+    if (moved) keep_moved(pins, total, f);
   };
 }
 
@@ -182,10 +249,12 @@ Cloth compile(const Scene& scene) {
                           double t, const Vectors& x, const Vectors& v, double gamma, bool is_lean, SparseMatrix& J) mutable {
     forces->newton_matrix(t, x, v, gamma, is_lean ? lean : convex, J);
   };
+  std::shared_ptr<Reaction> reaction;
   if (!scene.obstacles.empty()) {
     cloth.contacts = std::make_shared<Contacts>(scene, *ode.work);
-    respond(scene.contact, cloth.contacts, ode);
+    reaction = respond(scene.contact, cloth.contacts, ode);
   }
+  cloth.given = given(forces, reaction, ode);
   cloth.start = start(scene);
   solver::prescribe(ode.pins, cloth.start.v);
   cloth.plan.obstacles = static_cast<int>(scene.obstacles.size());

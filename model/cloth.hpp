@@ -25,6 +25,11 @@ struct Cloth {
   solver::State start;
   Plan plan;
   std::shared_ptr<Contacts> contacts;  ///< null without obstacles
+
+  /// The force [N] whose work along the motion is what the sheet is given beside its energies and by damping: of forces that
+  /// are no gradient and not only take, of reaction constraints, and minus the whole force where pins move. Absent if there is
+  /// nothing of it.
+  solver::SplitOde::Force given;
 };
 
 /// Compiles a scene: only forces with nonzero coefficients are built, and normals only if one of these asks for them.

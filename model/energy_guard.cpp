@@ -4,97 +4,123 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace drape::model {
 namespace {
 
-constexpr double noise = 1e-9;  ///< strain that round-off and unfinished solves may leave in a sheet at rest
+using solver::State;
+using solver::Vectors;
 
-/// Largest velocity [m/s] of what pins and obstacles prescribe.
-double prescribed_velocity(const Scene& scene) {
-  double fastest = 0;
-  for (const PinRule& pin : scene.pins) fastest = std::max(fastest, pin.velocity.norm());
-  for (const ObstacleRule& obstacle : scene.obstacles)
-    for (std::size_t k = 1; k < obstacle.motion.size(); ++k) {
-      const KeyFrame &from = obstacle.motion[k - 1], &to = obstacle.motion[k];
-      const double angle = (to.rotation - from.rotation).norm() * std::numbers::pi / 180;
-      const double way = (to.position - from.position).norm() + 2 * size(scene) * angle;
-      fastest = std::max(fastest, way / (to.t - from.t));
-    }
-  return fastest;
+/// Strain, and part of a sum, that round-off and unfinished solves may leave in a sheet at rest.
+constexpr double strain_noise = 1e-9, round_off = 1e-12;
+
+State start_of(const Cloth& cloth) {
+  State start = cloth.start;
+  solver::prescribe(cloth.ode.pins, start.v);
+  return start;
 }
 
-/// The largest force per area that wind can be [N/m²].
-double largest_load(const Wind& wind) {
-  if (!wind.blows()) return 0;
-  const double swing = wind.frequency == 0 ? 0 : 1;
-  return (std::abs(wind.constant) + swing) * wind.load.norm() * std::max(std::abs(wind.drag), std::abs(wind.lift));
+Vectors weight_of(const Sheet& sheet) { return sheet.material.density * sheet.grid.cell_areas() * sheet.gravity.transpose(); }
+
+double noise_of(const Sheet& sheet, const Vectors& weight, const Vectors& x) {
+  const double k = std::max(sheet.material.tension.weft, sheet.material.tension.warp);
+  return k * strain_noise * strain_noise * sheet.grid.cell_areas().sum() + round_off * weight.cwiseProduct(x).cwiseAbs().sum();
 }
 
 /// Ends a run from within its observer.
 struct Exceeded {
-  double t, last_good_time, energy;
+  double t, last_good_time;
 };
-
-std::string describe(const Exceeded& e, const EnergyGuard& guard) {
-  return fmt::format("at t = {:.4g} s its energy was {:.3g} J where the scene can have {:.3g} J", e.t, e.energy,
-                     guard.limit(e.t));
-}
 
 }  // namespace
 
-EnergyGuard::EnergyGuard(const Scene& scene, const Cloth& cloth) {
-  const solver::SplitOde& ode = cloth.ode;
-  const Sheet& sheet = scene.sheet;
-  const Eigen::VectorXd areas = sheet.grid.cell_areas();
-  weight_ = sheet.material.density * areas * sheet.gravity.transpose();
-
-  solver::Vectors v = cloth.start.v;
-  solver::prescribe(ode.pins, v);
-  const double start = energy(solver::kinetic_energy(ode, v), ode.potential_energy(0, cloth.start.x), cloth.start.x);
-
-  solver::Vectors force = weight_;
-  solver::filter(ode.pins, force);
-  const Eigen::VectorXd root_mass = ode.mass.cwiseSqrt();
-  const Eigen::VectorXd forces = force.rowwise().norm() + largest_load(sheet.wind) * areas;
-  root_growth_ = forces.cwiseQuotient(root_mass).norm();
-
-  const double w = prescribed_velocity(scene), l = std::min(sheet.grid.spacing_u(), sheet.grid.spacing_v());
-  const double k = std::max(sheet.material.tension.weft, sheet.material.tension.warp);
-  root_start_ = std::sqrt(2 * std::max(0.0, start) + k * noise * noise * areas.sum());
-  root_moved_ = 2 * w * root_mass.norm();
-  stretch_ = 0.5 * k * w * w / (l * l) * areas.sum();
+EnergyGuard::Work::Work(const solver::SplitOde::Force& given, const State& start, bool jumps) : given_(given), jumps_(jumps) {
+  if (!given_) return;
+  last_.x = start.x;
+  given_(0, start.x, start.v, last_.f);
+  pair_ = last_;
 }
 
-double EnergyGuard::limit(double t) const {
-  const double root = root_start_ + root_growth_ * t + root_moved_;
-  return 0.5 * root * root + stretch_ * t * t;
+void EnergyGuard::Work::go_on(double t, const State& y) {
+  if (!given_) return;
+  now_.x = y.x;
+  given_(t, y.x, y.v, now_.f);
+  fine_ += last_.work_to(now_);
+  const Vectors difference = (now_.f - last_.f).cwiseProduct(now_.x - last_.x);
+  pending_ = halfway_ ? 0 : 0.5 * std::abs(difference.sum());
+  if (jumps_) doubt_ += 0.5 * difference.rowwise().sum().cwiseAbs().sum();
+  if (halfway_) {
+    coarse_ += pair_.work_to(now_);
+    doubt_ = std::max(doubt_, std::abs(fine_ - coarse_));
+    pair_ = now_;
+  }
+  halfway_ = !halfway_;
+  std::swap(last_, now_);
 }
 
-double EnergyGuard::energy(double kinetic, double potential, const solver::Vectors& x) const {
-  return kinetic + potential + weight_.cwiseProduct(x).sum();
+EnergyGuard::EnergyGuard(const Scene& scene, const Cloth& cloth)
+    : cloth_(cloth),
+      wind_(scene.sheet.wind),
+      areas_(scene.sheet.grid.cell_areas()),
+      weight_(weight_of(scene.sheet)),
+      x_(cloth.start.x),
+      start_(kinetic_and_elastic(0, start_of(cloth))),
+      noise_(noise_of(scene.sheet, weight_, x_)),
+      most_given_(std::max(0.0, start_)),
+      work_(cloth.given, start_of(cloth), !scene.obstacles.empty() && scene.contact.response == ResponseKind::reaction) {}
+
+double EnergyGuard::kinetic_and_elastic(double t, const State& y) const {
+  const double gravity = -weight_.cwiseProduct(y.x).sum();
+  return solver::kinetic_energy(cloth_.ode, y.v) + cloth_.ode.potential_energy(t, y.x) - gravity;
 }
 
-solver::RunResult integrate(solver::Integrator& integrator, const solver::SplitOde& ode, const EnergyGuard& guard, double t_end,
-                            double h, const solver::Observer& observer) {
+/// What a wind may have done in a step that is longer than its swing [J].
+double EnergyGuard::unresolved(const solver::StepReport& step, const Vectors& moved) const {
+  if (!wind_.blows() || !(wind_.frequency * step.h > 1)) return 0;
+  const double load = (std::abs(wind_.constant) + 1) * wind_.load.norm() * std::max(std::abs(wind_.drag), std::abs(wind_.lift));
+  return load * areas_.dot(moved.rowwise().norm());
+}
+
+bool EnergyGuard::exceeded(const solver::StepReport& step) {
+  const Vectors moved = step.y.x - x_;
+  if (cloth_.ode.damping.nonZeros() > 0) damped_ -= moved.cwiseProduct(cloth_.ode.damping * moved).sum() / step.h;
+  contact_work_ += step.contacts.work;
+  work_.go_on(step.t, step.y);
+  unresolved_ += unresolved(step, moved);
+  x_ = step.y.x;
+  const double given = start_ + weight_.cwiseProduct(x_ - cloth_.start.x).sum() + work_.value() + contact_work_;
+  most_given_ = std::max(most_given_, given);
+  energy_ = kinetic_and_elastic(step.t, step.y);
+  const double doubt = work_.doubt() + unresolved_, tolerance = tolerated * most_given_ + noise_;
+  limit_ = given - damped_ + tolerance + doubt;
+  judges_ = doubt <= tolerance;
+  return !(energy_ <= limit_);
+}
+
+std::string EnergyGuard::message(double t) const {
+  return fmt::format("at t = {:.4g} s its energy was {:.3g} J where the scene can have {:.3g} J", t, energy_, limit_);
+}
+
+solver::RunResult integrate(solver::Integrator& integrator, EnergyGuard& guard, double t_end, double h,
+                            const solver::Observer& observer) {
   double good = integrator.time();
   solver::RunResult run;
   try {
-    return solver::integrate(integrator, t_end, h, [&](const solver::StepReport& step) {
-      const double kinetic = solver::kinetic_energy(ode, step.y.v), potential = ode.potential_energy(step.t, step.y.x);
-      const double energy = guard.energy(kinetic, potential, step.y.x);
-      if (guard.exceeded(step.t, energy)) throw Exceeded{step.t, good, energy};
+    run = solver::integrate(integrator, t_end, h, [&](const solver::StepReport& step) {
+      if (guard.exceeded(step)) throw Exceeded{step.t, good};
       good = step.t;
       ++run.steps;
       if (observer) observer(step);
     });
   } catch (const Exceeded& e) {
     run.outcome = solver::Outcome::unstable;
-    run.message = describe(e, guard);
+    run.message = guard.message(e.t);
     run.last_good_time = e.last_good_time;
     return run;
   }
+  if (run.outcome == solver::Outcome::success && !guard.judges())
+    run.message = "energy cannot be judged: work is too uncertain with such steps";
+  return run;
 }
 
 }  // namespace drape::model

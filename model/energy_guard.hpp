@@ -5,38 +5,76 @@
 
 namespace drape::model {
 
-/// Tells runs that are unstable from those that are wrong but bounded: by the sum of kinetic and elastic energy, which the
-/// scene itself limits.
+/// Tells runs that are unstable from those that are wrong but bounded, by a balance of energy along the run:
+///
+///     E(t) − E(0) + ∫ damping ≤ ∫ power given + what is tolerated,     E = kinetic + elastic + gravity's.
+///
+/// What is given: work of forces without an energy (wind, projected bending, the printed forms), of moving pins and of
+/// obstacles. From step to step that is ½ (f0 + f1)·(x1 − x0), exact for linear forces however long the step; the difference
+/// from the same sum with double steps is what it is uncertain by. Linear damping takes at least −(x1 − x0)ᵀ D (x1 − x0)/h, all
+/// other damping at least 0. A scene in which only gravity gives costs no evaluation of a force.
 class EnergyGuard {
  public:
-  /// So many times the limit is unstable: forces that are no gradient (wind apart: projected bending, the printed forms) and
-  /// obstacles that push particles out of themselves may honestly add a little.
-  static constexpr double tolerated = 10;
+  /// The part of all that a sheet was given which may come from nowhere: what was given is the energy of the start, the most
+  /// that gravity and the work above have added to it, and the uncertainty of that work.
+  static constexpr double tolerated = 0.5;
 
-  /// Keeps what it needs of the scene and of the cloth that it was compiled to.
+  /// Keeps a reference to the cloth, whose start is the begin of the run.
   EnergyGuard(const Scene& scene, const Cloth& cloth);
 
-  /// The most kinetic and elastic energy [J] that the scene can have at a time: √(2E) grows by no more than the outer forces
-  /// allow, d√(2E)/dt ≤ |F|/√M, since elastic energy is never negative and damping only takes. Scenes that move particles may
-  /// in addition have what their pins stretch springs by, and twice the velocity of obstacles and pins in every particle.
-  double limit(double t) const;
+  /// Follows the run by an accepted step; whether the energy is above its limit now, or no number.
+  bool exceeded(const solver::StepReport& step);
 
-  /// Kinetic and elastic energy [J] of a state, given the kinetic energy and the potential one, gravity's included.
-  double energy(double kinetic, double potential, const solver::Vectors& x) const;
+  /// What a run that ends at t is told.
+  std::string message(double t) const;
 
-  bool exceeded(double t, double energy) const { return !(energy <= tolerated * limit(t)); }
+  double energy() const { return energy_; }  ///< kinetic and elastic, after the last step [J]
+  double limit() const { return limit_; }    ///< of that [J]
+
+  /// False if the work is more uncertain than the tolerance is wide: then the limit is wider than stated.
+  bool judges() const { return judges_; }
 
  private:
+  /// The work of Cloth::given.
+  class Work {
+   public:
+    /// `jumps`: whether forces are switched on and off within steps, whose work then stays uncertain.
+    Work(const solver::SplitOde::Force& given, const solver::State& start, bool jumps);
+    void go_on(double t, const solver::State& y);
+    double value() const { return fine_; }
+    double doubt() const { return doubt_ + pending_; }
+
+   private:
+    /// A state of the run with the force on it.
+    struct Point {
+      solver::Vectors x, f;
+      double work_to(const Point& next) const { return 0.5 * (f + next.f).cwiseProduct(next.x - x).sum(); }
+    };
+    const solver::SplitOde::Force& given_;
+    Point pair_, last_, now_;  ///< the begin of the pair of steps, and of the step
+    bool jumps_, halfway_ = false;
+    double fine_ = 0, coarse_ = 0;    ///< by single and by double steps [J]
+    double doubt_ = 0, pending_ = 0;  ///< of all pairs, and of the step that has none yet [J]
+  };
+
+  double unresolved(const solver::StepReport& step, const solver::Vectors& moved) const;
+  double kinetic_and_elastic(double t, const solver::State& y) const;
+
+  const Cloth& cloth_;
+  Wind wind_;
+  Eigen::VectorXd areas_;   ///< [m²]
   solver::Vectors weight_;  ///< [N]
-  double root_start_ = 0;   ///< √(2E) at t = 0
-  double root_growth_ = 0;  ///< |F|/√M of gravity and wind
-  double root_moved_ = 0;   ///< √M times the velocity of what is moved
-  double stretch_ = 0;      ///< ½ k (w/l)² times the area: grows with t² [J/s²]
+  solver::Vectors x_;       ///< after the last step
+  double start_, noise_;    ///< [J]
+  double most_given_;       ///< [J]
+  double damped_ = 0, contact_work_ = 0, unresolved_ = 0, energy_ = 0, limit_ = 0;
+  Work work_;
+  bool judges_ = true;
 };
 
 /// solver::integrate, but a run whose energy exceeds the guard's limit, or is no number, ends there as `unstable`; its last
-/// good time is that of the step before.
-solver::RunResult integrate(solver::Integrator& integrator, const solver::SplitOde& ode, const EnergyGuard& guard, double t_end,
-                            double h, const solver::Observer& observer = {});
+/// good time is that of the step before. Where the guard cannot judge, the message of a run that succeeds says so.
+solver::RunResult integrate(solver::Integrator& integrator, EnergyGuard& guard, double t_end, double h,
+                            const solver::Observer& observer = {});
 
 }  // namespace drape::model

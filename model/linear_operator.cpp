@@ -82,7 +82,7 @@ Term projected(const Grid& grid, LinearOperators operators) {
     const Vectors& q = (*evaluate)(c);
     for (Eigen::Index i = 0; i < q.rows(); ++i) f.row(i) += c.normals.row(i).dot(q.row(i)) * c.normals.row(i);
   };
-  term.explicit_force = term.force;
+  term.explicit_force = term.active_force = term.force;
   const LinearOperators convex{symmetric_part(evaluate->operators.elastic), symmetric_part(evaluate->operators.viscous)};
   term.jacobian = [evaluate, convex, normals = Normals(grid)](const Configuration& c, const JacobianEntries& entries) {
     if (!entries.exact()) {

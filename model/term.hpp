@@ -67,9 +67,11 @@ struct Sheet {
 struct Term {
   GridLaw law;           ///< the whole force
   GridLaw explicit_law;  ///< without K x + D v
+  GridLaw active_law;    ///< what neither has an energy nor only takes some
   std::function<void(const Configuration&, Vectors& f)> force;
-  std::function<void(const Configuration&, Vectors& f)> explicit_force;        ///< without K x + D v; absent: nothing is left
-  std::function<double(const Vectors& x)> energy;                              ///< [J]; absent if there is none
+  std::function<void(const Configuration&, Vectors& f)> explicit_force;  ///< without K x + D v; absent: nothing is left
+  std::function<void(const Configuration&, Vectors& f)> active_force;    ///< no energy, not only taking some; absent: none
+  std::function<double(const Vectors& x)> energy;                        ///< [J]; absent if there is none
   std::function<void(const Configuration&, const JacobianEntries&)> jacobian;  ///< exact; absent: zero
   std::function<void(std::vector<Eigen::Triplet<double>>& K)> stiffness;       ///< its part of K; absent: none
   std::function<void(std::vector<Eigen::Triplet<double>>& D)> damping;         ///< its part of D; absent: none

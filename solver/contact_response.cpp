@@ -285,6 +285,7 @@ bool ContactResponse::finish(State& y1, State& y0) {
     y1.v.row(p.particle) += jump;
     const Eigen::Vector3d v0 = y0.v.row(p.particle), stopped = constrained * (p.obstacle - v0);
     p.impulse = ode_.mass[p.particle] * stopped + h_ * (p.friction - constrained * p.force);
+    p.work = 0.5 * p.impulse.dot(v0 + v1 + jump);
     const bool impulsive = p.fresh && p.bound > 0;
     if (p.fresh) {  // what the impact bore, the next step will not
       p.bound = friction_bound(p, -(p.inverse * p.force));
@@ -303,6 +304,12 @@ bool ContactResponse::finish(State& y1, State& y0) {
 
 int ContactResponse::constrained() const {
   return static_cast<int>(std::ranges::count_if(touched_, [](const Touched& p) { return p.status != Status::free; }));
+}
+
+double ContactResponse::work() const {
+  double sum = 0;
+  for (const Touched& p : touched_) sum += p.work;
+  return sum;
 }
 
 Eigen::Vector3d ContactResponse::impulse() const {

@@ -53,6 +53,7 @@ class ContactResponse {
 
   int constrained() const;          ///< particles that were in the last step
   Eigen::Vector3d impulse() const;  ///< that the obstacles gave to the particles in the last step [N s]
+  double work() const;              ///< of these impulses [J]
 
  private:
   enum class Status { free, slides, sticks };
@@ -81,6 +82,7 @@ class ContactResponse {
     double bound = 0;                                    ///< Σ η λ, its limit [N]
     Eigen::Vector3d force = Eigen::Vector3d::Zero();     ///< f of the stage [N]
     Eigen::Vector3d impulse = Eigen::Vector3d::Zero();   ///< of the obstacles in the step [N s]
+    double work = 0;                                     ///< of this impulse [J]
 
     Eigen::Matrix3d constrained() const { return allowed - free; }
     Eigen::Matrix3d tangent() const { return allowed - normals * inverse; }

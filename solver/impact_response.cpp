@@ -17,6 +17,7 @@ ImpactResponse::ImpactResponse(const SplitOde& ode) : ode_(ode), allowed_(allowe
 void ImpactResponse::begin(double t0, double h, const State& y0) {
   h_ = h;
   impulse_.setZero();
+  work_ = 0;
   found_.clear();
   contacts_.clear();
   ode_.contacts(t0, h, y0, found_);
@@ -29,11 +30,16 @@ void ImpactResponse::begin(double t0, double h, const State& y0) {
   }
 }
 
+/// Adds up what a change of velocity is to a particle whose velocity is v in the middle of it.
+void ImpactResponse::give(int particle, const Eigen::Vector3d& change, const Eigen::Vector3d& v) {
+  impulse_ += ode_.mass[particle] * change;
+  work_ += ode_.mass[particle] * change.dot(v);
+}
+
 /// Several contacts of a particle disturb each other: they take turns, and take back what is no longer needed, until there is
-/// nothing left to do. `missing`: how much of its row a contact misses; `time`: what makes a velocity of a row, 0 if that is
-/// not to be counted.
-template <class Missing>
-void ImpactResponse::take_turns(double Side::*given, double time, Vectors& rows, const Missing& missing) {
+/// nothing left to do. `missing`: how much of its row a contact misses; `note`: is told of every change of a row.
+template <class Missing, class Note>
+void ImpactResponse::take_turns(double Side::*given, Vectors& rows, const Missing& missing, const Note& note) {
   constexpr int most_turns = 50;
   for (Side& side : contacts_) side.*given = 0;
   bool again = true;
@@ -43,7 +49,7 @@ void ImpactResponse::take_turns(double Side::*given, double time, Vectors& rows,
       const double change = std::max(missing(side), -(side.*given));
       side.*given += change;
       rows.row(side.contact.particle) += change * side.escape;
-      impulse_ += ode_.mass[side.contact.particle] * time * change * side.escape;
+      note(side.contact.particle, change * side.escape);
       again = again || std::abs(change) > border_noise;
     }
   }
@@ -54,7 +60,7 @@ void ImpactResponse::push_out(double s, Vectors& x) {
     const double border = side.start + s / h_ * (side.contact.least - side.start);
     return border - x.row(side.contact.particle).dot(side.contact.normal);
   };
-  take_turns(&Side::pushed, 0, x, depth);
+  take_turns(&Side::pushed, x, depth, [](int, const Eigen::Vector3d&) {});
   for (Side& side : contacts_) side.touched = depth(side) > -10 * border_noise;
 }
 
@@ -68,15 +74,16 @@ void ImpactResponse::stop(double tau, bool begins, Vectors& v, Vectors& a) {
     const bool leaves = !side.touched || approach(side) < -border_noise;
     return leaves ? 0.0 : -a.row(side.contact.particle).dot(side.contact.normal);
   };
-  take_turns(&Side::impact, 1, v, approach);
-  take_turns(&Side::load, lasts, a, pressure);
+  take_turns(&Side::impact, v, approach,
+             [&](int i, const Eigen::Vector3d& jump) { give(i, jump, v.row(i).transpose() - 0.5 * jump); });
+  take_turns(&Side::load, a, pressure, [&](int i, const Eigen::Vector3d& borne) { give(i, lasts * borne, v.row(i)); });
   for (const Side& side : contacts_) {
     if (side.contact.friction == 0 || !side.touched) continue;
     const int i = side.contact.particle;
     const auto [jump, borne] = friction(side, tau, v.row(i), a.row(i));
     v.row(i) += jump;
     a.row(i) += borne;
-    impulse_ += ode_.mass[i] * (jump + lasts * borne);
+    give(i, jump + lasts * borne, v.row(i).transpose() - 0.5 * jump);
   }
 }
 

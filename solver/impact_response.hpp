@@ -26,6 +26,7 @@ class ImpactResponse {
 
   int constrained() const;                              ///< particles that touched something in the last sub-step
   Eigen::Vector3d impulse() const { return impulse_; }  ///< that the obstacles gave to the particles in the step [N s]
+  double work() const { return work_; }                 ///< of these impulses [J]
 
  private:
   /// A contact of a particle with its pins.
@@ -38,8 +39,9 @@ class ImpactResponse {
     double pushed = 0, impact = 0, load = 0;  ///< along `escape`: position [m], velocity [m/s], acceleration [m/s²]
   };
 
-  template <class Missing>
-  void take_turns(double Side::*given, double time, Vectors& rows, const Missing& missing);
+  template <class Missing, class Note>
+  void take_turns(double Side::*given, Vectors& rows, const Missing& missing, const Note& note);
+  void give(int particle, const Eigen::Vector3d& change, const Eigen::Vector3d& v);
 
   /// What friction changes.
   struct Friction {
@@ -53,6 +55,7 @@ class ImpactResponse {
   std::vector<Contact> found_;
   std::vector<Side> contacts_;
   Eigen::Vector3d impulse_ = Eigen::Vector3d::Zero();
+  double work_ = 0;
 };
 
 }  // namespace drape::solver

@@ -55,6 +55,7 @@ Integrator::Integrator(const SplitOde& ode, const Method& method, const Options&
             .av = Vectors::Zero(ode.particles(), 3),
             .f_hat = Vectors::Zero(ode.particles(), 3),
             .substeps = ode.work->counter("substeps", "explicit sub-steps inside the stability limit"),
+            .limits = ode.work->counter("stability_limits", "estimates of that limit, some tens of forces each"),
             .result = {}},
       steps_(ode.work->counter("steps", "accepted steps")),
       rejected_(ode.work->counter("rejected_steps", "steps that failed and were not passed on")) {
@@ -182,8 +183,8 @@ void Integrator::remember(double h, bool hard) {
 }
 
 ContactReport Integrator::contacts() const {
-  if (contacts_) return {contacts_->constrained(), contacts_->impulse()};
-  if (impacts_) return {impacts_->constrained(), impacts_->impulse()};
+  if (contacts_) return {contacts_->constrained(), contacts_->impulse(), contacts_->work()};
+  if (impacts_) return {impacts_->constrained(), impacts_->impulse(), impacts_->work()};
   return {};
 }
 

@@ -12,6 +12,7 @@ namespace drape::solver {
 struct ContactReport {
   int constrained = 0;                                ///< particles that touched something
   Eigen::Vector3d impulse = Eigen::Vector3d::Zero();  ///< given to the particles [N s]
+  double work = 0;                                    ///< done on the particles by these impulses [J]
 };
 
 /// Advances one ODE by one method. A step that fails leaves time and state as they were.

@@ -6,6 +6,7 @@
 
 #include "solver/history.hpp"
 #include "solver/impact_response.hpp"
+#include "solver/limit_watch.hpp"
 #include "solver/stage_solver.hpp"
 
 namespace drape::solver {
@@ -43,7 +44,8 @@ struct Step {
 
   ImpactResponse* impacts = nullptr;  ///< for explicit methods; null if there are no obstacles
   double explicit_limit = 0;          ///< largest stable sub-step of `verlet` [s], 0 until it is known
-  std::int64_t& substeps;             ///< work counter
+  LimitWatch limit_watch = {};        ///< tells when it has to be estimated anew
+  std::int64_t &substeps, &limits;    ///< work counters
 
   StageResult result;
 

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "bench/cell.hpp"
+#include "bench/studies/work_precision_energy.hpp"
 #include "reference/families.hpp"
 #include "solver/dense_output.hpp"
 
@@ -40,11 +41,6 @@ std::vector<Vectors> solve_ours(const Cell& cell, const model::Cloth& cloth, std
   return positions_of(std::move(output.states));
 }
 
-std::vector<Vectors> solve_by_peer(const reference::Family& family, const reference::SolveOptions& options,
-                                   const model::Cloth& cloth, std::span<const double> times) {
-  return positions_of(family.solve(cloth.ode, cloth.start, 0, times, options).states);
-}
-
 std::vector<double> tolerances(int finest) {
   std::vector<double> all;
   for (int k = 2; k <= 2 * finest; ++k) all.push_back(std::pow(10.0, -0.5 * k));
@@ -55,7 +51,8 @@ std::vector<double> tolerances(int finest) {
 int finest_parts(Search search) { return tries_few(search) ? 16 : 512; }
 
 Candidate ours(const Cell& cell, double value) {
-  return {value, [cell](const model::Cloth& cloth, std::span<const double> times) { return solve_ours(cell, cloth, times); }};
+  return {value, [cell](const model::Cloth& cloth, std::span<const double> times) { return solve_ours(cell, cloth, times); },
+          [cell] { return energy_fault(cell); }};
 }
 
 Cell cell(const model::Scene& scene, const std::string& name, const solver::Options& options = {}) {
@@ -159,9 +156,13 @@ Family peer(const std::string& package, const reference::NewtonSolve& newton, in
   Family family{fmt::format("{}/{} order {}", package, newton.name, order), package, "tolerance", "", {}};
   for (const double rtol : tolerances(finest)) {
     const reference::SolveOptions options{.rtol = rtol, .size = model::size(scene), .max_order = order, .newton = &newton};
-    family.candidates.push_back({rtol, [&by = reference::family(package), options](const model::Cloth& cloth, auto times) {
-                                   return solve_by_peer(by, options, cloth, times);
-                                 }});
+    const auto states = [&by = reference::family(package), options](const model::Cloth& cloth, std::span<const double> times) {
+      return by.solve(cloth.ode, cloth.start, 0, times, options).states;
+    };
+    family.candidates.push_back(
+        {rtol,
+         [states](const model::Cloth& cloth, std::span<const double> times) { return positions_of(states(cloth, times)); },
+         [states, scene] { return energy_fault(scene, states); }});
   }
   return family;
 }

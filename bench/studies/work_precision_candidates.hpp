@@ -18,6 +18,7 @@ using Solve = std::function<std::vector<solver::Vectors>(const model::Cloth& clo
 struct Candidate {
   double value;  ///< step [s], tolerance, or fraction of the stability limit
   Solve solve;
+  std::function<std::string()> energy_fault = {};  ///< why its energy cannot be, found by another run; empty if it can
 };
 
 /// Ways that differ in one number only, from coarse to fine.

@@ -166,13 +166,42 @@ std::vector<Contender> contenders(const std::vector<Trial>& trials) {
   return all;
 }
 
-void time_fronts(const Problem& problem, std::vector<Trial>& trials, const Effort& effort, Units& units) {
+namespace {
+
+/// The trials near the front of any contender.
+std::set<std::size_t> near_fronts(const Problem& problem, const std::vector<Trial>& trials) {
   std::set<std::size_t> chosen;
   for (const Contender& contender : contenders(trials)) {
     std::vector<results::Measured> measured;
     for (const std::size_t k : contender.members) measured.push_back(trials[k].measured);
     for (const std::size_t k : results::near_quickest(measured, asked(problem), slack)) chosen.insert(contender.members[k]);
   }
+  return chosen;
+}
+
+/// Fails trials near a front whose energy cannot be, until there are none.
+void judge_energies(const Problem& problem, std::vector<Trial>& trials, Units& units) {
+  std::set<std::size_t> judged;
+  for (bool failed = true; failed;) {
+    failed = false;
+    for (const std::size_t k : near_fronts(problem, trials)) {
+      Trial& trial = trials[k];
+      if (!judged.insert(k).second || !trial.candidate->energy_fault) continue;
+      const std::string name = fmt::format("energy of {} {}", trial.family->name, trial.candidate->value);
+      const std::string fault = units(name, [&] { return trial.candidate->energy_fault(); });
+      if (fault.empty()) continue;
+      trial.outcome = fault;
+      trial.measured = {std::nan(""), {}};
+      failed = true;
+    }
+  }
+}
+
+}  // namespace
+
+void time_fronts(const Problem& problem, std::vector<Trial>& trials, const Effort& effort, Units& units) {
+  judge_energies(problem, trials, units);
+  const std::set<std::size_t> chosen = near_fronts(problem, trials);
   std::vector<Prepare> runs;
   for (const std::size_t k : chosen)
     runs.emplace_back([&problem, &solve = trials[k].candidate->solve] {

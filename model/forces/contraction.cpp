@@ -76,6 +76,8 @@ std::optional<Term> make_contraction(const Sheet& sheet) {
   Term term;
   term.law.cell = {.contraction = m.contraction / 4, .contraction_rate = m.contraction_damping / 4};
   term.explicit_law = term.law;
+  if (const double d12 = m.contraction_damping; d12 * d12 > m.damping.weft * m.damping.warp)  // else damping takes more
+    term.active_law.cell.contraction_rate = term.law.cell.contraction_rate;
   term.energy = [=](const Vectors& x) {
     double energy = 0;
     const auto strain = [&](EdgeEnds edge, double l) { return difference(x, edge).norm() / l - 1; };

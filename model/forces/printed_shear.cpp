@@ -95,7 +95,7 @@ std::optional<Term> make_printed_shear(const Sheet& sheet) {
 
   Term term;
   term.force = [shared](const Configuration& c, Vectors& f) { add_force(*shared, c, f); };
-  term.explicit_force = term.force;
+  term.explicit_force = term.active_force = term.force;
   term.jacobian = [shared](const Configuration& c, const JacobianEntries& entries) { add_jacobian(*shared, c, entries); };
   return term;
 }

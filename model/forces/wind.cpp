@@ -22,7 +22,7 @@ std::optional<Term> make_wind(const Sheet& sheet) {
     if (!divides) return;
     for (Eigen::Index i = 0; i < f.rows(); ++i) f.row(i) += along_normal[i] * c.normals.row(i).dot(w) * c.normals.row(i);
   };
-  term.explicit_force = term.force;
+  term.explicit_force = term.active_force = term.force;
   if (!term.needs_normals) return term;
   term.jacobian = [=, normals = Normals(sheet.grid)](const Configuration& c, const JacobianEntries& entries) {
     if (!entries.exact()) return;  // not symmetric

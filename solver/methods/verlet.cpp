@@ -10,9 +10,26 @@ namespace {
 /// Where a step counts as failed: at some microseconds a sub-step it would take minutes.
 constexpr double most_substeps = 1e8;
 
+double limit_at(Step& s, double t, const State& y) {
+  ++s.limits;
+  return verlet_limit(spectrum(s.ode, t, y));
+}
+
+/// Whether the limit at the present sub-step is narrower than the one that is used; after an alarm.
+bool narrowed(Step& s, double t, const Vectors& v) {
+  constexpr double worthwhile = 0.98;
+  const double limit = limit_at(s, t, {s.y1().x, v});
+  if (!(limit < worthwhile * s.explicit_limit)) {
+    s.limit_watch.rest();
+    return false;
+  }
+  s.explicit_limit = limit;
+  return true;
+}
+
 /// The state is kept at (x1, v at the middle of the sub-step), so that all that happens between two evaluations of the force
-/// is one pass over memory.
-void sub_steps(Step& s, double tau, double count) {
+/// is one pass over memory. False if the limit has become narrower on the way.
+bool sub_steps(Step& s, double tau, double count) {
   const Eigen::Index n = s.ax.size();
   const double* const w = s.ax.data();
   const double* const f = s.next.f.data();
@@ -31,12 +48,15 @@ void sub_steps(Step& s, double tau, double count) {
   for (double k = 1; k <= count; ++k) {
     advance(k == 1 ? 0.5 * tau : tau);
     s.ode.force(s.t + k * tau, s.y1().x, s.av, s.next.f);
+    ++s.substeps;
+    if (s.limit_watch.alarmed(s.next.f, s.ax) && narrowed(s, s.t + k * tau, s.av)) return false;
   }
   s.y1().v.array() += (0.5 * tau) * s.ax.array() * s.next.f.array();
+  return true;
 }
 
 /// With the impulses of obstacles between the parts of a sub-step.
-void sub_steps_with_impacts(Step& s, double tau, double count) {
+bool sub_steps_with_impacts(Step& s, double tau, double count) {
   State& y = s.y1();
   Vectors& a = s.next.f;
   a.array() *= s.ax.array();
@@ -48,29 +68,17 @@ void sub_steps_with_impacts(Step& s, double tau, double count) {
     y.v += (0.5 * tau) * a;        // the half of a0
     s.av = y.v + (0.5 * tau) * a;  // the velocity that a1 is evaluated with
     s.ode.force(s.t + k * tau, y.x, s.av, a);
+    ++s.substeps;
+    if (s.limit_watch.alarmed(a, s.ax) && narrowed(s, s.t + k * tau, s.av)) return false;
     a.array() *= s.ax.array();
     y.v += (0.5 * tau) * a;
     s.impacts->stop(tau, false, y.v, a);
   }
+  return true;
 }
 
-}  // namespace
-
-// h is divided into equal sub-steps τ inside the stability limit of the initial state, and in each
-//   x1 = x0 + τ v0 + τ²/2 a0,   a1 = a(t1, x1, v0 + τ a0),   v1 = v0 + τ/2 (a0 + a1)
-// which is velocity Verlet where forces do not depend on velocities and of second order where they do, with one
-// evaluation a sub-step   [Verlet 1967; Groot, Warren 1997, λ = 1].
-void verlet(Step& s) {
-  if (s.explicit_limit == 0) s.explicit_limit = verlet_limit(spectrum(s.ode, s.t, s.y0()));
-  if (!(s.explicit_limit > 0)) {
-    s.result.outcome = Outcome::not_finite;
-    return;
-  }
-  const double substeps = std::max(1.0, std::ceil(s.h / (s.options.verlet_fraction * s.explicit_limit)));
-  if (substeps > most_substeps) {
-    s.result.outcome = Outcome::not_converged;
-    return;
-  }
+/// Goes from y0 to y1 in sub-steps inside the limit as it is known now; false if it has become narrower.
+bool whole_step(Step& s, double substeps) {
   const double tau = s.h / substeps;
   State& y = s.y1();
   y = s.y0();
@@ -82,10 +90,34 @@ void verlet(Step& s) {
   else
     s.ode.force(s.t, y.x, y.v, s.next.f);
   const bool contacts = s.impacts != nullptr && !s.impacts->empty();
-  (contacts ? sub_steps_with_impacts : sub_steps)(s, tau, substeps);
   s.next.has_f = !contacts;  // what obstacles bear was taken from it
   s.error_constant = 1.0 / (6 * substeps * substeps);
-  s.substeps += static_cast<std::int64_t>(substeps);
+  return (contacts ? sub_steps_with_impacts : sub_steps)(s, tau, substeps);
+}
+
+}  // namespace
+
+// h is divided into equal sub-steps τ inside the stability limit, and in each
+//   x1 = x0 + τ v0 + τ²/2 a0,   a1 = a(t1, x1, v0 + τ a0),   v1 = v0 + τ/2 (a0 + a1)
+// which is velocity Verlet where forces do not depend on velocities and of second order where they do, with one
+// evaluation a sub-step   [Verlet 1967; Groot, Warren 1997, λ = 1].
+// The limit is that of the initial state until modes alternate and grow: then it is estimated anew, and where it has become
+// narrower the step begins again.
+void verlet(Step& s) {
+  if (s.explicit_limit == 0) s.explicit_limit = limit_at(s, s.t, s.y0());
+  for (bool done = false; !done;) {
+    if (!(s.explicit_limit > 0)) {
+      s.result.outcome = Outcome::not_finite;
+      return;
+    }
+    const double substeps = std::max(1.0, std::ceil(s.h / (s.options.verlet_fraction * s.explicit_limit)));
+    if (substeps > most_substeps) {
+      s.result.outcome = Outcome::not_converged;
+      return;
+    }
+    done = whole_step(s, substeps);
+    if (!done && s.impacts != nullptr) s.impacts->begin(s.t, s.h, s.y0());
+  }
 }
 
 }  // namespace drape::solver
