@@ -1,4 +1,5 @@
 #include "bench/contact_record.hpp"
+#include "solver/largest.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -17,8 +18,8 @@ void ContactWatch::see(double t, const solver::State& y, double kinetic, double 
     least_ = energy;
     begun_ = true;
   }
-  scale_ = std::max(scale_, kinetic + std::abs(potential - start_));
-  rise_ = std::max(rise_, energy - least_);
+  scale_ = solver::larger(scale_, kinetic + std::abs(potential - start_));
+  rise_ = solver::larger(rise_, energy - least_);
   least_ = std::min(least_, energy);
   record_.clearance = std::min(record_.clearance, cloth_.contacts->distances(t, y.x).minCoeff());
   record_.area = contact_area(scene_, cloth_, t, y.x);

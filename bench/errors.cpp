@@ -2,32 +2,16 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "bench/interruption.hpp"
 #include "bench/limits.hpp"
+#include "bench/motion_error.hpp"
 #include "model/scene_file.hpp"
+#include "solver/largest.hpp"
 
 namespace drape::bench {
 namespace {
 
 using solver::State;
-
-double total_energy(const model::Cloth& cloth, double t, const State& y) {
-  return solver::kinetic_energy(cloth.ode, y.v) + cloth.ode.potential_energy(t, y.x);
-}
-
-/// The largest sum of kinetic energy and change of potential energy along a trajectory [J].
-double energy_scale(const model::Cloth& cloth, const reference::Trajectory& trajectory) {
-  const double start = cloth.ode.potential_energy(0, cloth.start.x);
-  double scale = 0;
-  for (std::size_t k = 0; k < trajectory.times.size(); ++k) {
-    const State& y = trajectory.states[k];
-    scale = std::max(
-        scale, solver::kinetic_energy(cloth.ode, y.v) + std::abs(cloth.ode.potential_energy(trajectory.times[k], y.x) - start));
-  }
-  return scale;
-}
 
 double centre_distance(const model::Cloth& cloth, const State& a, const State& b) {
   return (cloth.ode.mass.asDiagonal() * (a.x - b.x)).colwise().sum().norm() / cloth.ode.mass.sum();
@@ -48,15 +32,19 @@ reference::Reference compute_reference(const model::Cloth& cloth, const std::vec
 
 }  // namespace
 
+std::vector<double> compared_times(const model::Scene& scene) {
+  constexpr int count = 10;
+  std::vector<double> times;
+  for (int k = 1; k <= count; ++k) times.push_back(scene.end * k / count);
+  return times;
+}
+
 References::~References() {
   for (const std::string& message : cache_.messages()) fmt::print(stderr, "note: {}\n", message);
 }
 
 reference::Reference References::operator()(const model::Scene& scene, const model::Cloth& cloth) {
-  constexpr int outputs = 10;
-  std::vector<double> times;
-  for (int k = 1; k <= outputs; ++k) times.push_back(scene.end * k / outputs);
-  return (*this)(scene, cloth, times);
+  return (*this)(scene, cloth, compared_times(scene));
 }
 
 reference::Reference References::operator()(const model::Scene& scene, const model::Cloth& cloth,
@@ -77,13 +65,13 @@ results::ErrorRecord distance(const results::RunRecord& run, const reference::Re
                               const model::Cloth& cloth) {
   const double size = model::size(scene), end = reference.trajectory.times.back();
   const State &y = reference.trajectory.states.back(), &perturbed = reference.perturbed.states.back();
-  const double energy = total_energy(cloth, end, y), scale = energy_scale(cloth, reference.trajectory);
+  const double energy = total_energy(cloth, end, y), scale = motion_scale(cloth, reference.trajectory, size).energy;
   return {.rms = reference::rms_distance(run.final_state.x, y.x) / size,
           .maximum = (run.final_state.x - y.x).rowwise().norm().maxCoeff() / size,
           .reference = fmt::format("{} + {}", reference.name, reference.witness),
           .reference_tolerance = reference.tolerance,
-          .reference_error = std::ranges::max(reference.error) / size,
-          .growth = std::ranges::max(reference.growth),
+          .reference_error = solver::largest(reference.error) / size,
+          .growth = solver::largest(reference.growth),
           .energy = std::abs(total_energy(cloth, end, run.final_state) - energy) / scale,
           .energy_spread = std::abs(total_energy(cloth, end, perturbed) - energy) / scale,
           .centre = centre_distance(cloth, run.final_state, y) / size,

@@ -6,6 +6,10 @@
 
 namespace drape::bench {
 
+/// Times [s] at which motions are compared with the reference of a scene: all tenths of its end. The uncertainty or the error
+/// at a single time may be small by chance.
+std::vector<double> compared_times(const model::Scene& scene);
+
 /// References of scenes, from the cache where they are known.
 class References {
  public:
@@ -17,8 +21,8 @@ class References {
   References(const References&) = delete;
   References& operator=(const References&) = delete;
 
-  /// At several times up to the scene's end: the uncertainty at a single time may be small by chance. Throws
-  /// reference::ReferenceError if there is none, and reference::NotCertified, naming the scene, if it cannot be trusted.
+  /// At compared_times(). Throws reference::ReferenceError if there is none, and reference::NotCertified, naming the scene, if
+  /// it cannot be trusted.
   reference::Reference operator()(const model::Scene& scene, const model::Cloth& cloth);
 
   /// The same at other times [s], which ascend.

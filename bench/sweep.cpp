@@ -9,6 +9,7 @@
 #include "bench/contact_record.hpp"
 #include "bench/errors.hpp"
 #include "bench/identity.hpp"
+#include "bench/motion_error.hpp"
 #include "bench/recording.hpp"
 #include "bench/timing.hpp"
 #include "bench/trajectory_record.hpp"
@@ -38,18 +39,19 @@ Truth find_reference(const model::Scene& scene, References& references) {
   return truth;
 }
 
-void compare(results::RunRecord& run, const reference::Reference& reference, const model::Scene& scene,
+void compare(results::RunRecord& run, const Samples& samples, const reference::Reference& reference, const model::Scene& scene,
              const model::Cloth& cloth) {
   run.error = distance(run, reference, scene, cloth);
+  run.motion_error = motion_error(samples.states(), reference, scene, cloth);
   const reference::Trajectory& truth = reference.trajectory;
   if (run.contact) run.contact->reference_area = contact_area(scene, cloth, truth.times.back(), truth.states.back().x);
 }
 
-void measure_error(const Cell& cell, results::RunRecord& run, const Truth& truth) {
+void measure_error(const Cell& cell, results::RunRecord& run, const Samples& samples, const Truth& truth) {
   if (!truth.reference)
     run.message += (run.message.empty() ? "" : "; ") + truth.remark;
   else if (run.outcome == to_string(solver::Outcome::success))
-    compare(run, *truth.reference, cell.scene, truth.cloth);
+    compare(run, samples, *truth.reference, cell.scene, truth.cloth);
 }
 
 /// Before anything is computed.
@@ -86,13 +88,20 @@ void time_all(const Group& group, int repetitions, std::vector<results::RunRecor
 /// Runs a group and records it as a whole. Each cell is a unit of work, their repetitions are not: they must be interleaved.
 void run_group(const Group& group, const SweepOptions& options, References& references, results::RunFile& file, Units& units) {
   std::optional<Truth> truth;
-  const auto measured = [&](const Cell& cell, results::RunRecord run) {
+  const auto measured = [&](const Cell& cell) {
+    Samples samples(compared_times(cell.scene));
+    const solver::Observer look = options.look ? options.look(cell) : solver::Observer();
+    const auto see = [&](const solver::StepReport& step) {
+      samples.see(step);
+      if (look) look(step);
+    };
+    results::RunRecord run = record(cell, see, options.frames_every, options.limits);
     if (!options.reference) return run;
     if (!truth) {
       units.show("reference of " + group.front().scene.name);
       truth = find_reference(group.front().scene, references);
     }
-    measure_error(cell, run, *truth);
+    measure_error(cell, run, samples, *truth);
     return run;
   };
   std::vector<results::RunRecord> runs;
@@ -100,8 +109,7 @@ void run_group(const Group& group, const SweepOptions& options, References& refe
     const std::string id = identity(cell, options);
     runs.push_back(units(id, [&] {
       units.show(title(cell));
-      results::RunRecord run = measured(
-          cell, record(cell, options.look ? options.look(cell) : solver::Observer(), options.frames_every, options.limits));
+      results::RunRecord run = measured(cell);
       run.cell = id;
       return run;
     }));

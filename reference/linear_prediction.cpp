@@ -1,9 +1,9 @@
 #include "reference/linear_prediction.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "solver/decompositions.hpp"
+#include "solver/largest.hpp"
 
 namespace drape::reference {
 namespace {
@@ -60,8 +60,8 @@ LinearPrediction predict(const solver::Method& method, double stiffness, double 
   for (int k = 0; k < octaves; ++k, nu /= 2)
     for (const double part : parts) {
       const Mode mode{nu, part * nu, nu / stiffness_to_damping};
-      prediction.radius = std::max(prediction.radius, radius(method, mode));
-      if (has_loop(method)) prediction.loop = std::max(prediction.loop, loop_contraction(method.name, mode));
+      prediction.radius = solver::larger(prediction.radius, radius(method, mode));
+      if (has_loop(method)) prediction.loop = solver::larger(prediction.loop, loop_contraction(method.name, mode));
     }
   return prediction;
 }

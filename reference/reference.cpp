@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <random>
+#include <utility>
 
 #include "reference/families.hpp"
+#include "reference/growth.hpp"
 #include "reference/stepped.hpp"
+#include "solver/largest.hpp"
 
 namespace drape::reference {
 namespace {
@@ -17,7 +19,6 @@ using solver::SplitOde;
 using solver::State;
 
 constexpr double looser = 100;         ///< times the tolerance
-constexpr double perturbation = 1e-7;  ///< of the size of the scene
 constexpr double contact_step = 5e-4;  ///< [s]
 
 std::vector<double> distances(const Trajectory& a, const Trajectory& b) {
@@ -26,49 +27,21 @@ std::vector<double> distances(const Trajectory& a, const Trajectory& b) {
   return result;
 }
 
-/// Normal noise in the free coordinates, its velocities those that cross its positions in the duration.
-State noise(const SplitOde& ode, double duration) {
-  std::mt19937 random(1);
-  std::normal_distribution<double> normal;
-  const auto draw = [&](double scale) -> solver::Vectors {
-    solver::Vectors sample = solver::Vectors::NullaryExpr(ode.particles(), 3, [&] { return scale * normal(random); });
-    solver::filter(ode.pins, sample);
-    return sample;
-  };
-  solver::Vectors x = draw(1);
-  return {std::move(x), draw(1 / duration)};
-}
-
-State change(const State& a, const State& b) { return {a.x - b.x, a.v - b.v}; }
-
-/// The state moved along a direction so that its positions move by `distance` [m, rms].
-State moved(const State& y, const State& direction, double distance) {
-  const double scale = distance / rms_distance(direction.x, solver::Vectors::Zero(y.x.rows(), 3));
-  return {y.x + scale * direction.x, y.v + scale * direction.v};
-}
-
 /// Solves from a start, as well as it can or loosely.
 using Solve = std::function<Trajectory(const State& start, bool loose)>;
 
 /// All of a reference but its names: `a` computes it, `b` is the witness.
-Reference compare(const SplitOde& ode, const State& y0, double duration, double size, const Solve& a, const Solve& b) {
+Reference compare(const SplitOde& ode, const State& y0, double t0, double size, const Solve& a, const Solve& b) {
   Reference result;
   result.trajectory = a(y0, false);
   result.witnessed = b(y0, false);
   result.error = distances(result.trajectory, result.witnessed);
   const auto effect_a = distances(result.trajectory, a(y0, true)), effect_b = distances(result.witnessed, b(y0, true));
-  std::ranges::transform(effect_a, effect_b, std::back_inserter(result.tolerance_effect),
-                         [](double p, double q) { return std::max(p, q); });
+  std::ranges::transform(effect_a, effect_b, std::back_inserter(result.tolerance_effect), solver::larger);
 
-  const double distance = perturbation * size;
-  State direction = noise(ode, duration);
-  result.growth.assign(result.error.size(), 0);
-  for (int round = 0; round < 2; ++round) {
-    result.perturbed = a(moved(y0, direction, distance), false);
-    const std::vector<double> grown = distances(result.perturbed, result.trajectory);
-    for (std::size_t k = 0; k < grown.size(); ++k) result.growth[k] = std::max(result.growth[k], grown[k] / distance);
-    direction = change(result.perturbed.states.back(), result.trajectory.states.back());
-  }
+  Growth growth = measure_growth(ode, y0, t0, result.trajectory, size, [&](const State& start) { return a(start, false); });
+  result.growth = std::move(growth.factors);
+  result.perturbed = std::move(growth.perturbed);
   return result;
 }
 
@@ -88,7 +61,7 @@ Reference reference(const SplitOde& ode, const State& y0, double t0, std::span<c
       return by.solve(ode, start, t0, times, changed);
     };
   };
-  Reference result = compare(ode, y0, times.back() - t0, options.size, solve_with(family_a), solve_with(family_b));
+  Reference result = compare(ode, y0, t0, options.size, solve_with(family_a), solve_with(family_b));
   result.name = family_a.name;
   result.witness = family_b.name;
   result.tolerance = options.rtol;
@@ -103,11 +76,11 @@ Reference contact_reference(const SplitOde& ode, const State& y0, double t0, std
       return stepped(ode, solver::method(method), start, t0, times, loose ? 2 * contact_step : contact_step);
     };
   };
-  Reference result = compare(ode, y0, times.back() - t0, options.size, solve_with("verlet"), solve_with("midpoint"));
+  Reference result = compare(ode, y0, t0, options.size, solve_with("verlet"), solve_with("midpoint"));
   result.name = "verlet";
   result.witness = "midpoint";
   result.tolerance = contact_step;
-  for (std::size_t k = 0; k < times.size(); ++k) result.error[k] = std::max(result.error[k], result.tolerance_effect[k]);
+  for (std::size_t k = 0; k < times.size(); ++k) result.error[k] = solver::larger(result.error[k], result.tolerance_effect[k]);
   return result;
 }
 

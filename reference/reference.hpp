@@ -11,10 +11,10 @@ struct Reference {
   double tolerance = 0;                  ///< relative tolerance of both; with contact their step [s]
   std::vector<double> error;             ///< [m], uncertainty at each time, in the measure of rms_distance
   std::vector<double> tolerance_effect;  ///< [m], the larger of their distances from themselves at 100 times the tolerance
-  std::vector<double> growth;            ///< of a small perturbation of the start, at each time: its distance over the first
+  std::vector<double> growth;            ///< of a small perturbation of the start, at each time, over its size at the start
   Trajectory trajectory;
   Trajectory witnessed;  ///< what the witness computed
-  Trajectory perturbed;  ///< what the second perturbed start led to
+  Trajectory perturbed;  ///< what the perturbed start led to
 };
 
 /// Root mean square over the particles of the distance [m] between two sets of positions.
@@ -23,9 +23,7 @@ double rms_distance(const solver::Vectors& a, const solver::Vectors& b);
 /// Solves with two families, CVODE's BDF and ARKODE's ESDIRK, each at the given rtol and at 100 rtol. The disagreement of the
 /// two at rtol is the uncertainty. At a single time two solutions may meet by chance, so prefer its maximum over several.
 ///
-/// The conditioning is measured twice: the start is moved by 1e-7 size (rms), first along normal noise in all free positions
-/// and velocities (seeded), then along what that has become at the end. Noise has but a small part in the few modes that
-/// grow; the second start is made of them. The growth is the larger of the two. From 1e-5 size on, folding sheets saturate.
+/// The conditioning is the growth of a small perturbation of the start, made so that it grows most (growth.hpp).
 /// Arguments and exceptions as for cvode().
 Reference reference(const solver::SplitOde& ode, const solver::State& y0, double t0, std::span<const double> times,
                     const SolveOptions& options = {});

@@ -127,6 +127,9 @@ std::vector<Table> in_full(const RunRecord& run) {
   tables.push_back(work.finish());
   if (run.error)
     tables.push_back(members("error", "distance of the final positions from a reference", error_fields, *run.error));
+  if (run.motion_error)
+    tables.push_back(
+        members("motion_error", "largest distances from a reference during the run", motion_error_fields, *run.motion_error));
   if (run.contact) tables.push_back(members("contact", "what obstacles did", contact_fields, *run.contact));
   tables.push_back(series_table(run));
   return tables;

@@ -107,6 +107,9 @@ void write_run(const Handle& runs, const std::string& name, const RunRecord& run
   if (run.error)
     write_fields(hdf5::create_group(group, "error", "distance of the final positions from a reference"), error_fields,
                  *run.error);
+  if (run.motion_error)
+    write_fields(hdf5::create_group(group, "motion_error", "largest distances from a reference during the run"),
+                 motion_error_fields, *run.motion_error);
   if (run.contact) write_fields(hdf5::create_group(group, "contact", "what obstacles did"), contact_fields, *run.contact);
   if (run.trajectory) write_trajectory(group, *run.trajectory);
 }
@@ -122,6 +125,8 @@ RunRecord read_run(const Handle& group) {
     run.work.push_back({name, description, hdf5::read_number<std::int64_t>(work, name)});
   run.final_state = read_fields<solver::State>(hdf5::open_group(group, "final_state"), state_fields);
   if (hdf5::has(group, "error")) run.error = read_fields<ErrorRecord>(hdf5::open_group(group, "error"), error_fields);
+  if (hdf5::has(group, "motion_error"))
+    run.motion_error = read_fields<MotionErrorRecord>(hdf5::open_group(group, "motion_error"), motion_error_fields);
   if (hdf5::has(group, "contact")) run.contact = read_fields<ContactRecord>(hdf5::open_group(group, "contact"), contact_fields);
   if (hdf5::has(group, "trajectory")) run.trajectory = read_trajectory(group);
   return run;

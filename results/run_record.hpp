@@ -73,6 +73,20 @@ struct ErrorRecord {
   double centre_spread = 0;
 };
 
+/// Errors of the whole motion: the largest at the reference's times, which the cubic between two steps gives where none ends.
+/// Scales are those of the reference's own motion, at these times, and no less than those of a thousandth of the scene's size a
+/// run, so that they are not 0 where nothing moves.
+struct MotionErrorRecord {
+  double position = 0;            ///< root of the mean squared distance, over the size of the scene, as ErrorRecord::rms
+  double amplitude = 0;           ///< the reference's largest distance from its start, in the same measure
+  double relative = 0;            ///< the distance over the amplitude
+  double velocity = 0;            ///< the same of velocities, over the reference's largest
+  double reference_velocity = 0;  ///< disagreement of the reference's two solvers in it
+  double energy = 0;              ///< difference of the total energy, over the scale of ErrorRecord::energy
+  double momentum = 0;            ///< distance of the momenta, over the mass times the reference's largest velocity
+  double angular_momentum = 0;    ///< the same about the centre of the start, over that times the size
+};
+
 /// Beyond this growth of a perturbation the final positions say little about a method: compare energies and statistics.
 inline constexpr double comparable_growth = 100;
 
@@ -112,8 +126,9 @@ struct RunRecord {
   std::vector<WorkCount> work;
   solver::State final_state;
   std::optional<ErrorRecord> error;
-  std::optional<ContactRecord> contact;        ///< if the scene has obstacles
-  std::optional<TrajectoryRecord> trajectory;  ///< if it was asked for
+  std::optional<MotionErrorRecord> motion_error;  ///< absent in files of programs that did not measure it
+  std::optional<ContactRecord> contact;           ///< if the scene has obstacles
+  std::optional<TrajectoryRecord> trajectory;     ///< if it was asked for
 };
 
 /// The count of a kind of work, 0 if the run knows no such kind.

@@ -30,6 +30,10 @@ Cell of_error(const RunRecord& run, Value ErrorRecord::*member) {
   return run.error ? Cell((*run.error).*member) : Cell();
 }
 
+Cell of_motion(const RunRecord& run, double MotionErrorRecord::*member) {
+  return run.motion_error ? Cell((*run.motion_error).*member) : Cell();
+}
+
 Cell of_contact(const RunRecord& run, double ContactRecord::*member) {
   return run.contact ? Cell((*run.contact).*member) : Cell();
 }
@@ -44,6 +48,13 @@ std::string shown_error(Run run) {
   if (!comparable(*run.error)) return fmt::format("± {:.1g}", run.error->reference_error);
   if (!resolved(*run.error)) return fmt::format("< {:.1g}", resolution * run.error->reference_error);
   return fmt::format("{:.4g}", run.error->rms);
+}
+
+/// Of the whole motion, as shown_error() has the error at the end.
+std::string shown_in_motion(Run run, double MotionErrorRecord::*value, double unit) {
+  if (!run.motion_error || !run.error || !comparable(*run.error)) return {};
+  const double least = resolution * run.error->reference_error * unit, error = (*run.motion_error).*value;
+  return error < least ? fmt::format("< {:.1g}", least) : fmt::format("{:.4g}", error);
 }
 
 /// A statistic with its uncertainty, for runs whose positions are not comparable.
@@ -72,6 +83,12 @@ constexpr RunColumn columns[] = {
     {"wall_ms_median", "median", "ms", [](Run run) { return time_quantile(run, 0.5); }},
     {"wall_ms_max", "max", "ms", [](Run run) { return time_quantile(run, 1); }},
     {"error_rms", "rms error", "1", [](Run run) { return of_error(run, &ErrorRecord::rms); }, shown_error},
+    {"error_run", "over the run", "1", [](Run run) { return of_motion(run, &MotionErrorRecord::position); },
+     [](Run run) { return shown_in_motion(run, &MotionErrorRecord::position, 1); }},
+    {"error_relative", "of its motion", "1", [](Run run) { return of_motion(run, &MotionErrorRecord::relative); },
+     [](Run run) {
+       return shown_in_motion(run, &MotionErrorRecord::relative, run.motion_error ? 1 / run.motion_error->amplitude : 1);
+     }},
     {"reference", "", "", [](Run run) { return of_error(run, &ErrorRecord::reference); }},
     {"reference_error", "reference error", "1", [](Run run) { return of_error(run, &ErrorRecord::reference_error); }},
     {"error_max", "", "1", [](Run run) { return of_error(run, &ErrorRecord::maximum); }},
@@ -80,6 +97,11 @@ constexpr RunColumn columns[] = {
      [](Run run) { return shown_statistic(run, &ErrorRecord::energy, &ErrorRecord::energy_spread); }},
     {"centre_error", "centre error", "1", [](Run run) { return of_error(run, &ErrorRecord::centre); },
      [](Run run) { return shown_statistic(run, &ErrorRecord::centre, &ErrorRecord::centre_spread); }},
+    {"amplitude", "", "1", [](Run run) { return of_motion(run, &MotionErrorRecord::amplitude); }},
+    {"velocity_error_run", "", "1", [](Run run) { return of_motion(run, &MotionErrorRecord::velocity); }},
+    {"energy_error_run", "", "1", [](Run run) { return of_motion(run, &MotionErrorRecord::energy); }},
+    {"momentum_error_run", "", "1", [](Run run) { return of_motion(run, &MotionErrorRecord::momentum); }},
+    {"angular_momentum_error_run", "", "1", [](Run run) { return of_motion(run, &MotionErrorRecord::angular_momentum); }},
     {"clearance", "clearance", "m", [](Run run) { return of_contact(run, &ContactRecord::clearance); }},
     {"energy_rise", "energy rise", "1", [](Run run) { return of_contact(run, &ContactRecord::energy_rise); }},
     {"contact_area", "contact area", "1", [](Run run) { return of_contact(run, &ContactRecord::area); }, shown_area},

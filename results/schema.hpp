@@ -87,6 +87,26 @@ inline constexpr std::tuple error_fields{
     Field{"centre_spread", &ErrorRecord::centre_spread, "1", "what the perturbation does to the centre, in the same measure"},
 };
 
+/// Of `motion_error`, which is absent in older files of the same version.
+inline constexpr std::tuple motion_error_fields{
+    Field{"position", &MotionErrorRecord::position, "1",
+          "largest root of the mean squared distance to the reference at any of its times, divided by the size of the scene"},
+    Field{"amplitude", &MotionErrorRecord::amplitude, "1",
+          "the reference's largest distance from its start, in the same measure"},
+    Field{"relative", &MotionErrorRecord::relative, "1", "position over amplitude"},
+    Field{"velocity", &MotionErrorRecord::velocity, "1",
+          "largest root of the mean squared difference of velocities, over the largest of the reference's velocities"},
+    Field{"reference_velocity", &MotionErrorRecord::reference_velocity, "1",
+          "disagreement of the two solvers, in the same measure as velocity"},
+    Field{"energy", &MotionErrorRecord::energy, "1",
+          "largest difference of the total energy, over the largest sum of kinetic energy and change of potential energy"},
+    Field{"momentum", &MotionErrorRecord::momentum, "1",
+          "largest difference of the momentum, over the mass times the largest of the reference's velocities"},
+    Field{
+        "angular_momentum", &MotionErrorRecord::angular_momentum, "1",
+        "largest difference of the angular momentum about the centre of the start, over the same times the size of the scene"},
+};
+
 /// Calls visit(field) for every field of a list.
 template <class Fields, class Visit>
 void for_each(const Fields& fields, Visit visit) {

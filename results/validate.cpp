@@ -198,6 +198,8 @@ void check_run(Check& check, const std::string& group) {
   if (check.group(group + "/work")) check_work(check, group + "/work");
   check_state(check, group + "/final_state");
   if (check.find(group + "/error") != nullptr) fields<ErrorRecord>(check, group + "/error", error_fields);
+  if (check.find(group + "/motion_error") != nullptr)
+    fields<MotionErrorRecord>(check, group + "/motion_error", motion_error_fields);
   if (check.find(group + "/contact") != nullptr) fields<ContactRecord>(check, group + "/contact", contact_fields);
   if (check.find(group + "/trajectory") != nullptr) check_trajectory(check, group + "/trajectory");
 }

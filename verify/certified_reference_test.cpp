@@ -5,9 +5,8 @@
 
 #include <algorithm>
 
-#include "model/cloth.hpp"
-#include "model/scene_file.hpp"
 #include "reference/reference.hpp"
+#include "solver/largest.hpp"
 #include "verify/small_problems.hpp"
 
 namespace drape::verify::certified_reference_test {
@@ -19,10 +18,7 @@ using reference::NotCertified;
 using reference::Reference;
 using reference::rms_distance;
 using testing::AllOf;
-using testing::Each;
-using testing::Ge;
 using testing::HasSubstr;
-using testing::Le;
 
 const std::vector<double> times{start_time + 0.2, start_time + 0.7, start_time + 1, start_time + 1.5};
 
@@ -37,7 +33,7 @@ class CertifiedReferenceOf : public testing::TestWithParam<std::string> {
   double worst_error(const Reference& reference) const {
     double worst = 0;
     for (std::size_t k = 0; k < times.size(); ++k)
-      worst = std::max(worst, rms_distance(reference.trajectory.states[k].x, problem.exact(times[k]).x));
+      worst = solver::larger(worst, rms_distance(reference.trajectory.states[k].x, problem.exact(times[k]).x));
     return worst;
   }
 };
@@ -120,42 +116,13 @@ TEST(Certificate, IsRefusedIfTheDisagreementIsNotANumber) {
   EXPECT_THAT(complaint(reference, 1, 100, 1), HasSubstr("nan"));
 }
 
-/// Two coordinates that neither pull nor push, one that oscillates or runs away:  x'' = sign x.
-Reference growth_of(double sign, double size = 1) {
-  SplitOde ode;
-  const SparseMatrix none(1, 1);
-  ode.mass = Eigen::VectorXd::Ones(1);
-  ode.force = [=](double, const Vectors& x, const Vectors&, Vectors& f) { f << sign * x(0, 0), 0, 0; };
-  ode.jacobian = [=](double, const Vectors&, const Vectors&, SparseMatrix& df_dx, SparseMatrix& df_dv) {
-    df_dx.resize(3, 3);
-    df_dv.resize(3, 3);
-    df_dx.insert(0, 0) = sign;
-  };
-  ode.pins = {{.particle = 0, .fixed = {false, true, true}}};
-  return reference::reference(ode, known_motions::single({1, 0, 0}, {0, 0, 0}), 0, std::vector{2.0, 5.0, 10.0},
-                              {.rtol = 1e-9, .size = size});
-}
-
-TEST(Growth, IsThatOfTheLinearMotion) {
-  // The second perturbation is what the first became and grows like e^t; the first may grow more by its velocity.
-  for (const double size : {1.0, 10.0}) {
-    const Reference unstable = growth_of(1, size);
-    for (std::size_t k = 0; k < 3; ++k)
-      EXPECT_THAT(unstable.growth[k] / std::exp(unstable.trajectory.times[k]), AllOf(Ge(0.99), Le(2.0))) << size;
-  }
-  EXPECT_THAT(growth_of(-1).growth, Each(AllOf(Ge(0.0), Le(3.0))));
-}
-
-TEST(Growth, TellsAFoldingSheetFromADampedOne) {
-  const auto growth = [](const char* damping) {
-    const model::Scene scene =
-        model::load_scene("hung-corners", std::vector<model::Override>{{"grid.n", "8"}, {"material.damping", damping}});
-    const model::Cloth cloth = compile(scene);
-    return std::ranges::max(
-        reference::reference(cloth.ode, cloth.start, 0, std::vector{0.4}, {.rtol = 1e-9, .size = 0.8}).growth);
-  };
-  EXPECT_LE(growth("50"), 2);
-  EXPECT_GE(growth("0"), 30);
+TEST(Largest, IsNotANumberIfOneIsNone) {
+  EXPECT_TRUE(std::isnan(solver::larger(1, std::nan(""))));
+  EXPECT_TRUE(std::isnan(solver::larger(std::nan(""), 1)));
+  EXPECT_EQ(solver::larger(1, 2), 2);
+  EXPECT_EQ(solver::larger(2, 1), 2);
+  EXPECT_TRUE(std::isnan(solver::largest(std::vector{1.0, std::nan(""), 3.0})));
+  EXPECT_EQ(solver::largest(std::vector{1.0, 4.0, 3.0}), 4);
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ std::string vectors_as_text(const solver::Vectors& values) {
 
 std::string as_text(const results::RunRecord& run) {
   const auto& [cell, scene, scene_toml, overrides, plan, method, stage, linear, step, until, parameters, stiffness, to_damping,
-               outcome, message, last_good_time, steps, times_ms, work, state, error, contact, trajectory] = run;
+               outcome, message, last_good_time, steps, times_ms, work, state, error, motion_error, contact, trajectory] = run;
   std::string text = fmt::format("{}\n", fmt::join({cell, scene, scene_toml, overrides, plan, method, stage, linear}, "\n"));
   text += fmt::format("{} {} {} {} {}\n{}\n{}\n", step, until, stiffness, to_damping, last_good_time, outcome, message);
   for (const auto& [name, value, unit, description] : parameters)
@@ -26,6 +26,11 @@ std::string as_text(const results::RunRecord& run) {
   if (contact) {
     const auto& [clearance, rise, area, reference_area] = *contact;
     text += fmt::format("{} {} {} {}\n", clearance, rise, area, reference_area);
+  }
+  if (motion_error) {
+    const auto& [position, amplitude, relative, velocity, reference_velocity, energy, momentum, angular] = *motion_error;
+    text += fmt::format("{} {} {} {} {} {} {} {}\n", position, amplitude, relative, velocity, reference_velocity, energy,
+                        momentum, angular);
   }
   if (trajectory) {
     const auto& [nu, nv, times, states, stretch, constraint] = *trajectory;

@@ -45,6 +45,14 @@ RunRecord good_run() {
                           .energy_spread = 1e-9,
                           .centre = 2e-6,
                           .centre_spread = 1e-9};
+  run.motion_error = MotionErrorRecord{.position = 5e-5,
+                                       .amplitude = 0.25,
+                                       .relative = 2e-4,
+                                       .velocity = 3e-3,
+                                       .reference_velocity = 1e-8,
+                                       .energy = 4e-3,
+                                       .momentum = 6e-6,
+                                       .angular_momentum = 7e-6};
   return run;
 }
 
@@ -56,29 +64,35 @@ RunRecord failed_run() {
   run.overrides = "material.damping=0.5";
   run.times_ms.clear();
   run.error.reset();
+  run.motion_error.reset();
   return run;
 }
 
 const std::vector<RunRecord> runs{good_run(), failed_run()};
 
 TEST(Csv, HasTheColumnsThatScriptsRelyOn) {
-  EXPECT_EQ(to_csv(to_table({})),
-            "scene,method,step,outcome,message,steps,updates,cg_iterations,wall_ms_min,wall_ms_median,wall_ms_max,error_rms,"
-            "reference,reference_error,error_max,growth,energy_error,centre_error,clearance,energy_rise,contact_area,"
-            "numerical_stiffness,stiffness_to_damping,last_good_time,set\n");
+  EXPECT_EQ(
+      to_csv(to_table({})),
+      "scene,method,step,outcome,message,steps,updates,cg_iterations,wall_ms_min,wall_ms_median,wall_ms_max,error_rms,"
+      "error_run,error_relative,reference,reference_error,error_max,growth,energy_error,centre_error,amplitude,"
+      "velocity_error_run,energy_error_run,momentum_error_run,angular_momentum_error_run,clearance,energy_rise,contact_area,"
+      "numerical_stiffness,stiffness_to_damping,last_good_time,set\n");
 }
 
 TEST(Csv, GivesTotalsQuantilesAndAllDigits) {
   EXPECT_THAT(
       to_csv(to_table(std::vector{good_run()})),
-      HasSubstr("\nflag,bdf2/cholesky,0.01,success,,2,3,42,1,2.5,4,1.23456789e-05,cvode-bdf,3e-10,2.5e-05,0.5,0.001,2e-06,,,,"
+      HasSubstr("\nflag,bdf2/"
+                "cholesky,0.01,success,,2,3,42,1,2.5,4,1.23456789e-05,5e-05,0.0002,cvode-bdf,3e-10,2.5e-05,0.5,0.001,2e-06,"
+                "0.25,0.003,0.004,6e-06,7e-06,,,,"
                 "0.3333333333333333,inf,0.02,\n"));
 }
 
 TEST(Csv, QuotesTextAndLeavesCellsWithoutValueEmpty) {
-  EXPECT_THAT(to_csv(to_table(std::vector{failed_run()})),
-              HasSubstr("\nFähnchen,bdf2/cholesky,0.01,not converged,\"said \"\"no\"\", twice\nand again\",2,3,42,,,,,,,,,,,,,,"
-                        "0.3333333333333333,inf,0.02,material.damping=0.5\n"));
+  EXPECT_THAT(
+      to_csv(to_table(std::vector{failed_run()})),
+      HasSubstr("\nFähnchen,bdf2/cholesky,0.01,not converged,\"said \"\"no\"\", twice\nand again\",2,3,42,,,,,,,,,,,,,,,,,,,,,"
+                "0.3333333333333333,inf,0.02,material.damping=0.5\n"));
 }
 
 TEST(Csv, NumbersReadBackAsTheSameNumbers) {
@@ -180,6 +194,17 @@ TEST(Table, ShowsNoErrorThatItsReferenceCannotResolve) {
   run.error->reference_error = run.error->rms / 9;
   EXPECT_THAT(to_text(to_table(std::vector{run})), AllOf(HasSubstr(" < 1e-05 "), Not(HasSubstr("1.235e-05"))));
   EXPECT_THAT(to_csv(to_table(std::vector{run})), HasSubstr(",1.23456789e-05,"));
+}
+
+TEST(Table, ShowsTheErrorOverTheRunAndOfItsMotionAsFarAsTheReferenceResolvesThem) {
+  RunRecord run = good_run();
+  EXPECT_THAT(to_text(to_table(std::vector{run})), AllOf(HasSubstr(" 5e-05 "), HasSubstr(" 0.0002 ")));
+  run.error->reference_error = 6e-6;
+  EXPECT_THAT(to_text(to_table(std::vector{run})), AllOf(HasSubstr(" < 6e-05 "), HasSubstr(" < 0.0002 ")));
+  run.motion_error->position = run.motion_error->relative = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THAT(to_text(to_table(std::vector{run})), HasSubstr(" nan "));
+  run.error->growth = 101;
+  EXPECT_THAT(to_text(to_table(std::vector{run})), Not(HasSubstr(" nan ")));
 }
 
 TEST(Table, ShowsStatisticsInPlaceOfPositionsThatAreNotComparable) {

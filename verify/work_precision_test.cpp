@@ -109,7 +109,7 @@ class WorkPrecision : public testing::Test {
 TEST_F(WorkPrecision, NamesWinnersJudgesTheBarsAndDrawsEveryScene) {
   program.run({"study", "work-precision", "--quick", "--out", "study.h5"});
   const auto all = results::read_tables(program.folder() / "study.h5");
-  ASSERT_THAT(all, SizeIs(6));
+  ASSERT_THAT(all, SizeIs(7));
   for (const char* name : {"trials: hung-corners d=5", "trials: peer-edge n=8"}) {
     const auto codes = texts(table(all, name), "code");
     for (const char* code : {"drape", "explicit", "thesis", "cvode-bdf", "arkode-esdirk", "arkode-imex", "ida-bdf"})

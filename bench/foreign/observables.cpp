@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "model/edges.hpp"
+#include "solver/largest.hpp"
 
 namespace drape::bench {
 namespace {
@@ -62,8 +63,8 @@ std::vector<UncertainObservables> observe(const TrueMotion& truth, std::span<con
     now.value = observe(truth.scene, truth.cloth, times[k], motion[k]);
     const Observables other = observe(truth.scene, truth.cloth, times[k], witness[k]);
     for (const auto number : numbers)
-      now.uncertainty.*number = std::max(now.uncertainty.*number, std::abs(now.value.*number - other.*number));
-    now.centre_distance = std::max(now.centre_distance, (now.value.centre - other.centre).norm());
+      now.uncertainty.*number = solver::larger(now.uncertainty.*number, std::abs(now.value.*number - other.*number));
+    now.centre_distance = solver::larger(now.centre_distance, (now.value.centre - other.centre).norm());
     all.push_back(now);
   }
   return all;

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "bench/cell.hpp"
+#include "solver/largest.hpp"
 
 namespace drape::bench {
 namespace {
@@ -19,7 +20,7 @@ Problem problem_of(const TrueMotion& truth, const std::vector<FrameScore>& frame
   for (std::size_t k = 1; k < frames.size(); ++k) {
     problem.times.push_back(frames[k].t);
     problem.truth.push_back(state_at(truth.motion, frames[k].t).x);
-    problem.uncertainty = std::max(problem.uncertainty, frames[k].uncertainty / problem.length);
+    problem.uncertainty = solver::larger(problem.uncertainty, frames[k].uncertainty / problem.length);
   }
   problem.growth = truth.growth;
   return problem;

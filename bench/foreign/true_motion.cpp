@@ -9,6 +9,7 @@
 #include "reference/coordinates.hpp"
 #include "results/run_record.hpp"
 #include "solver/dense_output.hpp"
+#include "solver/largest.hpp"
 
 namespace drape::bench {
 namespace {
@@ -38,7 +39,7 @@ reference::Trajectory from_start(const solver::State& start, reference::Trajecto
 
 /// With contact nothing else is asked of a reference.
 void require_known(const model::Scene& scene, const reference::Reference& reference) {
-  const double worst = std::ranges::max(reference.error) / model::size(scene);
+  const double worst = solver::largest(reference.error) / model::size(scene);
   if (!(worst <= results::comparable_error))
     throw reference::NotCertified(
         fmt::format("{}: {} and {} disagree by {:.2g} of the size, where positions can be compared up to {:g}", scene.name,
@@ -54,7 +55,7 @@ TrueMotion true_motion(const model::Scene& scene, std::span<const double> times,
   require_known(scene, reference);
   const solver::State start = reference::prescribed_start(truth.cloth.ode, truth.cloth.start);
   truth.families = fmt::format("{} + {}", reference.name, reference.witness);
-  truth.growth = std::ranges::max(reference.growth);
+  truth.growth = solver::largest(reference.growth);
   truth.motion = from_start(start, std::move(reference.trajectory));
   truth.witness = from_start(start, std::move(reference.witnessed));
   truth.uncertainty = std::move(reference.error);

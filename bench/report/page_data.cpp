@@ -97,6 +97,7 @@ Json page_run(const results::RunRecord& run, Json& surfaces) {
     object["error"]["comparable"] = results::comparable(*run.error);
     object["error"]["resolved"] = results::resolved(*run.error);
   }
+  if (run.motion_error) put_fields(object["motion_error"], results::motion_error_fields, *run.motion_error);
   if (run.contact) put_fields(object["contact"], results::contact_fields, *run.contact);
   if (run.trajectory) object["trajectory"] = page_trajectory(run, surfaces);
   return object;

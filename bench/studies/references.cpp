@@ -4,11 +4,13 @@
 #include <chrono>
 
 #include "bench/studies.hpp"
+#include "bench/studies/references_growth.hpp"
 #include "model/cloth.hpp"
 #include "model/scene_file.hpp"
 #include "reference/families.hpp"
 #include "reference/reference.hpp"
 #include "results/table_builder.hpp"
+#include "solver/largest.hpp"
 
 namespace drape::bench {
 namespace {
@@ -49,7 +51,7 @@ Solution solve(const std::string& family, const model::Scene& scene) {
 double largest_distance(const Solution& a, const Solution& b, double size) {
   double largest = 0;
   for (std::size_t k = 0; k < a.positions.size(); ++k)
-    largest = std::max(largest, reference::rms_distance(a.positions[k], b.positions[k]) / size);
+    largest = solver::larger(largest, reference::rms_distance(a.positions[k], b.positions[k]) / size);
   return largest;
 }
 
@@ -92,7 +94,8 @@ results::Table compare(bool quick, Units& units) {
 
 std::vector<TableJob> references(bool quick) {
   const auto parts = static_cast<int>(scenes.size() * reference_dampings.size() * family_names.size());
-  return {{parts, [quick](Units& units) { return compare(quick, units); }}};
+  return {{parts, [quick](Units& units) { return compare(quick, units); }},
+          {growth_parts, [quick](Units& units) { return growth_of_perturbations(quick, units); }}};
 }
 
 }  // namespace drape::bench

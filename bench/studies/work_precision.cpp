@@ -9,6 +9,8 @@
 #include "model/scene_file.hpp"
 #include "reference/arkode.hpp"
 #include "reference/reference.hpp"
+#include "results/ranking.hpp"
+#include "solver/largest.hpp"
 
 namespace drape::bench {
 namespace {
@@ -65,8 +67,8 @@ void find_truth(Problem& problem) {
   for (const int tenth : held_out) {
     const auto k = static_cast<std::size_t>(tenth - 1);
     problem.truth.push_back(reference.trajectory.states[k].x);
-    problem.uncertainty = std::max(problem.uncertainty, reference.error[k] / problem.length);
-    problem.growth = std::max(problem.growth, reference.growth[k]);
+    problem.uncertainty = solver::larger(problem.uncertainty, reference.error[k] / problem.length);
+    problem.growth = solver::larger(problem.growth, reference.growth[k]);
   }
 }
 
@@ -104,7 +106,7 @@ ExplicitTruth find_explicit_truth(const Problem& problem) {
   const reference::SolveOptions options{.rtol = rtol, .size = model::size(problem.scene), .max_order = 4};
   const auto witness = reference::arkode_erk(cloth.ode, cloth.start, 0, problem.times, options).states;
   for (std::size_t k = 0; k < witness.size(); ++k)
-    truth.uncertainty = std::max(truth.uncertainty, reference::rms_distance(truth.positions[k], witness[k].x));
+    truth.uncertainty = solver::larger(truth.uncertainty, reference::rms_distance(truth.positions[k], witness[k].x));
   return truth;
 }
 
@@ -117,6 +119,12 @@ void set_explicit_truth(Problem& problem, const ExplicitTruth& truth) {
 
 /// What the tables of all scenes are made from.
 using All = std::vector<SceneTrials>;
+
+results::Table ranking_table(const All& all) {
+  std::vector<results::Table> trials;
+  for (const SceneTrials& scene : all) trials.push_back(trials_table(scene));
+  return results::ranking(trials);
+}
 
 results::Table try_scene(const Entry& entry, All& all, Units& units) {
   units.show("reference of " + entry.name);
@@ -140,7 +148,7 @@ std::vector<TableJob> jobs(const std::vector<Entry>& list) {
   for (const Entry& entry : list)
     jobs.push_back({static_cast<int>(families(entry.scene, entry.search).size()),
                     [=](Units& units) { return try_scene(entry, *all, units); }});
-  for (auto* table : {winners_table, defaults_table, bars_table, peers_table})
+  for (auto* table : {winners_table, defaults_table, ranking_table, bars_table, peers_table})
     jobs.push_back({0, [=](Units&) { return table(*all); }});
   return jobs;
 }

@@ -12,6 +12,7 @@
 #include "bench/limits.hpp"
 #include "bench/timing.hpp"
 #include "reference/reference.hpp"
+#include "solver/largest.hpp"
 
 namespace drape::bench {
 namespace {
@@ -36,7 +37,7 @@ double seconds_since(Clock::time_point begin) { return std::chrono::duration<dou
 double largest_error(const Problem& problem, const std::vector<solver::Vectors>& positions) {
   double largest = 0;
   for (std::size_t k = 0; k < problem.truth.size(); ++k)
-    largest = std::max(largest, reference::rms_distance(positions.at(k), problem.truth[k]) / problem.length);
+    largest = solver::larger(largest, reference::rms_distance(positions.at(k), problem.truth[k]) / problem.length);
   return largest;
 }
 

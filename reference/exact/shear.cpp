@@ -2,13 +2,13 @@
 
 #include <Eigen/Sparse>
 #include <Eigen/SparseCholesky>
-#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
 #include "reference/exact/polynomials.hpp"
+#include "solver/largest.hpp"
 
 namespace drape::reference {
 namespace {
@@ -210,7 +210,7 @@ ShearedSheet::ShearedSheet(const SideloadedSheet& sheet, Surface surface, const 
   minimise(sheet, surface_);
   const VectorXd samples = VectorXd::LinSpaced(33, 0, 1);
   for (const double u : samples)
-    for (const double v : samples) error_ = std::max(error_, (surface_(u, v) - coarser(u, v)).norm());
+    for (const double v : samples) error_ = solver::larger(error_, (surface_(u, v) - coarser(u, v)).norm());
 }
 
 }  // namespace drape::reference

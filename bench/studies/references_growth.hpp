@@ -1,0 +1,12 @@
+#pragma once
+
+#include "bench/units.hpp"
+
+namespace drape::bench {
+
+inline constexpr int growth_parts = 4;
+
+/// How much perturbations of small sheets grow: the one that is found to grow most against the largest singular value.
+results::Table growth_of_perturbations(bool quick, Units& units);
+
+}  // namespace drape::bench
