@@ -7,6 +7,7 @@
 #include "bench/interruption.hpp"
 #include "bench/limits.hpp"
 #include "model/scene_file.hpp"
+#include "solver/printable.hpp"
 
 namespace drape::bench {
 namespace {
@@ -49,7 +50,7 @@ reference::Reference compute_reference(const model::Cloth& cloth, const std::vec
 }  // namespace
 
 References::~References() {
-  for (const std::string& message : cache_.messages()) fmt::print(stderr, "note: {}\n", message);
+  for (const std::string& message : cache_.messages()) fmt::print(stderr, "note: {}\n", solver::printable(message));
 }
 
 reference::Reference References::operator()(const model::Scene& scene, const model::Cloth& cloth) {

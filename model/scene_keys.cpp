@@ -39,6 +39,14 @@ void read_particles(const Value& value, const Grid& grid, PinRule& rule) {
   }
 }
 
+/// Of pins and of obstacles: each is compared with all particles.
+std::vector<Value> rules(const Value& value) {
+  constexpr std::size_t most = 1000;
+  std::vector<Value> all = value.list();
+  if (all.size() > most) value.fail(fmt::format("at most {} entries, not {}", most, all.size()));
+  return all;
+}
+
 PinRule read_pin(const Value& value, const Grid& grid) {
   PinRule rule;
   for (const auto& [key, node] : value.table()) {
@@ -184,7 +192,7 @@ constexpr SceneKey all_keys[] = {
 
     {"pins", "list of { where | particles, directions, velocity }: prescribed motion",
      [](const Value& v, Scene& s) {
-       for (const Value& pin : v.list()) s.pins.push_back(read_pin(pin, s.sheet.grid));
+       for (const Value& pin : rules(v)) s.pins.push_back(read_pin(pin, s.sheet.grid));
      },
      [](const Scene& s) { return written_list(s.pins, written_pin); }},
 
@@ -193,7 +201,7 @@ constexpr SceneKey all_keys[] = {
      "rotation | motion = [{ time, position, rotation }, ...] }: a rotation is an axis times degrees; between two key frames "
      "an obstacle turns the shorter way, by less than half a turn",
      [](const Value& v, Scene& s) {
-       for (const Value& obstacle : v.list()) s.obstacles.push_back(read_obstacle(obstacle));
+       for (const Value& obstacle : rules(v)) s.obstacles.push_back(read_obstacle(obstacle));
      },
      [](const Scene& s) { return written_list<ObstacleRule>(s.obstacles, written); }},
     {"contact.distance", "d [m]: what is nearer to an obstacle than this is in its collision area",

@@ -11,6 +11,7 @@
 
 #include "results/descriptor.hpp"
 #include "results/temporary_folder.hpp"
+#include "solver/temporary.hpp"
 
 namespace drape::results {
 namespace fs = std::filesystem;
@@ -20,25 +21,13 @@ namespace {
   throw FileError(fmt::format("{} exists; choose another --out or remove it", file.string()));
 }
 
-/// The file under another name in the same folder (only within a file system can it be renamed), removed at the end.
-struct Temporary {
-  fs::path path;
-  Descriptor out;
-  explicit Temporary(const fs::path& file)
-      : path(fmt::format("{}.tmp-{}", file.string(), getpid())),
-        out(open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
-    if (out.fd < 0) fail_to_create_beside(file);
-  }
-  Temporary(const Temporary&) = delete;
-  Temporary& operator=(const Temporary&) = delete;
-  ~Temporary() { unlink(path.c_str()); }
-};
-
-TemporaryFolder folder_in(const fs::path& parent) {
+/// The file under another name in the same folder: only within a file system can it be renamed.
+solver::Temporary temporary_beside(const fs::path& file) {
   try {
-    return TemporaryFolder(parent);
+    return {folder_of(file), solver::Temporary::Kind::file};
   } catch (const std::system_error& error) {
-    throw FileError(fmt::format("{}: cannot create files in it ({})", parent.string(), error.code().message()));
+    errno = error.code().value();
+    fail_to_create_beside(file);
   }
 }
 
@@ -47,7 +36,7 @@ TemporaryFolder folder_in(const fs::path& parent) {
 void require_creatable(const fs::path& file) {
   std::error_code unknown;  // left to the attempt, whose message is better
   if (fs::exists(fs::symlink_status(file, unknown))) refuse_existing(file);
-  const Temporary attempt(file);  // trying is the only test that knows of rights, full and read-only file systems alike
+  temporary_beside(file);  // trying is the only test that knows of rights, full and read-only file systems alike
 }
 
 void create_folder(const fs::path& folder, std::string_view advice) {
@@ -66,7 +55,7 @@ void publish_folder(const fs::path& folder, const std::map<std::string, std::str
   const fs::path absolute = fs::absolute(folder).lexically_normal();
   const fs::path target = absolute.has_filename() ? absolute : absolute.parent_path();
   create_folder(target.parent_path());
-  const TemporaryFolder beside = folder_in(target.parent_path());  // in the same file system, so that a rename does
+  const TemporaryFolder beside(target.parent_path());  // in the same file system, so that a rename does
   const fs::path made = beside / "new";
   create_folder(made);
   for (const auto& [name, content] : files) publish(made / name, std::as_bytes(std::span(content)), Existing::refuse);
@@ -74,11 +63,11 @@ void publish_folder(const fs::path& folder, const std::map<std::string, std::str
 }
 
 void publish(const fs::path& file, std::span<const std::byte> content, Existing existing) {
-  const Temporary temporary(file);
-  write_all(file, temporary.out.fd, content);
+  const solver::Temporary temporary = temporary_beside(file);
+  write_all(file, temporary.descriptor(), content);
   if (existing == Existing::replace) {
-    if (std::rename(temporary.path.c_str(), file.c_str()) != 0) fail(file, "cannot be replaced");
-  } else if (link(temporary.path.c_str(), file.c_str()) != 0) {  // unlike a rename, fails if the file appeared meanwhile
+    if (std::rename(temporary.path().c_str(), file.c_str()) != 0) fail(file, "cannot be replaced");
+  } else if (link(temporary.path().c_str(), file.c_str()) != 0) {  // unlike a rename, fails if the file appeared meanwhile
     if (errno == EEXIST) refuse_existing(file);
     fail(file, "cannot be created");
   }

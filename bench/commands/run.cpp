@@ -134,7 +134,7 @@ void add_thread_option(CLI::App& run, RunArguments& a) {
 void add_frame_options(CLI::App& run, RunArguments& a) {
   CLI::Option* folder = run.add_option("--frames", a.frames.folder, "new folder for the runs as sequences of OBJ meshes")
                             ->type_name("FOLDER")
-                            ->check(not_empty());
+                            ->check(output_name());
   run.add_option("--every", a.frames.every, "simulated seconds between two frames")
       ->type_name("SECONDS")
       ->check(positive())
