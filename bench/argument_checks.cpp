@@ -57,7 +57,8 @@ CLI::Validator not_empty() {
 }
 
 CLI::Validator output_name() {
-  return expect("a name, which may begin with '-' as in ./-x only", [](const std::string& text) { return !text.empty() && text[0] != '-'; });
+  return expect("a name, which may begin with '-' as in ./-x only",
+                [](const std::string& text) { return !text.empty() && text[0] != '-'; });
 }
 
 CLI::Validator every_seconds() {

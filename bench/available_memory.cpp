@@ -50,10 +50,10 @@ void require_memory(const model::Scene& scene) {
   constexpr double bytes_per_particle = 1000;  // measured: the least that any method takes, without a reference
   const double particles = scene.sheet.grid.particles(), available = available_memory();
   if (particles * bytes_per_particle > available)
-    throw model::SceneError(
-        fmt::format("{}: grid.n = [{}, {}]: {:g} particles need at least {:.3g} GB, {:.3g} GB are available: expected at most {:.0f}",
-                    scene.name, scene.sheet.grid.nu, scene.sheet.grid.nv, particles, particles * bytes_per_particle / 1e9,
-                    available / 1e9, available / bytes_per_particle));
+    throw model::SceneError(fmt::format(
+        "{}: grid.n = [{}, {}]: {:g} particles need at least {:.3g} GB, {:.3g} GB are available: expected at most {:.0f}",
+        scene.name, scene.sheet.grid.nu, scene.sheet.grid.nv, particles, particles * bytes_per_particle / 1e9, available / 1e9,
+        available / bytes_per_particle));
 }
 
 }  // namespace drape::bench

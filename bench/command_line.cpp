@@ -40,9 +40,9 @@ int complain(const std::string& message, int exit_code = bad_input) {
 }
 
 std::string not_enough_memory(const CLI::App& app) {
-  return fmt::format("{}: not enough memory, {:.3g} GB are available: expected a smaller scene (grid.n), or fewer or smaller files",
-                     app.get_subcommands().empty() ? app.get_name() : app.get_subcommands().front()->get_name(),
-                     available_memory() / 1e9);
+  return fmt::format(
+      "{}: not enough memory, {:.3g} GB are available: expected a smaller scene (grid.n), or fewer or smaller files",
+      app.get_subcommands().empty() ? app.get_name() : app.get_subcommands().front()->get_name(), available_memory() / 1e9);
 }
 
 /// A word as a shell takes it.

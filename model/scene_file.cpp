@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <map>
 
@@ -24,9 +25,10 @@ constexpr int most_levels = 16;
 
 toml::table parse(std::string_view text, std::string_view origin) {
   if (const int line = line_nested_deeper(text, most_levels))
-    throw SceneError(fmt::format("{}:{}: nested deeper than {} levels: expected a scene, whose keys have two parts and whose "
-                                 "lists have at most five levels",
-                                 origin, line, most_levels));
+    throw SceneError(
+        fmt::format("{}:{}: nested deeper than {} levels: expected a scene, whose keys have two parts and whose "
+                    "lists have at most five levels",
+                    origin, line, most_levels));
   try {
     return toml::parse(text);
   } catch (const toml::parse_error& error) {
@@ -100,6 +102,10 @@ void check_together(const Scene& scene, const std::string& origin) {
   if (scene.sheet.wind.needs_normals() && (grid.nu < 2 || grid.nv < 2))
     fail("forces.wind: expected forces.drag = forces.lift, a chain has no normals");
   if (scene.sheet.air != 0 && (grid.nu < 2 || grid.nv < 2)) fail("forces.air: expected 0, a chain has no normals");
+  constexpr double most_compared = 1e8;  // a second
+  if (static_cast<double>(scene.pins.size()) * grid.particles() > most_compared)
+    fail(fmt::format("pins: expected at most {:g} on a grid of {} particles, not {}",
+                     std::floor(most_compared / grid.particles()), grid.particles(), scene.pins.size()));
   const std::vector<solver::Pin> all = pins(scene);
   if (std::ssize(all) == grid.particles() && std::ranges::all_of(all, &solver::Pin::all))
     fail("pins: expected at least one coordinate that is free to move");
@@ -109,8 +115,8 @@ std::string read_file(const std::filesystem::path& path) {
   try {
     return solver::content_of(path, most_bytes);
   } catch (const solver::UnreadableFile& error) {
-    throw SceneError(
-        fmt::format("{}: {}: expected a scene file of at most {}", path.string(), error.what(), solver::in_megabytes(most_bytes)));
+    throw SceneError(fmt::format("{}: {}: expected a scene file of at most {}", path.string(), error.what(),
+                                 solver::in_megabytes(most_bytes)));
   }
 }
 

@@ -27,7 +27,8 @@ fs::path system_folder() {
 }  // namespace
 
 TemporaryFolder::TemporaryFolder()
-    : folder_(folder_in(system_folder(), fmt::format("TMPDIR, the folder for temporary files, {}", system_folder().string()))) {}
+    : folder_(folder_in(system_folder(), fmt::format("TMPDIR, the folder for temporary files, {}", system_folder().string()))) {
+}
 
 TemporaryFolder::TemporaryFolder(const fs::path& parent) : folder_(folder_in(parent, parent.string())) {}
 

@@ -31,9 +31,9 @@ Character first_character(std::string_view text) {
 
 /// Ranges of characters that are not shown but act: C0 and C1 controls, marks and overrides of direction, separators of lines
 /// and paragraphs, and characters without width.
-constexpr std::pair<char32_t, char32_t> acting[] = {{0x0, 0x1f},       {0x7f, 0x9f},     {0x61c, 0x61c},   {0x180e, 0x180e},
-                                                    {0x200b, 0x200f},  {0x2028, 0x202e}, {0x2060, 0x206f}, {0xfeff, 0xfeff},
-                                                    {0xfff9, 0xfffb}};
+constexpr std::pair<char32_t, char32_t> acting[] = {{0x0, 0x1f},      {0x7f, 0x9f},     {0x61c, 0x61c},
+                                                    {0x180e, 0x180e}, {0x200b, 0x200f}, {0x2028, 0x202e},
+                                                    {0x2060, 0x206f}, {0xfeff, 0xfeff}, {0xfff9, 0xfffb}};
 
 bool acts(char32_t code) {
   return std::ranges::any_of(acting, [=](const auto& range) { return range.first <= code && code <= range.second; });

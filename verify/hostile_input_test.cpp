@@ -205,7 +205,8 @@ TEST(HostileInput, OfMoreParticlesThanMemoryIsRefusedAtOnce) {
   for (const Words& command : {run("particles.toml"), run("hung-edge", {"--set", "grid.n=[10000000, 1]"})}) {
     const ProgramResult result = program.run(command);
     EXPECT_EQ(result.exit_code, 2);
-    EXPECT_THAT(result.err, AllOf(HasSubstr("grid.n = [10000000, 1]: 1e+07 particles need at least"), HasSubstr("GB are available")));
+    EXPECT_THAT(result.err,
+                AllOf(HasSubstr("grid.n = [10000000, 1]: 1e+07 particles need at least"), HasSubstr("GB are available")));
   }
 }
 
@@ -218,7 +219,8 @@ TEST(HostileInput, BeyondMemoryIsSaidToBe) {
 }
 #endif
 
-// --- Texts that are recorded and printed again ---------------------------------------------------------------------------------
+// --- Texts that are recorded and printed again
+// ---------------------------------------------------------------------------------
 
 TEST(RecordedText, NeitherActsOnTheTerminalNorOnSpreadsheets) {
   const BenchIntegrators program;
@@ -239,7 +241,8 @@ TEST(RecordedText, NeitherActsOnTheTerminalNorOnSpreadsheets) {
   }
 }
 
-// --- What killed processes leave ------------------------------------------------------------------------------------------------
+// --- What killed processes leave
+// ------------------------------------------------------------------------------------------------
 
 TEST(KilledProgram, LeavesNothingThatTheNextOneDoesNotRemove) {
   const BenchIntegrators program;

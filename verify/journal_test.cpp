@@ -2,8 +2,6 @@
 
 #include "results/journal.hpp"
 
-#include "results/journal.hpp"
-
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <sys/stat.h>
@@ -11,6 +9,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "results/journal.hpp"
 #include "solver/temporary.hpp"
 #include "verify/file_size_limit.hpp"
 #include "verify/temporary_folder.hpp"
@@ -147,7 +146,8 @@ TEST(Journal, RemovesWhatKilledProcessesLeftInItsFolderButNothingElse) {
   const solver::Temporary of_the_living(place.folder.path(), solver::Temporary::Kind::file);
   for (const char* left : {".drape-tmp-1-0", ".drape-tmp-123456-7"}) std::ofstream(place.folder / left) << "x";
   fs::create_directories(place.folder / ".drape-tmp-5-0" / "new");
-  for (const char* others : {"runs.h5.tmp-123", ".drape-tmp-backup", "drape-tmp-1-0"}) std::ofstream(place.folder / others) << "x";
+  for (const char* others : {"runs.h5.tmp-123", ".drape-tmp-backup", "drape-tmp-1-0"})
+    std::ofstream(place.folder / others) << "x";
   const Journal journal = place.open();
   for (const char* left : {".drape-tmp-1-0", ".drape-tmp-123456-7", ".drape-tmp-5-0"})
     EXPECT_FALSE(fs::exists(place.folder / left)) << left;

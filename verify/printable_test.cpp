@@ -31,7 +31,8 @@ TEST(Printable, EscapesWhatActsOnATerminal) {
   EXPECT_EQ(printable("\n\r\t"), R"(\n\r\t)");
   EXPECT_EQ(printable(std::string("a\0b", 3)), R"(a\u0000b)");
   EXPECT_EQ(printable("\u009b0m\u0085"), R"(\u009b0m\u0085)") << "C1 controls";
-  EXPECT_EQ(printable("\u202eabc\u2066\u200b\u2028\ufeff"), R"(\u202eabc\u2066\u200b\u2028\ufeff)") << "direction, width, lines";
+  EXPECT_EQ(printable("\u202eabc\u2066\u200b\u2028\ufeff"), R"(\u202eabc\u2066\u200b\u2028\ufeff)")
+      << "direction, width, lines";
 }
 
 TEST(Printable, EscapesBytesThatAreNoText) {

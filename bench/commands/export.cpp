@@ -31,7 +31,8 @@ void export_scene(const ExportArguments& a) {
   results::require_empty_folder(a.out, "the exported scene");
   const auto files = exported(true_motion(scene, times, a.agreement), times);
   results::publish_folder(a.out, files);
-  for (const auto& [name, content] : files) fmt::print("{}\n", solver::printable((std::filesystem::path(a.out) / name).string()));
+  for (const auto& [name, content] : files)
+    fmt::print("{}\n", solver::printable((std::filesystem::path(a.out) / name).string()));
 }
 
 }  // namespace

@@ -49,8 +49,9 @@ results::Table one_table(const std::string& file, const std::string& name) {
     if (table.name == name) return std::move(table);
     names.push_back(table.name);
   }
-  throw std::invalid_argument(fmt::format("--table: expected a table of {} ({}), not '{}'", file,
-                                          names.empty() ? "it has none" : solver::quoted(fmt::format("{}", fmt::join(names, ", "))), solver::quoted(name)));
+  throw std::invalid_argument(fmt::format(
+      "--table: expected a table of {} ({}), not '{}'", file,
+      names.empty() ? "it has none" : solver::quoted(fmt::format("{}", fmt::join(names, ", "))), solver::quoted(name)));
 }
 
 /// Prints where a file departs from the specification. Returns the exit code: 1 if it does.
