@@ -78,7 +78,8 @@ std::string explanation(const CLI::App& app, const CLI::ParseError& error) {
   const auto is = [&](CLI::ExitCodes code) { return error.get_exit_code() == static_cast<int>(code); };
   if (is(CLI::ExitCodes::ValidationError)) return error.what();
   const CLI::App& command = app.get_subcommands().empty() ? app : *app.get_subcommands().front();
-  const std::vector<std::string> unknown = command.remaining();
+  std::vector<std::string> unknown = app.remaining(/*recurse=*/true);
+  std::erase(unknown, "--");
   if (is(CLI::ExitCodes::ExtrasError) || (is(CLI::ExitCodes::RequiredError) && !unknown.empty()))
     return unknown_argument(command, unknown.empty() ? error.what() : unknown.front());
   return fmt::format("{}; see {}{} --help", error.what(), app.get_name(), &command == &app ? "" : " " + command.get_name());

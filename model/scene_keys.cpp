@@ -6,6 +6,7 @@
 
 #include "model/obstacle_keys.hpp"
 #include "model/toml_text.hpp"
+#include "solver/printable.hpp"
 
 namespace drape::model {
 namespace {
@@ -81,6 +82,12 @@ std::string written_pin(const PinRule& rule) {
   return fmt::format("{{ {}, directions = \"{}\", velocity = {} }}", place, directions, written(rule.velocity));
 }
 
+void read_name(const Value& value, Scene& scene) {
+  constexpr std::size_t most = 200;
+  scene.name = value.text();
+  if (solver::characters(scene.name) > most) value.fail(fmt::format("a name of at most {} characters", most));
+}
+
 void read_grid_n(const Value& value, Scene& scene) {
   Grid& grid = scene.sheet.grid;
   if (value.is_list()) {
@@ -110,8 +117,7 @@ void read_relaxation(const Value& value, Scene& scene) {
 }
 
 constexpr SceneKey all_keys[] = {
-    {"name", "what tables and files call the scene", [](const Value& v, Scene& s) { s.name = v.text(); },
-     [](const Scene& s) { return in_quotes(s.name); }},
+    {"name", "what tables and files call the scene", read_name, [](const Scene& s) { return in_quotes(s.name); }},
     {"description", "one sentence", [](const Value& v, Scene& s) { s.description = v.text(); },
      [](const Scene& s) { return in_quotes(s.description); }},
 

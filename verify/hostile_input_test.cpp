@@ -55,7 +55,10 @@ void fill(const BenchIntegrators& program) {
   scene("mesh_long.toml", "obstacles = [{shape = 'mesh', file = '" + long_name + "'}]\n");
   scene("mesh_of_nothing.toml", "obstacles = [{shape = 'mesh', file = 'key.toml'}]\n");
   program.write(escape + "\n.toml", "name = ");
-  for (const char* pipe : {"pipe.toml", "pipe.h5", "pipe.ply"}) mkfifo((program.folder() / pipe).c_str(), 0666);
+  scene("mesh_of_a_pipe.toml", "obstacles = [{shape = 'mesh', file = 'of_a_pipe.obj'}]\n");
+  program.write("of_a_pipe.obj", "mtllib pipe.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  program.write("long_name.toml", "name = '" + std::string(1000, 'n') + "'\n");
+  for (const char* pipe : {"pipe.toml", "pipe.h5", "pipe.ply", "pipe.mtl"}) mkfifo((program.folder() / pipe).c_str(), 0666);
   for (const char* end : {".toml", ".h5", ".obj"}) {
     fs::create_symlink("/dev/zero", program.folder() / ("zero" + std::string(end)));
     fs::create_symlink("/dev/urandom", program.folder() / ("random" + std::string(end)));
@@ -98,6 +101,7 @@ const std::vector<Attack> attacks = {
     {"PipeForAMesh", run("mesh_pipe.toml"), {"mesh_pipe.toml:2: obstacles.file", "is a device or pipe"}},
     {"ZerosForAMesh", run("mesh_device.toml"), {"is a device or pipe"}},
     {"LongNameForAMesh", run("mesh_long.toml"), {"mesh_long.toml:2", "File name too long"}},
+    {"PipeForTheMaterialOfAMesh", run("mesh_of_a_pipe.toml"), {"of_a_pipe.obj", "expected a closed mesh"}},
     {"TextForAMesh", run("mesh_of_nothing.toml"), {"expected a mesh"}},
     {"PipeForResults", {"inspect", "pipe.h5"}, {"pipe.h5: "}},
     {"ZerosForResults", {"report", "zero.h5", "--out", "r"}, {"zero.h5: "}},
@@ -113,6 +117,8 @@ const std::vector<Attack> attacks = {
 
     {"ManyPins", run("pins.toml"), {"pins.toml:2: pins = ", "at most 1000 entries, not 2000"}},
     {"ManyObstacles", run("obstacles.toml"), {"obstacles.toml:2: obstacles = ", "at most 1000 entries, not 2000"}},
+    {"ManyRuns", {"run", "--scene", "hung-edge", "--step", times(400, "0.01,") + "0.01", "--method", "bdf2,sbdf2,midpoint"}, {"expected at most 1000 runs, not 3 methods with 401 steps"}},
+    {"LongSceneName", run("long_name.toml"), {"long_name.toml:1: name = 'nnn", "expected a name of at most 200 characters"}},
     {"ManyFrames", {"export", "--scene", "hung-edge", "--out", "new", "--every", "1e-300"}, {"--every: expected at most"}},
     {"ManyFramesOfATrajectory", run("hung-edge", {"--out", "a.h5", "--trajectory", "every=1e-300"}), {"--trajectory: expected at most"}},
     {"ManySteps", run("hung-edge", {"--set", "end.time=1e300", "--until", "1e300"}), {"--step: expected at most 1e+07 steps"}},
