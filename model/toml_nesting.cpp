@@ -17,7 +17,10 @@ std::size_t end_of_string(std::string_view toml, std::size_t begin) {
     } else if (!long_form && toml[k] == '\n') {
       return k;
     } else if (std::ranges::all_of(toml.substr(k, quotes), [=](char c) { return c == quote; }) && k + quotes <= toml.size()) {
-      return k + quotes;
+      std::size_t end = k + quotes;
+      for (int more = 0; long_form && more < 2 && end < toml.size() && toml[end] == quote; ++more)
+        ++end;  // the text's last ones
+      return end;
     }
   }
   return toml.size();

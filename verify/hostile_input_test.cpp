@@ -183,10 +183,10 @@ bool is_plain(const std::string& line) {
   return std::ranges::none_of(line, [](unsigned char c) { return std::iscntrl(c) != 0; });
 }
 
-class HostileInput : public testing::TestWithParam<Attack> {};
-INSTANTIATE_TEST_SUITE_P(, HostileInput, testing::ValuesIn(attacks), [](const auto& test) { return test.param.name; });
+class ProgramHostileInput : public testing::TestWithParam<Attack> {};
+INSTANTIATE_TEST_SUITE_P(, ProgramHostileInput, testing::ValuesIn(attacks), [](const auto& test) { return test.param.name; });
 
-TEST_P(HostileInput, IsAnsweredInOneLineAndLeavesNoTrace) {
+TEST_P(ProgramHostileInput, IsAnsweredInOneLineAndLeavesNoTrace) {
   const BenchIntegrators program;
   fill(program);
   if (GetParam().name.find("TemporaryFiles") != std::string::npos) program.write("file.obj", "v 0 0 0\n");
@@ -204,7 +204,7 @@ TEST_P(HostileInput, IsAnsweredInOneLineAndLeavesNoTrace) {
 }
 
 #ifndef DRAPE_SANITIZE  // whose shadow is more than any limit
-TEST(HostileInput, OfMoreParticlesThanMemoryIsRefusedAtOnce) {
+TEST(ProgramHostileScene, OfMoreParticlesThanMemoryIsRefusedAtOnce) {
   const BenchIntegrators program;
   fill(program);
   const ResourceLimit memory(RLIMIT_DATA, 1 << 30);
@@ -216,7 +216,7 @@ TEST(HostileInput, OfMoreParticlesThanMemoryIsRefusedAtOnce) {
   }
 }
 
-TEST(HostileInput, BeyondMemoryIsSaidToBe) {
+TEST(ProgramHostileScene, BeyondMemoryIsSaidToBe) {
   const BenchIntegrators program;
   const ResourceLimit memory(RLIMIT_DATA, 200 << 20);
   const ProgramResult result = program.run(run("hung-edge", {"--set", "grid.n=400", "--out", "a.h5", "--format", "csv"}));
@@ -228,7 +228,7 @@ TEST(HostileInput, BeyondMemoryIsSaidToBe) {
 // --- Texts that are recorded and printed again
 // ---------------------------------------------------------------------------------
 
-TEST(RecordedText, NeitherActsOnTheTerminalNorOnSpreadsheets) {
+TEST(ProgramRecordedText, NeitherActsOnTheTerminalNorOnSpreadsheets) {
   const BenchIntegrators program;
   program.write("hostile.toml", "name = \"=1+1\\u001b[31m\\n\\u202e\\u009b\"\ndescription = \"\\u001b[2J\"\ngrid.n = 3\n");
   for (const std::string format : {"table", "csv", "json"}) {
