@@ -1,6 +1,8 @@
 #include "bench/command_line.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
@@ -26,6 +28,13 @@ namespace {
 
 constexpr int failure = 1;
 constexpr int bad_input = 2;
+
+/// Without a standard stream the next file that is opened would have its number, and what is printed would go there.
+void open_standard_streams() {
+  for (const int fd : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (fcntl(fd, F_GETFD) < 0 && open("/dev/null", O_RDWR) < 0)  // NOLINT(android-cloexec-open): children have them, too
+      throw std::system_error(errno, std::generic_category(), "/dev/null");
+}
 
 /// Throws std::system_error unless all that was printed went out.
 void flush_output() {
@@ -91,6 +100,7 @@ int run_command_line(int argc, const char* const* argv) {
       "  bench_integrators run --help\n");  // after the subcommands, which would inherit it
   note_interruptions();
   try {
+    open_standard_streams();
     app.parse(argc, argv);
     if (app.get_subcommands().empty()) do_main_job();
     flush_output();

@@ -21,6 +21,15 @@ namespace {
   throw FileError(fmt::format("{} exists; choose another --out or remove it", file.string()));
 }
 
+/// Throws FileError if the system cannot say, as of a name that is too long.
+bool is_there(const fs::path& path) {
+  std::error_code error;
+  const fs::file_status status = fs::symlink_status(path, error);
+  if (status.type() == fs::file_type::none)
+    throw FileError(fmt::format("{}: cannot be used ({})", path.string(), error.message()));
+  return fs::exists(status);
+}
+
 /// The file under another name in the same folder: only within a file system can it be renamed.
 solver::Temporary temporary_beside(const fs::path& file) {
   try {
@@ -34,8 +43,7 @@ solver::Temporary temporary_beside(const fs::path& file) {
 }  // namespace
 
 void require_creatable(const fs::path& file) {
-  std::error_code unknown;  // left to the attempt, whose message is better
-  if (fs::exists(fs::symlink_status(file, unknown))) refuse_existing(file);
+  if (is_there(file)) refuse_existing(file);
   temporary_beside(file);  // trying is the only test that knows of rights, full and read-only file systems alike
 }
 
@@ -47,8 +55,11 @@ void create_folder(const fs::path& folder, std::string_view advice) {
 
 void require_empty_folder(const fs::path& folder, std::string_view content) {
   std::error_code none;  // then there is nothing in it
-  if (fs::exists(folder, none) && !(fs::is_directory(folder, none) && fs::is_empty(folder, none)))
+  if (is_there(folder) && !(fs::is_directory(folder, none) && fs::is_empty(folder, none)))
     throw FileError(fmt::format("{}: expected a new or empty folder for {}", folder.string(), content));
+  fs::path existing = folder;
+  while (!is_there(existing)) existing = folder_of(existing);
+  const TemporaryFolder attempt(existing);  // trying is the only test that knows of rights, full and read-only file systems
 }
 
 void publish_folder(const fs::path& folder, const std::map<std::string, std::string>& files) {

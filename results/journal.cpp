@@ -93,18 +93,7 @@ Provenance facts_in(const json& header) {
 }
 
 std::uint64_t checksum(const std::string& id, const Journal::Bytes& value) {
-  return try {
-    return solver::content_of(path, std::numeric_limits<std::uintmax_t>::max());
-  } catch (const solver::UnreadableFile& error) {
-    throw FileError(fmt::format("{}: {}: expected a journal of this program; remove it", path.string(), error.what()));
-  }
-  H3_64bits_withSeed(
-      value.data(), value.size(),
-      try {
-        return solver::content_of(path, std::numeric_limits<std::uintmax_t>::max());
-      } catch (const solver::UnreadableFile& error) {
-        throw FileError(fmt::format("{}: {}: expected a journal of this program; remove it", path.string(), error.what()));
-      } H3_64bits(id.data(), id.size()));
+  return XXH3_64bits_withSeed(value.data(), value.size(), XXH3_64bits(id.data(), id.size()));
 }
 
 bool is_unit(const json& item) {
