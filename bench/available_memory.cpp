@@ -15,35 +15,35 @@ namespace {
 
 constexpr double unlimited = std::numeric_limits<double>::infinity();
 
-/// The number after a word in a file, as /proc has it [kB]; unlimited if there is none.
-double kilobytes(const char* file, const std::string& word) {
+/// The number after a word at the beginning of a line of a file; unlimited if there is none.
+double number_after(const char* file, const std::string& word) {
   std::ifstream stream(file);
   for (std::string name; stream >> name; stream.ignore(std::numeric_limits<std::streamsize>::max(), '\n'))
     if (double value = 0; name == word && stream >> value) return value;
   return unlimited;
 }
 
-/// A file of the control group with one number [bytes]; unlimited if it has the word max, or is not there.
-double of_control_group(const std::string& name) {
-  std::ifstream stream("/sys/fs/cgroup/" + name);
-  double value = 0;
-  return stream >> value ? value : unlimited;
+/// What the control group leaves [bytes]: pages of files count as held there, but can be dropped.
+double of_control_group() {
+  double most = 0, held = 0;
+  if (!(std::ifstream("/sys/fs/cgroup/memory.max") >> most) || !(std::ifstream("/sys/fs/cgroup/memory.current") >> held))
+    return unlimited;  // there is none, or it has the word max
+  const double files = number_after("/sys/fs/cgroup/memory.stat", "file");
+  return most - held + (files == unlimited ? 0 : files);
 }
 
 double of_limit(__rlimit_resource resource, const char* held) {
   rlimit limit{};
   if (getrlimit(resource, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return unlimited;
-  const double taken = kilobytes("/proc/self/status", held);
+  const double taken = number_after("/proc/self/status", held);
   return static_cast<double>(limit.rlim_cur) - (taken == unlimited ? 0 : 1024 * taken);
 }
 
 }  // namespace
 
 double available_memory() {
-  const double group = of_control_group("memory.max");
-  const double in_group = group == unlimited ? unlimited : group - of_control_group("memory.current");
-  return std::max(0.0, std::min({1024 * kilobytes("/proc/meminfo", "MemAvailable:"), in_group, of_limit(RLIMIT_AS, "VmSize:"),
-                                 of_limit(RLIMIT_DATA, "VmData:")}));
+  return std::max(0.0, std::min({1024 * number_after("/proc/meminfo", "MemAvailable:"), of_control_group(),
+                                 of_limit(RLIMIT_AS, "VmSize:"), of_limit(RLIMIT_DATA, "VmData:")}));
 }
 
 void require_memory(const model::Scene& scene) {
