@@ -44,7 +44,8 @@ solver::Temporary temporary_beside(const fs::path& file) {
 
 void require_creatable(const fs::path& file) {
   if (is_there(file)) refuse_existing(file);
-  const solver::Temporary attempt = temporary_beside(file);  // trying is the only test that knows of rights, full and read-only file systems alike
+  const solver::Temporary attempt =
+      temporary_beside(file);  // the only test that knows of rights, full and read-only file systems alike
 }
 
 void create_folder(const fs::path& folder, std::string_view advice) {

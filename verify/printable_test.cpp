@@ -16,7 +16,6 @@ using solver::characters;
 using solver::nearest_name;
 using solver::printable;
 using solver::printable_lines;
-using solver::quoted;
 using solver::shortened;
 
 TEST(Printable, LeavesTextOfAllLanguagesAlone) {
@@ -70,8 +69,8 @@ TEST(Shortened, CountsCharactersNotBytes) {
 }
 
 TEST(Quoted, IsOfAtMost200Characters) {
-  EXPECT_EQ(quoted(std::string(200, 'a')), std::string(200, 'a'));
-  EXPECT_EQ(quoted(std::string(5 << 20, 'a')), std::string(200, 'a') + "... (5242880 characters)");
+  EXPECT_EQ(solver::quoted(std::string(200, 'a')), std::string(200, 'a'));
+  EXPECT_EQ(solver::quoted(std::string(5 << 20, 'a')), std::string(200, 'a') + "... (5242880 characters)");
 }
 
 TEST(NearestName, IsWhatMayHaveBeenMeant) {
