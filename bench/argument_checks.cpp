@@ -4,14 +4,18 @@
 
 #include <cmath>
 #include <functional>
+#include <string_view>
 #include <vector>
+
+#include "solver/named.hpp"
+#include "solver/printable.hpp"
 
 namespace drape::bench {
 namespace {
 
 CLI::Validator expect(const std::string& what, const std::function<bool(const std::string&)>& right) {
   const auto complaint = [=](const std::string& text) {
-    return right(text) ? "" : fmt::format("expected {}, not '{}'", what, text);
+    return right(text) ? "" : fmt::format("expected {}, not '{}'", what, solver::quoted(text));
   };
   return {complaint, ""};
 }
@@ -22,6 +26,14 @@ CLI::Validator expect_number(const std::string& what, const std::function<bool(N
     Number value{};
     return CLI::detail::lexical_cast(text, value) && right(value);
   });
+}
+
+std::string unknown_argument(const CLI::App& command, const std::string& argument) {
+  std::vector<std::string> known;
+  for (const CLI::App* subcommand : command.get_subcommands({})) known.push_back(subcommand->get_name());
+  for (const CLI::Option* option : command.get_options()) known.push_back(option->get_name());
+  const std::vector<std::string_view> names(known.begin(), known.end());
+  return solver::unknown_name("argument", argument, names);
 }
 
 }  // namespace
@@ -44,6 +56,11 @@ CLI::Validator not_empty() {
   return expect("a name", [](const std::string& text) { return !text.empty(); });
 }
 
+CLI::Validator output_name() {
+  return expect("a name, which may begin with '-' as in ./-x only",
+                [](const std::string& text) { return !text.empty() && text[0] != '-'; });
+}
+
 CLI::Validator every_seconds() {
   return expect("every=SECONDS with a finite number above 0", [](const std::string& text) {
     const double seconds = seconds_every(text);
@@ -61,12 +78,10 @@ std::string explanation(const CLI::App& app, const CLI::ParseError& error) {
   const auto is = [&](CLI::ExitCodes code) { return error.get_exit_code() == static_cast<int>(code); };
   if (is(CLI::ExitCodes::ValidationError)) return error.what();
   const CLI::App& command = app.get_subcommands().empty() ? app : *app.get_subcommands().front();
-  if (is(CLI::ExitCodes::ExtrasError)) {
-    std::vector<std::string> known;
-    for (const CLI::App* subcommand : command.get_subcommands({})) known.push_back(subcommand->get_name());
-    for (const CLI::Option* option : command.get_options()) known.push_back(option->get_name());
-    return fmt::format("unknown argument '{}': expected one of {}", command.remaining().front(), fmt::join(known, ", "));
-  }
+  std::vector<std::string> unknown = app.remaining(/*recurse=*/true);
+  std::erase(unknown, "--");
+  if (is(CLI::ExitCodes::ExtrasError) || (is(CLI::ExitCodes::RequiredError) && !unknown.empty()))
+    return unknown_argument(command, unknown.empty() ? error.what() : unknown.front());
   return fmt::format("{}; see {}{} --help", error.what(), app.get_name(), &command == &app ? "" : " " + command.get_name());
 }
 

@@ -14,6 +14,7 @@
 #include "bench/trajectory_record.hpp"
 #include "model/energy_guard.hpp"
 #include "model/scene_file.hpp"
+#include "solver/printable.hpp"
 #include "solver/threads.hpp"
 
 namespace drape::bench {
@@ -100,8 +101,8 @@ void go_within(const Limits& limits, results::RunRecord& run, const Go& go) {
   } catch (const OutOfTime& error) {
     stop(out_of_time, error.what());
   } catch (const std::bad_alloc&) {
-    if (!std::isfinite(limits.megabytes)) throw;  // it is the machine's
-    stop(out_of_memory, fmt::format("more than {:g} MB", limits.megabytes));
+    stop(out_of_memory,
+         std::isfinite(limits.megabytes) ? fmt::format("more than {:g} MB", limits.megabytes) : "more than the machine has");
   }
 }
 
@@ -127,7 +128,7 @@ void choose_method(Cell& cell, const std::string& name) {
     cell.options.stage = &solver::stage_kind(parts[next++]);
   if (next < parts.size() && method.implicit()) cell.options.linear_solver = &solver::linear_solver(parts[next++]);
   if (next < parts.size() || name.ends_with('/'))
-    throw std::invalid_argument(fmt::format("method '{}': expected {}", name, expected(method)));
+    throw std::invalid_argument(fmt::format("method '{}': expected {}", solver::quoted(name), expected(method)));
 }
 
 results::RunRecord record(const Cell& cell, const solver::Observer& look, std::optional<double> frames_every,

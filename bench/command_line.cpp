@@ -1,20 +1,27 @@
 #include "bench/command_line.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <filesystem>
+#include <new>
+#include <stdexcept>
 #include <string_view>
 #include <system_error>
 
 #include "bench/argument_checks.hpp"
+#include "bench/available_memory.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/interruption.hpp"
 #include "model/scene_file.hpp"
 #include "results/atomic_file.hpp"
+#include "solver/printable.hpp"
 
 namespace drape::bench {
 namespace {
@@ -22,24 +29,40 @@ namespace {
 constexpr int failure = 1;
 constexpr int bad_input = 2;
 
+/// Without a standard stream the next file that is opened would have its number, and what is printed would go there.
+void open_standard_streams() {
+  for (const int fd : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (fcntl(fd, F_GETFD) < 0 && open("/dev/null", O_RDWR) < 0)  // NOLINT(android-cloexec-open): children have them, too
+      throw std::system_error(errno, std::generic_category(), "/dev/null");
+}
+
 /// Throws std::system_error unless all that was printed went out.
 void flush_output() {
   if (std::fflush(stdout) != 0) throw std::system_error(errno, std::generic_category(), "standard output");
 }
 
+/// One line, in which what is quoted neither acts on the terminal nor fills it.
 int complain(const std::string& message, int exit_code = bad_input) {
-  fmt::print(stderr, "bench_integrators: {}\n", message);
+  constexpr std::size_t longest = 2000;
+  fmt::print(stderr, "bench_integrators: {}\n", solver::shortened(solver::printable(message), longest));
   return exit_code;
 }
 
+std::string not_enough_memory(const CLI::App& app) {
+  return fmt::format(
+      "{}: not enough memory, {:.3g} GB are available: expected a smaller scene (grid.n), or fewer or smaller files",
+      app.get_subcommands().empty() ? app.get_name() : app.get_subcommands().front()->get_name(), available_memory() / 1e9);
+}
+
 /// A word as a shell takes it.
-std::string shell_word(std::string word) {
+std::string shell_word(const std::string& word) {
   const auto plain = [](unsigned char c) {
     return std::isalnum(c) != 0 || std::string_view("-_./,:=+@%").find(char(c)) != std::string_view::npos;
   };
   if (!word.empty() && std::ranges::all_of(word, plain)) return word;
-  for (auto at = word.find('\''); at != std::string::npos; at = word.find('\'', at + 4)) word.replace(at, 1, "'\\''");
-  return "'" + word + "'";
+  std::string quoted = "'";
+  for (const char c : word) quoted += c == '\'' ? "'\\''" : std::string(1, c);
+  return quoted + "'";
 }
 
 std::string farewell(const Interrupted& interrupted) {
@@ -77,6 +100,7 @@ int run_command_line(int argc, const char* const* argv) {
       "  bench_integrators run --help\n");  // after the subcommands, which would inherit it
   note_interruptions();
   try {
+    open_standard_streams();
     app.parse(argc, argv);
     if (app.get_subcommands().empty()) do_main_job();
     flush_output();
@@ -92,7 +116,13 @@ int run_command_line(int argc, const char* const* argv) {
     return complain(error.what());
   } catch (const Interrupted& interrupted) {
     return complain(farewell(interrupted), 128 + interrupted.signal);  // as a shell has it
-  } catch (const std::exception& error) {  // no fault of the input: no memory, no place for the output
+  } catch (const std::filesystem::filesystem_error& error) {
+    return complain(fmt::format("{}: cannot be used ({})", error.path1().string(), error.code().message()));
+  } catch (const std::bad_alloc&) {
+    return complain(not_enough_memory(app));
+  } catch (const std::length_error&) {  // of a container: more than any machine has
+    return complain(not_enough_memory(app));
+  } catch (const std::exception& error) {  // no fault of the input: no place for the output
     return complain(error.what(), failure);
   }
 }

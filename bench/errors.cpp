@@ -7,6 +7,7 @@
 #include "bench/motion_error.hpp"
 #include "model/scene_file.hpp"
 #include "solver/largest.hpp"
+#include "solver/printable.hpp"
 
 namespace drape::bench {
 namespace {
@@ -40,7 +41,7 @@ std::vector<double> compared_times(const model::Scene& scene) {
 }
 
 References::~References() {
-  for (const std::string& message : cache_.messages()) fmt::print(stderr, "note: {}\n", message);
+  for (const std::string& message : cache_.messages()) fmt::print(stderr, "note: {}\n", solver::printable(message));
 }
 
 reference::Reference References::operator()(const model::Scene& scene, const model::Cloth& cloth) {

@@ -6,10 +6,14 @@ reads, one a frame, in the natural order of their names: sheet-9.obj comes befor
 crash a library, then only this process ends. What is wrong with a file is said in the last line, by exit code 1.
 """
 import re
+import resource
 import sys
 
 import h5py
 import numpy as np
+
+
+MOST_BYTES = 1 << 30  # of a dataset, as bench_integrators allows for files
 
 
 def natural(name):
@@ -17,13 +21,17 @@ def natural(name):
 
 
 def dataset(path, file, name, rank):
-    item = file.get(name)
+    item = file.get(name) if isinstance(file.get(name, getlink=True), h5py.HardLink) else None
     if not isinstance(item, h5py.Dataset):
         sys.exit(f"{path}: expected a dataset /{name}")
+    if item.external or item.is_virtual:
+        sys.exit(f"{path}: /{name}: expected numbers in the file itself, not in another one")
     if item.dtype.kind not in "iuf":
         sys.exit(f"{path}: /{name}: expected numbers")
     if item.ndim != rank or (rank == 3 and item.shape[2] != 3):
         sys.exit(f"{path}: /{name}: expected the shape {'F x N x 3' if rank == 3 else 'F'}, not {' x '.join(map(str, item.shape))}")
+    if item.size * 8 > MOST_BYTES:
+        sys.exit(f"{path}: /{name}: expected at most {MOST_BYTES >> 20} MB of numbers, not {item.size * 8 >> 20} MB")
     return item[()].astype("f8")
 
 
@@ -73,4 +81,11 @@ def main(out, frame_time, *paths):
             file[name] = values
 
 
-main(*sys.argv[1:])
+if resource.getrlimit(resource.RLIMIT_DATA)[0] == resource.RLIM_INFINITY:
+    resource.setrlimit(resource.RLIMIT_DATA, (8 * MOST_BYTES, resource.RLIM_INFINITY))
+try:
+    main(*sys.argv[1:])
+except MemoryError:
+    sys.exit(f"{sys.argv[3]}: expected a motion of at most {MOST_BYTES >> 20} MB")
+except RecursionError:
+    sys.exit(f"{sys.argv[3]}: cannot be read: it is nested too deeply")

@@ -9,6 +9,8 @@
 #include <cstdio>
 #include <utility>
 
+#include "solver/printable.hpp"
+
 namespace drape::bench {
 namespace {
 
@@ -27,7 +29,7 @@ Progress::~Progress() {
 }
 
 void Progress::show(const std::string& activity) {
-  activity_ = activity;
+  activity_ = solver::printable(activity);
   draw();
 }
 

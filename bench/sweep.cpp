@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <new>
 
 #include "bench/contact_record.hpp"
 #include "bench/errors.hpp"
@@ -35,6 +36,8 @@ Truth find_reference(const model::Scene& scene, References& references) {
     truth.reference = references(scene, truth.cloth);
   } catch (const reference::ReferenceError& error) {
     truth.remark = fmt::format("no reference: {}", error.what());
+  } catch (const std::bad_alloc&) {
+    truth.remark = "no reference: it needs more memory than the machine has";
   }
   return truth;
 }

@@ -1,5 +1,6 @@
 #include "model/mesh_shape.hpp"
 
+#include <assimp/DefaultIOSystem.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <fmt/format.h>
@@ -8,6 +9,7 @@
 #include <array>
 #include <assimp/Importer.hpp>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -17,6 +19,8 @@
 #include <utility>
 #include <vector>
 
+#include "solver/input_file.hpp"
+
 namespace drape::model {
 namespace {
 
@@ -24,6 +28,20 @@ using Eigen::Affine3d;
 using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 using Hierarchy = Eigen::KdBVH<double, 3, int>;
+
+/// What a mesh's file names, as its materials, is opened only if it ends.
+class RegularFiles : public Assimp::DefaultIOSystem {
+ public:
+  Assimp::IOStream* Open(const char* file, const char* mode) override {  // NOLINT(readability-identifier-naming): for Assimp
+    constexpr std::uintmax_t most_bytes = 256 << 20;
+    try {
+      solver::require_input_file(file, most_bytes);
+      return DefaultIOSystem::Open(file, mode);
+    } catch (const solver::UnreadableFile&) {
+      return nullptr;
+    }
+  }
+};
 
 /// Joins the parts of a mesh that are read one after another: vertices in the same place are one vertex.
 class Joined {
@@ -70,6 +88,7 @@ void add(Joined& joined, const aiScene& scene, const aiNode& node, const Affine3
 
 TriangleMesh read_mesh(const std::string& file) {
   Assimp::Importer importer;
+  importer.SetIOHandler(new RegularFiles);  // which it owns
   const aiScene* scene = importer.ReadFile(file, aiProcess_Triangulate);
   if (scene == nullptr)
     throw std::invalid_argument(fmt::format("{}: cannot be read: expected a mesh: {}", file, importer.GetErrorString()));

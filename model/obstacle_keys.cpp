@@ -4,17 +4,20 @@
 #include <xxhash.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <stdexcept>
 
 #include "model/toml_text.hpp"
+#include "solver/input_file.hpp"
+#include "solver/printable.hpp"
 
 namespace drape::model {
 namespace {
 
 constexpr std::string_view shapes[] = {"plane", "sphere", "box", "cylinder", "mesh"};
+constexpr std::uintmax_t most_bytes = 256 << 20;  // of the file of a mesh
 constexpr std::string_view frame_keys[] = {"time", "position", "rotation"};
 
 /// The same file whatever folder the text is read from.
@@ -22,15 +25,21 @@ std::string absolute_path(const std::filesystem::path& file) { return std::files
 
 /// XXH3 of the bytes of a file.
 std::string checksum(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw std::invalid_argument(file + ": cannot be read: expected the mesh of an obstacle");
-  const std::string bytes(std::istreambuf_iterator<char>(in), {});
-  return fmt::format("{:016x}", XXH3_64bits(bytes.data(), bytes.size()));
+  try {
+    const std::string bytes = solver::content_of(file, most_bytes);
+    return fmt::format("{:016x}", XXH3_64bits(bytes.data(), bytes.size()));
+  } catch (const solver::UnreadableFile& error) {
+    throw std::invalid_argument(fmt::format("{}: {}: expected the mesh of an obstacle", file, error.what()));
+  }
 }
 
 void read_file(const Value& value, ObstacleRule& rule) {
   rule.file = absolute_path(value.folder() / value.text());
-  if (!std::filesystem::is_regular_file(rule.file)) value.fail("the file of a mesh, there is no " + rule.file);
+  try {
+    solver::require_input_file(rule.file, most_bytes);
+  } catch (const solver::UnreadableFile& error) {
+    value.fail(fmt::format("the file of a mesh, {}: {}", solver::quoted(rule.file), error.what()));
+  }
 }
 
 void read_checksum(const Value& value, ObstacleRule& rule) {

@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
+#include <cmath>
+#include <cstdint>
 #include <map>
-#include <sstream>
 
 #include "model/scene_keys.hpp"
+#include "model/toml_nesting.hpp"
+#include "solver/input_file.hpp"
 #include "solver/named.hpp"
+#include "solver/printable.hpp"
 
 namespace drape::model {
 namespace {
@@ -16,7 +19,16 @@ namespace {
 /// Origins of the keys that did not come from the file.
 using Origins = std::map<std::string, std::string>;
 
+/// Limits of files, so that no file takes long or much memory to be refused.
+constexpr std::uintmax_t most_bytes = 4 << 20;
+constexpr int most_levels = 16;
+
 toml::table parse(std::string_view text, std::string_view origin) {
+  if (const int line = line_nested_deeper(text, most_levels))
+    throw SceneError(
+        fmt::format("{}:{}: nested deeper than {} levels: expected a scene, whose keys have two parts and whose "
+                    "lists have at most five levels",
+                    origin, line, most_levels));
   try {
     return toml::parse(text);
   } catch (const toml::parse_error& error) {
@@ -26,6 +38,8 @@ toml::table parse(std::string_view text, std::string_view origin) {
 
 /// The value of an override: TOML if it is TOML, else a bare word.
 toml::table parse_value(const Override& change) {
+  if (line_nested_deeper(change.value, most_levels) > 0)
+    throw SceneError(fmt::format("--set {}: nested deeper than {} levels", change.key, most_levels));
   try {
     return toml::parse("value = " + change.value);
   } catch (const toml::parse_error&) {
@@ -70,7 +84,7 @@ void check_known(const std::string& path, const std::string& where) {
     if (section.empty() || known.path.starts_with(section)) choices.push_back(known.path);
   if (choices.empty())
     for (const SceneKey& known : scene_key_table()) choices.push_back(known.path);
-  throw SceneError(fmt::format("{}: unknown key '{}': expected one of {}", where, path, fmt::join(choices, ", ")));
+  throw SceneError(fmt::format("{}: {}", where, solver::unknown_name("key", path, choices)));
 }
 
 /// Rules that no single key can break.
@@ -88,18 +102,22 @@ void check_together(const Scene& scene, const std::string& origin) {
   if (scene.sheet.wind.needs_normals() && (grid.nu < 2 || grid.nv < 2))
     fail("forces.wind: expected forces.drag = forces.lift, a chain has no normals");
   if (scene.sheet.air != 0 && (grid.nu < 2 || grid.nv < 2)) fail("forces.air: expected 0, a chain has no normals");
+  constexpr double most_compared = 1e8;  // a second
+  if (static_cast<double>(scene.pins.size()) * grid.particles() > most_compared)
+    fail(fmt::format("pins: expected at most {:g} on a grid of {} particles, not {}",
+                     std::floor(most_compared / grid.particles()), grid.particles(), scene.pins.size()));
   const std::vector<solver::Pin> all = pins(scene);
   if (std::ssize(all) == grid.particles() && std::ranges::all_of(all, &solver::Pin::all))
     fail("pins: expected at least one coordinate that is free to move");
 }
 
 std::string read_file(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  if (!file || std::filesystem::is_directory(path))
-    throw SceneError(fmt::format("{}: cannot be read: expected a scene file", path.string()));
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
+  try {
+    return solver::content_of(path, most_bytes);
+  } catch (const solver::UnreadableFile& error) {
+    throw SceneError(fmt::format("{}: {}: expected a scene file of at most {}", path.string(), error.what(),
+                                 solver::in_megabytes(most_bytes)));
+  }
 }
 
 }  // namespace
@@ -107,7 +125,7 @@ std::string read_file(const std::filesystem::path& path) {
 Override parse_override(std::string_view text) {
   const auto equals = text.find('=');
   if (equals == std::string_view::npos || equals == 0 || equals + 1 == text.size())
-    throw SceneError(fmt::format("--set {}: expected key=value, for example material.damping=0.5", text));
+    throw SceneError(fmt::format("--set {}: expected key=value, for example material.damping=0.5", solver::quoted(text)));
   return {std::string(text.substr(0, equals)), std::string(text.substr(equals + 1))};
 }
 
@@ -116,7 +134,7 @@ Scene parse_scene(std::string_view toml, std::string_view origin, std::span<cons
   toml::table root = parse(toml, origin);
   Origins origins;
   for (const Override& change : overrides) {
-    origins[change.key] = "--set " + change.key;
+    origins[change.key] = "--set " + solver::quoted(change.key);
     check_known(change.key, origins[change.key]);
     apply(root, change);
   }

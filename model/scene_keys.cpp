@@ -6,6 +6,7 @@
 
 #include "model/obstacle_keys.hpp"
 #include "model/toml_text.hpp"
+#include "solver/printable.hpp"
 
 namespace drape::model {
 namespace {
@@ -37,6 +38,14 @@ void read_particles(const Value& value, const Grid& grid, PinRule& rule) {
       value.fail(fmt::format("places [a, b] with 0 ≤ a < {} and 0 ≤ b < {}", grid.nu, grid.nv));
     rule.particles.emplace_back(static_cast<int>(a), static_cast<int>(b));
   }
+}
+
+/// Of pins and of obstacles: each is compared with all particles.
+std::vector<Value> rules(const Value& value) {
+  constexpr std::size_t most = 1000;
+  std::vector<Value> all = value.list();
+  if (all.size() > most) value.fail(fmt::format("at most {} entries, not {}", most, all.size()));
+  return all;
 }
 
 PinRule read_pin(const Value& value, const Grid& grid) {
@@ -73,6 +82,12 @@ std::string written_pin(const PinRule& rule) {
   return fmt::format("{{ {}, directions = \"{}\", velocity = {} }}", place, directions, written(rule.velocity));
 }
 
+void read_name(const Value& value, Scene& scene) {
+  constexpr std::size_t most = 200;
+  scene.name = value.text();
+  if (solver::characters(scene.name) > most) value.fail(fmt::format("a name of at most {} characters", most));
+}
+
 void read_grid_n(const Value& value, Scene& scene) {
   Grid& grid = scene.sheet.grid;
   if (value.is_list()) {
@@ -102,8 +117,7 @@ void read_relaxation(const Value& value, Scene& scene) {
 }
 
 constexpr SceneKey all_keys[] = {
-    {"name", "what tables and files call the scene", [](const Value& v, Scene& s) { s.name = v.text(); },
-     [](const Scene& s) { return in_quotes(s.name); }},
+    {"name", "what tables and files call the scene", read_name, [](const Scene& s) { return in_quotes(s.name); }},
     {"description", "one sentence", [](const Value& v, Scene& s) { s.description = v.text(); },
      [](const Scene& s) { return in_quotes(s.description); }},
 
@@ -184,7 +198,7 @@ constexpr SceneKey all_keys[] = {
 
     {"pins", "list of { where | particles, directions, velocity }: prescribed motion",
      [](const Value& v, Scene& s) {
-       for (const Value& pin : v.list()) s.pins.push_back(read_pin(pin, s.sheet.grid));
+       for (const Value& pin : rules(v)) s.pins.push_back(read_pin(pin, s.sheet.grid));
      },
      [](const Scene& s) { return written_list(s.pins, written_pin); }},
 
@@ -193,7 +207,7 @@ constexpr SceneKey all_keys[] = {
      "rotation | motion = [{ time, position, rotation }, ...] }: a rotation is an axis times degrees; between two key frames "
      "an obstacle turns the shorter way, by less than half a turn",
      [](const Value& v, Scene& s) {
-       for (const Value& obstacle : v.list()) s.obstacles.push_back(read_obstacle(obstacle));
+       for (const Value& obstacle : rules(v)) s.obstacles.push_back(read_obstacle(obstacle));
      },
      [](const Scene& s) { return written_list<ObstacleRule>(s.obstacles, written); }},
     {"contact.distance", "d [m]: what is nearer to an obstacle than this is in its collision area",

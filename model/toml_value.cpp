@@ -7,6 +7,8 @@
 #include <limits>
 #include <sstream>
 
+#include "solver/printable.hpp"
+
 namespace drape::model {
 
 std::string place(const std::string& origin, const toml::node& node) {
@@ -18,8 +20,8 @@ std::string Value::shown() const {
   std::ostringstream out;
   node_.visit([&](const auto& value) { out << value; });
   std::string text = out.str();
-  std::ranges::replace(text, '\n', ' ');  // a message is one line
-  return text;
+  std::ranges::replace(text, '\n', ' ');  // of the layout of lists
+  return solver::quoted(text);
 }
 
 void Value::fail(const std::string& what_is_right) const {

@@ -4,21 +4,22 @@
 #include <fmt/ranges.h>
 #include <sundials/sundials_version.h>
 #include <sunlinsol/sunlinsol_klu.h>
-#include <unistd.h>
 #include <xxhash.h>
 
 #include <array>
-#include <cerrno>
 #include <cstdlib>
 #include <fstream>
-#include <iterator>
 #include <system_error>
 
 #include "reference/fingerprint.hpp"
 #include "reference/reference_file.hpp"
+#include "solver/input_file.hpp"
+#include "solver/temporary.hpp"
 
 namespace drape::reference {
 namespace {
+
+constexpr std::uintmax_t largest_file = std::uintmax_t{4} << 30;  // [bytes]
 
 std::string complete(std::string_view key) {
   std::array<char, 32> sundials{};
@@ -31,21 +32,12 @@ std::string complete(std::string_view key) {
 /// Writes a file of its own beside the target and renames it, so that no reader ever sees a half of it.
 void write_atomically(const std::filesystem::path& target, const std::string& bytes) {
   std::filesystem::create_directories(target.parent_path());
-  std::string temporary = target.string() + ".XXXXXX";
-  const int descriptor = mkstemp(temporary.data());
-  if (descriptor < 0) throw std::system_error(errno, std::generic_category(), temporary);
-  ::close(descriptor);
-  try {
-    std::ofstream file(temporary, std::ios::binary);
-    file.exceptions(std::ios::badbit | std::ios::failbit);
-    file << bytes;
-    file.close();
-    std::filesystem::rename(temporary, target);
-  } catch (...) {
-    std::error_code ignored;  // the first failure is the one to report
-    std::filesystem::remove(temporary, ignored);
-    throw;
-  }
+  const solver::Temporary temporary(target.parent_path(), solver::Temporary::Kind::file);
+  std::ofstream file(temporary.path(), std::ios::binary);
+  file.exceptions(std::ios::badbit | std::ios::failbit);
+  file << bytes;
+  file.close();
+  std::filesystem::rename(temporary.path(), target);
 }
 
 }  // namespace
@@ -61,6 +53,8 @@ std::filesystem::path default_cache_folder() {
   return {};
 }
 
+Cache::Cache(std::filesystem::path folder) : folder_(std::move(folder)) { solver::remove_leftovers(folder_); }
+
 std::filesystem::path Cache::file(std::string_view key) const {
   const std::string text = complete(key);
   const auto hash = XXH3_128bits(text.data(), text.size());
@@ -69,16 +63,15 @@ std::filesystem::path Cache::file(std::string_view key) const {
 
 std::optional<Reference> Cache::find(std::string_view key) {
   const std::filesystem::path path = file(key);
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) {
+  if (std::error_code unreachable; !std::filesystem::exists(path, unreachable)) {
     ++counts_.absent;
     return std::nullopt;
   }
   try {
-    Reference reference = decode(std::string(std::istreambuf_iterator<char>(stream), {}), complete(key));
+    Reference reference = decode(solver::content_of(path, largest_file), complete(key));
     ++counts_.hits;
     return reference;
-  } catch (const DamagedFile& error) {
+  } catch (const std::runtime_error& error) {
     ++counts_.rejected;
     messages_.push_back(fmt::format("the cached reference {} is not used: {}", path.string(), error.what()));
     return std::nullopt;

@@ -11,6 +11,7 @@
 
 #include "results/descriptor.hpp"
 #include "results/temporary_folder.hpp"
+#include "solver/temporary.hpp"
 
 namespace drape::results {
 namespace fs = std::filesystem;
@@ -20,34 +21,31 @@ namespace {
   throw FileError(fmt::format("{} exists; choose another --out or remove it", file.string()));
 }
 
-/// The file under another name in the same folder (only within a file system can it be renamed), removed at the end.
-struct Temporary {
-  fs::path path;
-  Descriptor out;
-  explicit Temporary(const fs::path& file)
-      : path(fmt::format("{}.tmp-{}", file.string(), getpid())),
-        out(open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
-    if (out.fd < 0) fail_to_create_beside(file);
-  }
-  Temporary(const Temporary&) = delete;
-  Temporary& operator=(const Temporary&) = delete;
-  ~Temporary() { unlink(path.c_str()); }
-};
+/// Throws FileError if the system cannot say, as of a name that is too long.
+bool is_there(const fs::path& path) {
+  std::error_code error;
+  const fs::file_status status = fs::symlink_status(path, error);
+  if (status.type() == fs::file_type::none)
+    throw FileError(fmt::format("{}: cannot be used ({})", path.string(), error.message()));
+  return fs::exists(status);
+}
 
-TemporaryFolder folder_in(const fs::path& parent) {
+/// The file under another name in the same folder: only within a file system can it be renamed.
+solver::Temporary temporary_beside(const fs::path& file) {
   try {
-    return TemporaryFolder(parent);
+    return {folder_of(file), solver::Temporary::Kind::file};
   } catch (const std::system_error& error) {
-    throw FileError(fmt::format("{}: cannot create files in it ({})", parent.string(), error.code().message()));
+    errno = error.code().value();
+    fail_to_create_beside(file);
   }
 }
 
 }  // namespace
 
 void require_creatable(const fs::path& file) {
-  std::error_code unknown;  // left to the attempt, whose message is better
-  if (fs::exists(fs::symlink_status(file, unknown))) refuse_existing(file);
-  const Temporary attempt(file);  // trying is the only test that knows of rights, full and read-only file systems alike
+  if (is_there(file)) refuse_existing(file);
+  const solver::Temporary attempt =
+      temporary_beside(file);  // the only test that knows of rights, full and read-only file systems alike
 }
 
 void create_folder(const fs::path& folder, std::string_view advice) {
@@ -58,15 +56,18 @@ void create_folder(const fs::path& folder, std::string_view advice) {
 
 void require_empty_folder(const fs::path& folder, std::string_view content) {
   std::error_code none;  // then there is nothing in it
-  if (fs::exists(folder, none) && !(fs::is_directory(folder, none) && fs::is_empty(folder, none)))
+  if (is_there(folder) && !(fs::is_directory(folder, none) && fs::is_empty(folder, none)))
     throw FileError(fmt::format("{}: expected a new or empty folder for {}", folder.string(), content));
+  fs::path existing = folder;
+  while (!is_there(existing)) existing = folder_of(existing);
+  const TemporaryFolder attempt(existing);  // trying is the only test that knows of rights, full and read-only file systems
 }
 
 void publish_folder(const fs::path& folder, const std::map<std::string, std::string>& files) {
   const fs::path absolute = fs::absolute(folder).lexically_normal();
   const fs::path target = absolute.has_filename() ? absolute : absolute.parent_path();
   create_folder(target.parent_path());
-  const TemporaryFolder beside = folder_in(target.parent_path());  // in the same file system, so that a rename does
+  const TemporaryFolder beside(target.parent_path());  // in the same file system, so that a rename does
   const fs::path made = beside / "new";
   create_folder(made);
   for (const auto& [name, content] : files) publish(made / name, std::as_bytes(std::span(content)), Existing::refuse);
@@ -74,11 +75,11 @@ void publish_folder(const fs::path& folder, const std::map<std::string, std::str
 }
 
 void publish(const fs::path& file, std::span<const std::byte> content, Existing existing) {
-  const Temporary temporary(file);
-  write_all(file, temporary.out.fd, content);
+  const solver::Temporary temporary = temporary_beside(file);
+  write_all(file, temporary.descriptor(), content);
   if (existing == Existing::replace) {
-    if (std::rename(temporary.path.c_str(), file.c_str()) != 0) fail(file, "cannot be replaced");
-  } else if (link(temporary.path.c_str(), file.c_str()) != 0) {  // unlike a rename, fails if the file appeared meanwhile
+    if (std::rename(temporary.path().c_str(), file.c_str()) != 0) fail(file, "cannot be replaced");
+  } else if (link(temporary.path().c_str(), file.c_str()) != 0) {  // unlike a rename, fails if the file appeared meanwhile
     if (errno == EEXIST) refuse_existing(file);
     fail(file, "cannot be created");
   }

@@ -6,10 +6,13 @@
 #include <xxhash.h>
 
 #include <algorithm>
-#include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <utility>
+
+#include "solver/input_file.hpp"
+#include "solver/temporary.hpp"
 
 namespace drape::results {
 namespace fs = std::filesystem;
@@ -42,25 +45,36 @@ int open_locked(const fs::path& file, const fs::path& path) {
   }
 }
 
-/// Files that publish() was writing when it was killed.
-void remove_leftovers(const fs::path& file) {
-  const std::string prefix = file.filename().string() + ".tmp-";
-  std::error_code ignored;  // they do no harm
-  for (const auto& entry : fs::directory_iterator(folder_of(file), ignored)) {
-    const std::string name = entry.path().filename();
-    if (name.starts_with(prefix) && name.find_first_not_of("0123456789", prefix.size()) == std::string::npos)
-      fs::remove(entry.path(), ignored);
-  }
-}
-
 Journal::Bytes header_of(const Provenance& provenance) {
   json facts = json::array();
   for (const Fact& fact : lasting(provenance)) facts.push_back({fact.name, fact.value});
   return json::to_cbor(facts);
 }
 
+/// Stops where arrays are deeper than those of a journal: the reader of nested ones would need a stack as deep.
+struct Shallow : nlohmann::json_sax<json> {
+  int depth = 0;
+  bool start_array(std::size_t) override { return ++depth <= 2; }
+  bool end_array() override { return --depth >= 0; }
+  bool start_object(std::size_t) override { return false; }
+  bool end_object() override { return false; }
+  bool key(string_t&) override { return false; }
+  bool null() override { return true; }
+  bool boolean(bool) override { return true; }
+  bool number_integer(number_integer_t) override { return true; }
+  bool number_unsigned(number_unsigned_t) override { return true; }
+  bool number_float(number_float_t, const string_t&) override { return true; }
+  bool string(string_t&) override { return true; }
+  bool binary(binary_t&) override { return true; }
+  bool parse_error(std::size_t, const std::string&, const json::exception&) override { return false; }
+};
+
 /// The next item of a sequence; discarded if it is not complete.
 json next_item(std::istream& sequence) {
+  const auto begin = sequence.tellg();
+  Shallow shallow;
+  if (!json::sax_parse(sequence, &shallow, json::input_format_t::cbor, /*strict=*/false)) return json::value_t::discarded;
+  sequence.seekg(begin);
   try {
     return json::from_cbor(sequence, /*strict=*/false);
   } catch (const json::exception&) {
@@ -88,15 +102,18 @@ bool is_unit(const json& item) {
 }
 
 std::string content(const fs::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
+  try {
+    return solver::content_of(path, std::numeric_limits<std::uintmax_t>::max());
+  } catch (const solver::UnreadableFile& error) {
+    throw FileError(fmt::format("{}: {}: expected a journal of this program; remove it", path.string(), error.what()));
+  }
 }
 
 }  // namespace
 
 Journal::Journal(const fs::path& file, const Provenance& provenance, Start start)
     : file_(file), path_(file.string() + ".journal"), lock_(open_locked(file_, path_)), header_(header_of(provenance)) {
-  remove_leftovers(file_);
+  solver::remove_leftovers(folder_of(file_));
   read(provenance, start);
 }
 

@@ -22,7 +22,7 @@ class Journal {
   using Bytes = std::vector<std::uint8_t>;
 
   /// Throws FileError if another process holds the lock, if the folder cannot be written in, if there are units and `start` is
-  /// fresh, or if they are of another program or sweep. Removes what killed writers of the file have left.
+  /// fresh, or if they are of another program or sweep. Removes what killed processes have left in its folder.
   Journal(const std::filesystem::path& file, const Provenance& provenance, Start start);
   ~Journal();  ///< An empty journal is removed.
   Journal(const Journal&) = delete;

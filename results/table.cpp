@@ -7,8 +7,12 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "solver/printable.hpp"
+
 namespace drape::results {
 namespace {
+
+constexpr std::size_t widest = 500;  ///< characters of a cell for people; CSV and JSON have all of it
 
 /// Calls the function for the alternative that a cell holds.
 template <class... Functions>
@@ -43,25 +47,26 @@ nlohmann::ordered_json to_value(const Table& table) {
 }
 
 std::string dump(const nlohmann::ordered_json& value) {
-  return value.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return solver::printable_lines(value.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace)) + "\n";
 }
 
-std::string quoted(std::string text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  for (auto at = text.find('"'); at != std::string::npos; at = text.find('"', at + 2)) text.insert(at, 1, '"');
-  return '"' + text + '"';
-}
-
-/// Characters of UTF-8 text: all bytes but those that continue one.
-std::size_t display_width(std::string_view text) {
-  return static_cast<std::size_t>(std::ranges::count_if(text, [](unsigned char byte) { return (byte & 0xC0) != 0x80; }));
+/// A text or number of CSV. Programs that calculate would take some texts for formulas, unless an apostrophe is before them.
+std::string csv_cell(const Cell& cell) {
+  std::string text = to_text(cell, "{}");
+  if (!std::holds_alternative<std::string>(cell)) return text;
+  if (text.find_first_of("=+-@") == 0) text.insert(0, 1, '\'');
+  text = solver::printable(text);
+  if (text.find_first_of(",\"") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted.append(c == '"' ? 2 : 1, c);
+  return quoted + '"';
 }
 
 /// Appends one cell to each line: text to the left of the column, numbers to the right.
 void append_column(std::vector<std::string>& lines, const std::vector<std::string>& cells, bool is_text) {
-  const std::size_t width = display_width(std::ranges::max(cells, {}, display_width));
+  const std::size_t width = solver::characters(std::ranges::max(cells, {}, solver::characters));
   for (std::size_t i = 0; i < lines.size(); ++i) {
-    const std::string padding(width - display_width(cells[i]), ' ');
+    const std::string padding(width - solver::characters(cells[i]), ' ');
     if (!lines[i].empty()) lines[i] += "  ";
     lines[i] += is_text ? cells[i] + padding : padding + cells[i];
   }
@@ -105,9 +110,10 @@ std::string to_text(const Table& table) {
     const bool has_unit = !column.unit.empty() && column.unit != "1";
     std::vector<std::string> cells{column.title, has_unit ? fmt::format("[{}]", column.unit) : ""};
     cells.insert(cells.end(), body.begin(), body.end());
+    for (std::string& cell : cells) cell = solver::shortened(solver::printable(cell), widest);
     append_column(lines, cells, column.unit.empty());
   }
-  lines.insert(lines.begin() + 2, std::string(display_width(lines.front()), '-'));
+  lines.insert(lines.begin() + 2, std::string(solver::characters(lines.front()), '-'));
   if (lines[1].find_first_not_of(' ') == std::string::npos) lines.erase(lines.begin() + 1);  // no column has a unit
   return fmt::format("{}\n", fmt::join(lines, "\n"));
 }
@@ -116,9 +122,9 @@ std::string to_csv(const Table& table) {
   std::vector<std::string> lines(1 + (table.columns.empty() ? 0 : table.columns.front().cells.size()));
   std::string_view separator;
   for (const Column& column : table.columns) {
-    lines[0] += fmt::format("{}{}", separator, column.name);
+    lines[0] += fmt::format("{}{}", separator, csv_cell(column.name));
     for (std::size_t row = 0; row < column.cells.size(); ++row)
-      lines[row + 1] += fmt::format("{}{}", separator, quoted(to_text(column.cells[row], "{}")));
+      lines[row + 1] += fmt::format("{}{}", separator, csv_cell(column.cells[row]));
     separator = ",";
   }
   return fmt::format("{}\n", fmt::join(lines, "\n"));

@@ -1,34 +1,27 @@
 #pragma once
 
-#include <cerrno>
-#include <cstdlib>
 #include <filesystem>
 #include <string>
-#include <system_error>
+
+#include "solver/temporary.hpp"
 
 namespace drape::results {
 
-/// A new folder that is gone, with all it contains, at the end of the scope.
+/// A new folder that is gone, with all it contains, at the end of the scope; if its process is killed before, when the next one
+/// makes such a folder.
 class TemporaryFolder {
  public:
-  /// Below `parent`, that of the system by default. Throws std::system_error.
-  explicit TemporaryFolder(const std::filesystem::path& parent = std::filesystem::temp_directory_path()) {
-    std::string name = parent / "drape-XXXXXX";
-    if (mkdtemp(name.data()) == nullptr) throw std::system_error(errno, std::generic_category(), name);
-    path_ = name;
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  ~TemporaryFolder() {
-    std::error_code ignored;  // a destructor has nobody to tell
-    std::filesystem::remove_all(path_, ignored);
-  }
+  /// In the folder that TMPDIR names, or else in /tmp. Throws FileError.
+  TemporaryFolder();
 
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-  const std::filesystem::path& path() const { return path_; }
+  /// Throws FileError.
+  explicit TemporaryFolder(const std::filesystem::path& parent);
+
+  std::filesystem::path operator/(const std::string& name) const { return path() / name; }
+  const std::filesystem::path& path() const { return folder_.path(); }
 
  private:
-  std::filesystem::path path_;
+  solver::Temporary folder_;
 };
 
 }  // namespace drape::results

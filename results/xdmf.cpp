@@ -6,13 +6,14 @@
 
 #include "results/atomic_file.hpp"
 #include "results/run_file.hpp"
+#include "solver/printable.hpp"
 
 namespace drape::results {
 namespace {
 
 std::string escaped(const std::string& text) {
   std::string result;
-  for (const char c : text) switch (c) {
+  for (const char c : solver::printable(text)) switch (c) {
       case '&': result += "&amp;"; break;
       case '<': result += "&lt;"; break;
       case '"': result += "&quot;"; break;

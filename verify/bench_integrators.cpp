@@ -37,11 +37,14 @@ std::map<std::string, std::string> BenchIntegrators::files() const {
   std::map<std::string, std::string> all;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder())) {
     const std::string name = entry.path().lexically_relative(folder());
-    std::ifstream file(entry.path(), std::ios::binary);
-    if (entry.is_directory())
+    if (entry.is_directory()) {
       all[name + '/'];
-    else
-      all[name].assign(std::istreambuf_iterator<char>(file), {});
+      continue;
+    }
+    std::string& content = all[name];
+    if (!std::filesystem::is_regular_file(entry.symlink_status())) continue;  // a pipe or a link to a device
+    std::ifstream file(entry.path(), std::ios::binary);
+    content.assign(std::istreambuf_iterator<char>(file), {});
   }
   return all;
 }

@@ -121,5 +121,76 @@ TEST(Fuzz, DamagedScenesAreScenesOrErrors) {
   EXPECT_GT(accepted, 0);
 }
 
+std::string repeated(std::size_t count, const std::string& text) {
+  std::string all;
+  for (std::size_t k = 0; k < count; ++k) all += text;
+  return all;
+}
+
+/// What readers of TOML stumble over: depth, length, controls, numbers out of range, quotes without an end.
+const std::vector<std::string>& hostile_pieces() {
+  static const std::vector<std::string> pieces{std::string(100'000, '['),
+                                               repeated(50'000, "{a = "),
+                                               repeated(50'000, "a."),
+                                               repeated(20'000, "'a' . \"b\" . "),
+                                               "[" + repeated(50'000, "a.") + "a]",
+                                               std::string(300'000, 'x'),
+                                               "\033[2J",
+                                               "\xff\xfe",
+                                               std::string(1, '\0'),
+                                               "\u202e",
+                                               "\\u009b",
+                                               "\\ud800",
+                                               "1e999",
+                                               "9223372036854775808",
+                                               "-9223372036854775808",
+                                               "nan",
+                                               "'''",
+                                               "\"\"\"",
+                                               "\\",
+                                               "\r",
+                                               "10000000",
+                                               "\n[[pins]]\n",
+                                               "\n[pins]\n",
+                                               " = ",
+                                               "0x",
+                                               "1979-05-27T07:32:00Z",
+                                               "#",
+                                               "\n"};
+  return pieces;
+}
+
+TEST(Fuzz, HostileScenesAreScenesOrErrors) {
+  const TemporaryFolder folder;
+  const fs::path file = folder / "hostile.toml";
+  std::mt19937 random(4);
+  int refused = 0, accepted = 0;
+  for (const char* name : {"hung-edge", "curtain", "box_swing"}) {
+    const std::string good = model::to_toml(model::load_scene(name));
+    for (int k = 0; k < 30 * rounds; ++k) {
+      std::string bad = good;
+      for (auto pieces = 1 + random() % 3; pieces > 0; --pieces)
+        bad.insert(random() % (bad.size() + 1), hostile_pieces()[random() % hostile_pieces().size()]);
+      write(file, bad);
+      ++(refuses<model::SceneError>([&] { model::load_scene(file.string()); }) ? refused : accepted);
+    }
+  }
+  EXPECT_GT(refused, 0);
+  EXPECT_GT(accepted, 0);
+}
+
+TEST(Fuzz, HostileOverridesAreScenesOrErrors) {
+  std::mt19937 random(5);
+  const std::vector<model::KeyHelp> keys = model::scene_keys();
+  for (int k = 0; k < 50 * rounds; ++k) {
+    const auto piece = [&] { return hostile_pieces()[random() % hostile_pieces().size()]; };
+    const std::string key = keys[random() % keys.size()].path + (random() % 4 == 0 ? piece() : "");
+    refuses<model::SceneError>([&] {
+      const model::Override change = model::parse_override(key + "=" + piece() + (random() % 2 == 0 ? piece() : ""));
+      model::load_scene("hung-edge", {&change, 1});
+    });
+  }
+}
+
 }  // namespace
 }  // namespace drape::verify::fuzz_test

@@ -4,10 +4,13 @@
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 
 #include <fstream>
 #include <iterator>
 
+#include "results/journal.hpp"
+#include "solver/temporary.hpp"
 #include "verify/file_size_limit.hpp"
 #include "verify/temporary_folder.hpp"
 
@@ -138,13 +141,33 @@ TEST(Journal, AFullDiskLosesOnlyTheLastUnit) {
   EXPECT_EQ(journal.find("lost"), nullptr);
 }
 
-TEST(Journal, RemovesWhatKilledWritersOfTheFileLeft) {
+TEST(Journal, RemovesWhatKilledProcessesLeftInItsFolderButNothingElse) {
   const Place place;
-  for (const char* name : {"runs.h5.tmp-123", "runs.h5.tmp-a1", "other.h5.tmp-123"}) std::ofstream(place.folder / name) << "x";
+  const solver::Temporary of_the_living(place.folder.path(), solver::Temporary::Kind::file);
+  for (const char* left : {".drape-tmp-1-0", ".drape-tmp-123456-7"}) std::ofstream(place.folder / left) << "x";
+  fs::create_directories(place.folder / ".drape-tmp-5-0" / "new");
+  for (const char* others : {"runs.h5.tmp-123", ".drape-tmp-backup", "drape-tmp-1-0"})
+    std::ofstream(place.folder / others) << "x";
   const Journal journal = place.open();
-  EXPECT_FALSE(fs::exists(place.folder / "runs.h5.tmp-123"));
-  EXPECT_TRUE(fs::exists(place.folder / "runs.h5.tmp-a1"));
-  EXPECT_TRUE(fs::exists(place.folder / "other.h5.tmp-123"));
+  for (const char* left : {".drape-tmp-1-0", ".drape-tmp-123456-7", ".drape-tmp-5-0"})
+    EXPECT_FALSE(fs::exists(place.folder / left)) << left;
+  for (const char* others : {"runs.h5.tmp-123", ".drape-tmp-backup", "drape-tmp-1-0"})
+    EXPECT_TRUE(fs::exists(place.folder / others)) << others;
+  EXPECT_TRUE(fs::exists(of_the_living.path()));
+}
+
+TEST(Journal, ThatIsNoRegularFileIsRefused) {
+  const Place pipe, device;
+  ASSERT_EQ(mkfifo(pipe.journal.c_str(), 0666), 0);
+  fs::create_symlink("/dev/zero", device.journal);
+  for (const Place* place : {&pipe, &device})
+    EXPECT_THAT(complaint([&] { place->open(); }), HasSubstr("runs.h5.journal: is a device or pipe"));
+}
+
+TEST(Journal, OfDeeplyNestedListsIsNoJournal) {
+  const Place place;
+  std::ofstream(place.journal) << std::string(10'000'000, '\x81');
+  EXPECT_THAT(complaint([&] { place.open(); }), HasSubstr("runs.h5.journal: is no journal"));
 }
 
 }  // namespace

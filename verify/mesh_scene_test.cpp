@@ -85,7 +85,8 @@ TEST_F(MeshScene, IsRefusedWhenItsMeshHasChanged) {
 TEST_F(MeshScene, IsRefusedWhenItsMeshIsMissing) {
   const Scene scene = model::load_scene(scene_);
   std::filesystem::remove(mesh_);
-  EXPECT_EQ(refusal(), scene_ + ":4: obstacles.file = 'meshes/box.ply': expected the file of a mesh, there is no " + mesh_);
+  EXPECT_EQ(refusal(), scene_ + ":4: obstacles.file = 'meshes/box.ply': expected the file of a mesh, " + mesh_ +
+                           ": there is no such file");
   EXPECT_THROW(to_toml(scene), std::invalid_argument);
 }
 

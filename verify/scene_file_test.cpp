@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include "model/cloth.hpp"
+#include "model/toml_nesting.hpp"
 #include "verify/temporary_folder.hpp"
 
 namespace drape::verify::scene_file_test {
@@ -205,6 +206,24 @@ TEST(SceneFile, KeepsEveryText) {
     scene.description = text;
     EXPECT_EQ(parsed(to_toml(scene)).description, text);
   }
+}
+
+TEST(SceneFile, MayHoldAnyNumberOfBracketsAndDotsInTextsAndComments) {
+  const std::string many = std::string(1000, '[') + std::string(1000, '{') + std::string(1000, '.');
+  for (const std::string quotes : {"'", "\"", "'''", "\"\"\""})
+    EXPECT_EQ(parsed("name = 'x'\ndescription = " + quotes + many + quotes + " # " + many + "'\n").description, many);
+  EXPECT_EQ(parsed("name = 'x'\ndescription = \"\\\"" + many + "\"\n").description, "\"" + many);
+  EXPECT_EQ(parsed("name = 'x'\ndescription = \"\"\"\n\"\"" + many + "\n\"\"\"\n").description, "\"\"" + many + "\n");
+}
+
+TEST(TomlNesting, IsFoundOnTheLineWhereItGoesTooDeep) {
+  EXPECT_EQ(model::line_nested_deeper("a = [[1, 2],\n[3, 4]]\nb.c = {d = [1.5, 2.5]}\n", 2), 0);
+  EXPECT_EQ(model::line_nested_deeper("a = [[1, 2],\n[3, [4]]]\n", 2), 2);
+  EXPECT_EQ(model::line_nested_deeper("\n\na.b.c = 1\n", 2), 3);
+  EXPECT_EQ(model::line_nested_deeper("[a.'b'. \"c\"]\n", 2), 1);
+  EXPECT_EQ(model::line_nested_deeper("a = '''\n[[[\n'''\nb = [[[", 2), 4) << "behind a text of three lines";
+  EXPECT_EQ(model::line_nested_deeper("a = [\"\"\"x\"\"\"\", [[[1]]]]\n", 2), 1) << "behind a text that ends in a quote";
+  EXPECT_EQ(model::line_nested_deeper("a = '[[[\nb = [[[", 2), 2) << "behind a text without an end";
 }
 
 TEST(SceneFile, HasAHelpForEveryKeyItWrites) {

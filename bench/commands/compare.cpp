@@ -7,6 +7,7 @@
 #include "bench/commands/commands.hpp"
 #include "bench/commands/output.hpp"
 #include "results/run_file.hpp"
+#include "solver/printable.hpp"
 
 namespace drape::bench {
 namespace {
@@ -17,7 +18,7 @@ struct CompareArguments {
 };
 
 void print(const char* kind, const results::Judged& judged) {
-  fmt::print("{}: {} ({})\n", kind, to_string(judged.judgement), judged.reason);
+  fmt::print("{}: {} ({})\n", kind, to_string(judged.judgement), solver::printable(judged.reason));
   if (!judged.worst.columns.empty()) fmt::print("\n{}\n", to_text(judged.worst));
 }
 

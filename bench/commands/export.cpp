@@ -9,6 +9,7 @@
 #include "bench/sweep.hpp"
 #include "bench/trajectory_record.hpp"
 #include "results/atomic_file.hpp"
+#include "solver/printable.hpp"
 
 namespace drape::bench {
 namespace {
@@ -30,7 +31,8 @@ void export_scene(const ExportArguments& a) {
   results::require_empty_folder(a.out, "the exported scene");
   const auto files = exported(true_motion(scene, times, a.agreement), times);
   results::publish_folder(a.out, files);
-  for (const auto& [name, content] : files) fmt::print("{}\n", (std::filesystem::path(a.out) / name).string());
+  for (const auto& [name, content] : files)
+    fmt::print("{}\n", solver::printable((std::filesystem::path(a.out) / name).string()));
 }
 
 }  // namespace
@@ -39,7 +41,7 @@ void add_export(CLI::App& app) {
   CLI::App& command = *app.add_subcommand("export", "a scene with its reference as a benchmark for other simulators");
   const auto a = std::make_shared<ExportArguments>();
   command.add_option("--scene", a->choice.scene, "built-in scene or TOML file")->required()->type_name("NAME|FILE.toml");
-  command.add_option("--out", a->out, "new or empty folder for it")->required()->type_name("DIR")->check(not_empty());
+  command.add_option("--out", a->out, "new or empty folder for it")->required()->type_name("DIR")->check(output_name());
   add_overrides(command, a->choice);
   command.add_option("--every", a->every, "simulated seconds between two frames of the reference")
       ->type_name("SECONDS")

@@ -12,6 +12,7 @@
 #include "results/run_file.hpp"
 #include "results/runs_table.hpp"
 #include "results/validate.hpp"
+#include "solver/printable.hpp"
 
 namespace drape::bench {
 namespace {
@@ -48,15 +49,16 @@ results::Table one_table(const std::string& file, const std::string& name) {
     if (table.name == name) return std::move(table);
     names.push_back(table.name);
   }
-  throw std::invalid_argument(fmt::format("--table: expected a table of {} ({}), not '{}'", file,
-                                          names.empty() ? "it has none" : fmt::format("{}", fmt::join(names, ", ")), name));
+  throw std::invalid_argument(fmt::format(
+      "--table: expected a table of {} ({}), not '{}'", file,
+      names.empty() ? "it has none" : solver::quoted(fmt::format("{}", fmt::join(names, ", "))), solver::quoted(name)));
 }
 
 /// Prints where a file departs from the specification. Returns the exit code: 1 if it does.
 int validate(const std::string& file) {
   const std::vector<std::string> deviations = results::validate(file);
-  for (const std::string& deviation : deviations) fmt::print("{}\n", deviation);
-  if (deviations.empty()) fmt::print("{} is as results/README.md specifies\n", file);
+  for (const std::string& deviation : deviations) fmt::print("{}\n", solver::quoted(deviation));
+  if (deviations.empty()) fmt::print("{} is as results/README.md specifies\n", solver::printable(file));
   return deviations.empty() ? 0 : 1;
 }
 

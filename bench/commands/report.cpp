@@ -15,6 +15,7 @@
 #include "results/browser.hpp"
 #include "results/overview.hpp"
 #include "results/run_file.hpp"
+#include "solver/printable.hpp"
 
 namespace drape::bench {
 namespace {
@@ -30,7 +31,7 @@ void make_report(const ReportArguments& a) {
   if (!a.images) return;
   const std::filesystem::path folder = a.out;
   fmt::print("images: {} figures in {}\n", write_images(folder / "index.html", folder / "images"),
-             (folder / "images").string());
+             solver::printable((folder / "images").string()));
 }
 
 }  // namespace
@@ -48,7 +49,7 @@ void report(const std::vector<std::filesystem::path>& files, const std::filesyst
   results::create_folder(folder);
   results::publish(file, std::as_bytes(std::span(page)), results::Existing::replace);
   print_tables(overview, "table");
-  fmt::print("\nreport: {}\n", file.string());
+  fmt::print("\nreport: {}\n", solver::printable(file.string()));
 }
 
 void add_report(CLI::App& app) {
@@ -61,7 +62,7 @@ void add_report(CLI::App& app) {
   command.add_option("--out", a->out, "folder for index.html; an older one is replaced")
       ->required()
       ->type_name("DIR")
-      ->check(not_empty());
+      ->check(output_name());
   command.add_flag("--images", a->images,
                    fmt::format("each figure also as SVG and PNG in DIR/images, drawn by Chromium in at most {:g} s",
                                results::browsing_time));

@@ -17,6 +17,7 @@ namespace drape::bench {
 namespace {
 
 constexpr double most_steps = 1e7;
+constexpr std::size_t most_runs = 1000;
 
 struct RunArguments {
   SceneChoice choice;
@@ -33,6 +34,9 @@ struct RunArguments {
 
 /// Checks what CLI11 cannot: numbers that belong together.
 void check_steps(const RunArguments& a, double end) {
+  if (const std::size_t runs = a.methods.size() * a.steps.size(); runs > most_runs)
+    throw std::invalid_argument(fmt::format("--method, --step: expected at most {} runs, not {} methods with {} steps",
+                                            most_runs, a.methods.size(), a.steps.size()));
   for (const double h : a.steps)
     if (!(end / h <= most_steps))
       throw std::invalid_argument(fmt::format("--step: expected at most {:g} steps to t = {:g} s, so at least {:g}, not {:g}",
@@ -134,7 +138,7 @@ void add_thread_option(CLI::App& run, RunArguments& a) {
 void add_frame_options(CLI::App& run, RunArguments& a) {
   CLI::Option* folder = run.add_option("--frames", a.frames.folder, "new folder for the runs as sequences of OBJ meshes")
                             ->type_name("FOLDER")
-                            ->check(not_empty());
+                            ->check(output_name());
   run.add_option("--every", a.frames.every, "simulated seconds between two frames")
       ->type_name("SECONDS")
       ->check(positive())

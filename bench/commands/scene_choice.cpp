@@ -1,5 +1,6 @@
 #include "bench/commands/scene_choice.hpp"
 
+#include "bench/available_memory.hpp"
 #include "model/scene_file.hpp"
 
 namespace drape::bench {
@@ -7,7 +8,9 @@ namespace drape::bench {
 model::Scene SceneChoice::load() const {
   std::vector<model::Override> overrides;
   for (const std::string& text : sets) overrides.push_back(model::parse_override(text));
-  return model::load_scene(scene, overrides);
+  model::Scene loaded = model::load_scene(scene, overrides);
+  require_memory(loaded);
+  return loaded;
 }
 
 void add_overrides(CLI::App& command, SceneChoice& choice) {

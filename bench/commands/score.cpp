@@ -10,6 +10,7 @@
 #include "bench/commands/scene_choice.hpp"
 #include "bench/foreign/ours.hpp"
 #include "bench/table_jobs.hpp"
+#include "solver/printable.hpp"
 
 namespace drape::bench {
 namespace {
@@ -31,7 +32,7 @@ void score(const ScoreArguments& a) {
   sweep.out = out_file(a.output, "score");
   const std::vector<results::Table> tables =
       compute(score_jobs(scene, foreign, options), score_identity(scene, foreign, options), sweep);
-  if (a.output.format == "table") fmt::print("{}", score_summary(tables));
+  if (a.output.format == "table") fmt::print("{}", solver::printable_lines(score_summary(tables)));
   print_tables(tables, a.output.format);
   say_where(sweep.out, a.output.format);
 }

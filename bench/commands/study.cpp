@@ -15,6 +15,7 @@
 #include "bench/studies.hpp"
 #include "bench/table_jobs.hpp"
 #include "model/scene_file.hpp"
+#include "solver/printable.hpp"
 
 namespace drape::bench {
 namespace {
@@ -65,7 +66,7 @@ std::filesystem::path run_study(const StudyArguments& a) {
   say_where(options.out, a.output.format);
   if (chosen.plot.empty()) return options.out;
   const std::string said = plot(chosen.plot, options.out);
-  if (a.output.format == "table") fmt::print("{}", said);
+  if (a.output.format == "table") fmt::print("{}", solver::printable_lines(said));
   return options.out;
 }
 

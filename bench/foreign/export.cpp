@@ -8,6 +8,7 @@
 #include "bench/polygons.hpp"
 #include "model/scene_file.hpp"
 #include "results/motion_file.hpp"
+#include "solver/printable.hpp"
 
 namespace drape::bench {
 namespace {
@@ -55,7 +56,8 @@ its positions at times of its choice, from t = 0 to at most {4:g} s, as an HDF5 
 The order of the vertices does not matter, nor do additional ones. With --cost SECONDS, what the simulator took on the
 same machine, its cost is compared, too.
 )",
-                     truth.scene.name, truth.scene.description.empty() ? "It has no description" : truth.scene.description,
+                     solver::printable(truth.scene.name),
+                     truth.scene.description.empty() ? "It has no description" : solver::printable(truth.scene.description),
                      truth.scene.obstacles.empty() ? "" : "\nobstacle-k.obj  obstacle k of scene.json, where it is at t = 0",
                      truth.families, truth.scene.end, times[1]);
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <limits>
 #include <numeric>
@@ -14,6 +15,7 @@
 #include "model/scene.hpp"
 #include "results/hdf5.hpp"
 #include "results/temporary_folder.hpp"
+#include "solver/input_file.hpp"
 
 namespace drape::bench {
 namespace {
@@ -25,10 +27,18 @@ constexpr double matched_within = 0.01;  ///< of the shorter spacing
 
 bool is_hdf5(const fs::path& file) { return file.extension() == ".h5" || file.extension() == ".hdf5"; }
 
+void check_file(const std::string& file) {
+  constexpr std::uintmax_t most_bytes = std::uintmax_t{1} << 30;
+  try {
+    solver::require_input_file(file, most_bytes);
+  } catch (const solver::UnreadableFile& error) {
+    throw std::invalid_argument(fmt::format("{}: {}: expected a file with another simulator's motion", file, error.what()));
+  }
+}
+
 void check_choice(const std::vector<std::string>& files, std::optional<double> frame_time) {
   const bool hdf5 = std::ranges::any_of(files, is_hdf5);
-  for (const std::string& file : files)
-    if (!fs::is_regular_file(file)) throw std::invalid_argument(file + ": there is no such file");
+  for (const std::string& file : files) check_file(file);
   if (hdf5 && files.size() > 1) throw std::invalid_argument("FILE: expected a single HDF5 file, or meshes only");
   if (hdf5 && frame_time) throw std::invalid_argument("--frame-time: an HDF5 file has its own times; expected meshes");
   if (!hdf5 && !frame_time)
