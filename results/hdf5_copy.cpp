@@ -47,6 +47,16 @@ class Budget {
                               most_numbers(file_size_) / mebi));
   }
 
+  /// A text that many rows refer to is stored once, but takes memory in each.
+  std::size_t text_left() const { return file_size_ - texts_; }
+
+  void count(const Value& value, const std::string& path) {
+    std::uint64_t size = 0;
+    for (const std::string& text : value.texts) size += text.size();
+    if (size > text_left()) throw Error(fmt::format("{}: has more text than there is in the file", path));
+    texts_ += size;
+  }
+
  private:
   static std::uint64_t declared_in_chunks(const Handle& dataset, const Handle& creation, const std::vector<std::uint64_t>& shape,
                                           std::uint64_t size, const std::string& path) {
@@ -63,7 +73,7 @@ class Budget {
     return declared;
   }
 
-  std::uint64_t file_size_, stored_ = 0, declared_ = 0;
+  std::uint64_t file_size_, stored_ = 0, declared_ = 0, texts_ = 0;
 };
 
 /// What is in the copy of a file, and what another program has done to the file.
@@ -83,9 +93,8 @@ class Copier {
 
  private:
   void require_signed(const Handle& from, std::size_t size) const {
-    haddr_t end = 0;
-    check(H5Fget_eoa(from.id(), &end), "end");
-    if (end != size || !signature_of(from_).contains(key_of("")))
+    const ssize_t known = check(H5Fget_file_image(from.id(), nullptr, 0), "end");  // to the library
+    if (static_cast<std::size_t>(known) != size || !signature_of(from_).contains(key_of("")))
       throw Error("has been truncated, or is of another program or an older version: there is no checksum at its end");
   }
 
@@ -112,6 +121,7 @@ class Copier {
       if (name == signature_name) continue;
       const std::string where = fmt::format("{}@{}", path, name);
       const Value value = read_value(Handle(H5Aopen(from.id(), name.c_str(), H5P_DEFAULT), where), where);
+      budget_.count(value, where);
       if (!is_ours(signature, where, hash_of(value))) continue;
       ++ours;
       if (value.type == "other")
@@ -142,7 +152,8 @@ class Copier {
     check(H5Lget_info(from.id(), name.c_str(), &link, H5P_DEFAULT), where);
     if (link.type == H5L_TYPE_HARD) {
       const Handle object(H5Oopen(from.id(), name.c_str(), H5P_DEFAULT), where);
-      if (is_new(object) && copy_object(object, to, name, where, depth)) return true;
+      const bool in_place = ours_ || signature_of(object).contains(key_of(where));
+      if (in_place && is_new(object) && copy_object(object, to, name, where, depth)) return true;
     }
     if (!ours_) return added_.push_back(where), false;
     check(H5Lcreate_soft("/another object", to.id(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT), where);
@@ -151,7 +162,6 @@ class Copier {
 
   /// Whether it is ours and of a kind that is written here.
   bool copy_object(const Handle& object, const Handle& to, const std::string& name, const std::string& where, int depth) {
-    if (!ours_ && !signature_of(object).contains(key_of(where))) return false;
     const H5I_type_t kind = H5Iget_type(object.id());
     if (kind == H5I_GROUP) {
       const Handle group(H5Gcreate2(to.id(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), where);
@@ -166,7 +176,8 @@ class Copier {
     const Value declared = declaration(dataset, where);
     if (declared.type == "other") return false;
     budget_.admit(dataset, declared.shape, where);
-    const Value value = read_value(dataset, where);
+    const Value value = read_value(dataset, where, budget_.text_left());
+    budget_.count(value, where);
     is_ours(signature_of(dataset), where, hash_of(value));
     write_dataset(to, name, value);
     copy_attributes(dataset, Handle(H5Dopen2(to.id(), name.c_str(), H5P_DEFAULT), where), where);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <string_view>
 
 namespace drape::results::hdf5 {
@@ -34,16 +35,28 @@ std::string name_of(const Handle& type) {
   return "other";
 }
 
-void read(const Handle& from, const Handle& type, void* values, const std::string& path) {
+void read(const Handle& from, const Handle& type, void* values, const std::string& path, hid_t transfer = H5P_DEFAULT) {
   check(is_attribute(from) ? H5Aread(from.id(), type.id(), values)
-                           : H5Dread(from.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values),
+                           : H5Dread(from.id(), type.id(), H5S_ALL, H5S_ALL, transfer, values),
         path);
 }
 
-std::vector<std::string> read_texts(const Handle& from, std::size_t count, const std::string& path) {
-  const Handle type = text_type(), space = space_of(from, path);
+/// For the library: memory for a text, from what is left of what texts may take.
+void* take_memory(std::size_t size, void* left) {
+  auto& bytes = *static_cast<std::size_t*>(left);
+  if (size > bytes) return nullptr;
+  bytes -= size;
+  return std::malloc(size);
+}
+
+void free_memory(void* memory, void*) { std::free(memory); }
+
+std::vector<std::string> read_texts(const Handle& from, std::size_t count, const std::string& path, std::size_t most) {
+  const Handle type = text_type(), space = space_of(from, path), transfer(H5Pcreate(H5P_DATASET_XFER), path);
+  check(H5Pset_vlen_mem_manager(transfer.id(), take_memory, &most, free_memory, nullptr), path);
+  most += std::min(count, SIZE_MAX - most);  // each has a zero at its end
   std::vector<char*> pointers(count);
-  read(from, type, pointers.data(), path);
+  read(from, type, pointers.data(), path, transfer.id());
   std::vector<std::string> texts;
   for (const char* text : pointers) texts.emplace_back(text ? text : "");
   check(H5Dvlen_reclaim(type.id(), space.id(), H5P_DEFAULT, pointers.data()), path);
@@ -74,17 +87,19 @@ void with_content(const Value& value, const auto& write) {
 
 Value declaration(const Handle& from, const std::string& path) {
   const Handle type = type_of(from, path), space = space_of(from, path);
-  if (H5Sget_simple_extent_type(space.id()) == H5S_NULL) return {"other", {}, {}, {}};
-  return {name_of(type), shape_of(space, path), {}, {}};
+  const bool nothing = H5Sget_simple_extent_type(space.id()) == H5S_NULL;
+  Value value{nothing ? "other" : name_of(type), shape_of(space, path), {}, {}};
+  if (is_attribute(from) && !value.shape.empty()) value.type = "other";  // ours are single values
+  return value;
 }
 
-Value read_value(const Handle& from, const std::string& path) {
+Value read_value(const Handle& from, const std::string& path, std::size_t most_text) {
   Value value = declaration(from, path);
   if (value.type == "other") return value;
   const Handle type = type_of(from, path), space = space_of(from, path);
   const auto count = static_cast<std::size_t>(check(H5Sget_simple_extent_npoints(space.id()), path));
   if (value.type == "text") {
-    value.texts = read_texts(from, count, path);
+    value.texts = read_texts(from, count, path, most_text);
   } else {
     value.numbers.resize(count * H5Tget_size(type.id()));
     read(from, type, value.numbers.data(), path);

@@ -17,8 +17,9 @@ struct Value {
 /// Type and shape only.
 Value declaration(const Handle& from, const std::string& path);
 
-/// Throws Error if it cannot be read. What a dataset declares must be known to be stored: its memory is taken first.
-Value read_value(const Handle& from, const std::string& path);
+/// Throws Error if it cannot be read, or if a dataset has more than `most_text` bytes of text. What a dataset declares must be
+/// known to be stored: its memory is taken first.
+Value read_value(const Handle& from, const std::string& path, std::size_t most_text = SIZE_MAX);
 
 void write_attribute(const Handle& object, const std::string& name, const Value& value);
 void write_dataset(const Handle& group, const std::string& name, const Value& value);

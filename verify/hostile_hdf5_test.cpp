@@ -64,7 +64,9 @@ class HostileHdf5 : public testing::Test {
   /// Records as the program writes them now.
   void write_runs(const std::string& name) const {
     const auto runs = results::read_runs(runs_data);
-    results::RunFile file(program.folder() / name, results::read_provenance(runs_data));
+    results::Provenance facts = results::read_provenance(runs_data);
+    std::erase_if(facts, [](const results::Fact& fact) { return fact.name == "resumed" || fact.name == "finished"; });
+    results::RunFile file(program.folder() / name, facts);
     file.add(runs);
     file.add(results::read_tables(tables_data).at(0));
     file.finish();
@@ -82,9 +84,9 @@ TEST_F(HostileHdf5, HugeDeclaredChunks) {
   EXPECT_THAT(refused_table("huge-chunk"), HasSubstr("some of its chunks are missing"));
 }
 
-TEST_F(HostileHdf5, HugeDeclaredTexts) { EXPECT_THAT(refused_table("huge-texts"), HasSubstr("declares 137438953472 bytes")); }
+TEST_F(HostileHdf5, HugeDeclaredTexts) { EXPECT_THAT(refused_table("huge-texts"), HasSubstr("declares 68719476736 bytes, but stores only 0")); }
 
-TEST_F(HostileHdf5, OneTextInAHundredThousandRows) { EXPECT_THAT(refused_table("many-references"), HasSubstr("takes more than")); }
+TEST_F(HostileHdf5, OneTextInAHundredThousandRows) { EXPECT_THAT(refused_table("many-references"), HasSubstr("memory allocation failed for VL data")); }
 
 TEST_F(HostileHdf5, DeflateBomb) { EXPECT_THAT(refused_table("bomb"), HasSubstr("MiB of numbers")); }
 
