@@ -38,8 +38,8 @@ class Handle {
 Handle create_in_memory();
 
 /// What is in a file of ours, in memory, to be read and changed there, and what another program has done to the file: paths of
-/// what it has added, which is not in the copy, and of what it has altered or taken out (a path that ends in '/' or '@': members
-/// or attributes of that object are missing). A file that is as image() gave it has neither.
+/// what it has added, which is not in the copy, and of what it has altered or taken out (a path that ends in '/' or '@':
+/// members or attributes of that object are missing). A file that is as image() gave it has neither.
 struct Opened {
   Handle file;
   std::vector<std::string> added, altered;

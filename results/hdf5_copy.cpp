@@ -19,7 +19,8 @@ constexpr int deepest = 16;  ///< groups in groups
 std::uint64_t product(const std::vector<std::uint64_t>& extents, std::uint64_t size, const std::string& path) {
   std::uint64_t all = size;
   for (const std::uint64_t extent : extents)
-    if (__builtin_mul_overflow(all, extent, &all)) throw Error(fmt::format("{}: declares more numbers than there can be", path));
+    if (__builtin_mul_overflow(all, extent, &all))
+      throw Error(fmt::format("{}: declares more numbers than there can be", path));
   return all;
 }
 
@@ -43,8 +44,8 @@ class Budget {
     stored_ += stored, declared_ += declared;
     if (stored_ > file_size_) throw Error(fmt::format("{}: is stored where something else is", path));
     if (declared_ > most_numbers(file_size_))
-      throw Error(fmt::format("{}: holds more than {} MiB of numbers with those before it", path,
-                              most_numbers(file_size_) / mebi));
+      throw Error(
+          fmt::format("{}: holds more than {} MiB of numbers with those before it", path, most_numbers(file_size_) / mebi));
   }
 
   /// A text that many rows refer to is stored once, but takes memory in each.
@@ -58,13 +59,15 @@ class Budget {
   }
 
  private:
-  static std::uint64_t declared_in_chunks(const Handle& dataset, const Handle& creation, const std::vector<std::uint64_t>& shape,
-                                          std::uint64_t size, const std::string& path) {
+  static std::uint64_t declared_in_chunks(const Handle& dataset, const Handle& creation,
+                                          const std::vector<std::uint64_t>& shape, std::uint64_t size,
+                                          const std::string& path) {
     std::vector<hsize_t> chunk(shape.size());
     if (H5Pget_chunk(creation.id(), static_cast<int>(chunk.size()), chunk.data()) != static_cast<int>(chunk.size()))
       throw Error(fmt::format("{}: its chunks have other dimensions", path));
     std::vector<std::uint64_t> padded;
-    for (std::size_t k = 0; k < chunk.size(); ++k) padded.push_back((shape[k] / chunk[k] + (shape[k] % chunk[k] != 0)) * chunk[k]);
+    for (std::size_t k = 0; k < chunk.size(); ++k)
+      padded.push_back((shape[k] / chunk[k] + (shape[k] % chunk[k] != 0)) * chunk[k]);
     const Handle space(H5Dget_space(dataset.id()), path);
     hsize_t there = 0;
     check(H5Dget_num_chunks(dataset.id(), space.id(), &there), path);
@@ -80,7 +83,10 @@ class Budget {
 class Copier {
  public:
   Copier(const Handle& from, const Sealed& file)
-      : from_(H5Gopen2(from.id(), "/", H5P_DEFAULT), "/"), to_(create_in_memory()), ours_(file.sealed), budget_(file.content.size()) {
+      : from_(H5Gopen2(from.id(), "/", H5P_DEFAULT), "/"),
+        to_(create_in_memory()),
+        ours_(file.sealed),
+        budget_(file.content.size()) {
     if (!ours_) require_signed(from, file.content.size());
     is_new(from_);
     copy_members(from_, to_, "", 0);

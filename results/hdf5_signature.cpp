@@ -23,7 +23,8 @@ void sign_object(const Handle& object, const std::string& path) {
   for (const std::string& name : attributes(object)) {
     if (name == signature_name) continue;
     const std::string where = fmt::format("{}@{}", path, name);
-    pairs.push_back({key_of(where), hash_of(read_value(Handle(H5Aopen(object.id(), name.c_str(), H5P_DEFAULT), where), where))});
+    pairs.push_back(
+        {key_of(where), hash_of(read_value(Handle(H5Aopen(object.id(), name.c_str(), H5P_DEFAULT), where), where))});
   }
   const bool dataset = H5Iget_type(object.id()) == H5I_DATASET;
   pairs.push_back({key_of(path), dataset ? hash_of(read_value(object, path)) : hash_of(links(object))});

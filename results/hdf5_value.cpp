@@ -15,7 +15,8 @@ struct NamedType {
   hid_t (*in_file)();
 };
 
-constexpr std::array numbers{NamedType{"float64", [] { return H5T_IEEE_F64LE; }}, NamedType{"int32", [] { return H5T_STD_I32LE; }},
+constexpr std::array numbers{NamedType{"float64", [] { return H5T_IEEE_F64LE; }},
+                             NamedType{"int32", [] { return H5T_STD_I32LE; }},
                              NamedType{"int64", [] { return H5T_STD_I64LE; }}};
 
 bool is_attribute(const Handle& object) { return H5Iget_type(object.id()) == H5I_ATTR; }
@@ -115,8 +116,8 @@ void write_attribute(const Handle& object, const std::string& name, const Value&
 
 void write_dataset(const Handle& group, const std::string& name, const Value& value) {
   const Handle type = type_for(value), space = space_for(value, name);
-  const Handle dataset(
-      H5Dcreate2(group.id(), name.c_str(), type.id(), space.id(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), name);
+  const Handle dataset(H5Dcreate2(group.id(), name.c_str(), type.id(), space.id(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                       name);
   with_content(value, [&](const void* content) {
     check(H5Dwrite(dataset.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, content), name);
   });

@@ -27,8 +27,8 @@ void write_dataset(const Handle& group, const std::string& name, const Value& va
 /// Of type, shape and content.
 std::uint64_t hash_of(const Value& value);
 
-/// Attributes of an object, its content and the names of its members as it was when sign() saw it: hashes by the hash of a path.
-/// Empty if it was not signed.
+/// Attributes of an object, its content and the names of its members as it was when sign() saw it: hashes by the hash of a
+/// path. Empty if it was not signed.
 using Signature = std::map<std::uint64_t, std::uint64_t>;
 Signature signature_of(const Handle& object);
 

@@ -26,9 +26,9 @@ struct SandboxEnded : SandboxError {
 /// Memory of this process that counts against RLIMIT_DATA [bytes].
 std::size_t data_held();
 
-/// What `compute` returns in a copy of this process, so that code which crashes, loops or takes all memory on hostile input ends
-/// that copy and nothing else. `compute` must need no other thread, and what it changes is not seen here. Throws SandboxError
-/// or SandboxEnded.
+/// What `compute` returns in a copy of this process, so that code which crashes, loops or takes all memory on hostile input
+/// ends that copy and nothing else. `compute` must need no other thread, and what it changes is not seen here. Throws
+/// SandboxError or SandboxEnded.
 std::vector<std::byte> in_sandbox(const std::function<std::vector<std::byte>()>& compute, const SandboxLimits& limits);
 
 }  // namespace drape::results

@@ -1,5 +1,5 @@
-// HDF5 files whose bytes or values are altered at random and sealed anew: whatever reads them ends well. More of them, each time
-// others: --gtest_filter='FuzzHdf5.*' --gtest_shuffle --gtest_repeat=100
+// HDF5 files whose bytes or values are altered at random and sealed anew: whatever reads them ends well. More of them, each
+// time others: --gtest_filter='FuzzHdf5.*' --gtest_shuffle --gtest_repeat=100
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -7,9 +7,13 @@
 #include <cstring>
 #include <random>
 
+#include "results/compare.hpp"
 #include "results/hdf5.hpp"
+#include "results/inspect.hpp"
 #include "results/motion_file.hpp"
+#include "results/overview.hpp"
 #include "results/run_file.hpp"
+#include "results/validate.hpp"
 #include "verify/limited_program.hpp"
 
 namespace drape::verify::fuzz_hdf5_test {
@@ -59,7 +63,8 @@ Bytes altered(Bytes bytes, Random& random) {
 // --- Values --------------------------------------------------------------------------------------------------------------
 
 const std::vector<double> odd_numbers{NAN, INFINITY, -INFINITY, -1, 0, 1e308, 5e-324, 2e9, -3e9, 1e19};
-const std::vector<std::string> odd_texts{"", "\n", "a = ", "[[[[[[", "\xff\xfe", "%s%n{}", std::string(5000, 'x'), "</script>", "success"};
+const std::vector<std::string> odd_texts{"",          "\n",     "a = ", "[[[[[[", "\xff\xfe", "%s%n{}", std::string(5000, 'x'),
+                                         "</script>", "success"};
 
 template <class List>
 auto one_of(const List& list, Random& random) {
@@ -75,10 +80,12 @@ void replace_dataset(const hdf5::Handle& file, const std::string& path, const hd
   for (const std::uint64_t extent : shape) count *= extent;
   hdf5::remove(file, path);
   std::vector<double> numbers(count);
-  for (double& number : numbers) number = random() % 2 == 0 ? one_of(odd_numbers, random) : static_cast<double>(random() % 1000);
+  for (double& number : numbers)
+    number = random() % 2 == 0 ? one_of(odd_numbers, random) : static_cast<double>(random() % 1000);
   std::vector<std::int64_t> counts(count, static_cast<std::int64_t>(unlikely(1000, random)));
   std::vector<int> small(count, static_cast<int>(unlikely(1000, random)));
-  const std::string type = random() % 4 == 0 ? one_of(std::vector<std::string>{"text", "float64", "int32", "int64"}, random) : item.type;
+  const std::string type =
+      random() % 4 == 0 ? one_of(std::vector<std::string>{"text", "float64", "int32", "int64"}, random) : item.type;
   if (type == "text") return hdf5::write_texts(file, path, std::vector<std::string>(count, one_of(odd_texts, random)), "");
   if (type == "int32") return hdf5::write_numbers(file, path, small.data(), shape, item.unit, "");
   if (type == "int64") return hdf5::write_numbers(file, path, counts.data(), shape, item.unit, "");
@@ -137,6 +144,7 @@ class FuzzHdf5 : public testing::Test {
   BenchIntegrators program;
   Random random{static_cast<std::uint64_t>(testing::UnitTest::GetInstance()->random_seed())};
   std::map<int, int> ended;
+  int stopped = 0;  ///< processes of their own, by a signal or limit
 };
 
 TEST_F(FuzzHdf5, Runs) { try_all(content_of(data / "runs-schema-4.h5"), "runs"); }
@@ -144,9 +152,37 @@ TEST_F(FuzzHdf5, Runs) { try_all(content_of(data / "runs-schema-4.h5"), "runs");
 TEST_F(FuzzHdf5, Tables) { try_all(content_of(data / "tables-schema-4.h5"), "tables"); }
 
 TEST_F(FuzzHdf5, Trajectories) {
-  program.output({"run", "--scene", "box_swing", "--set", "grid.n=4", "--until", "0.04", "--no-reference", "--method", "bdf2,midpoint",
-                  "--step", "0.01", "--repeat", "2", "--trajectory", "every=0.01", "--out", "moving.h5"});
+  program.output({"run", "--scene", "box_swing", "--set", "grid.n=4", "--until", "0.04", "--no-reference", "--method",
+                  "bdf2,midpoint", "--step", "0.01", "--repeat", "2", "--trajectory", "every=0.01", "--out", "moving.h5"});
   try_all(content_of(program.folder() / "moving.h5"), "trajectories");
+}
+
+/// Many more than the program could be started for: what reads them here ends the test if it crashes.
+TEST_F(FuzzHdf5, RecordsInThisProcess) {
+  for (const char* name : {"runs-schema-4.h5", "tables-schema-4.h5"}) {
+    const Bytes good = content_of(data / name);
+    const Bytes content(good.begin(), good.end() - static_cast<std::ptrdiff_t>(hdf5::sealed({}).size()));
+    const results::Recording known = results::read_recording(data / name);
+    int refused = 0;
+    for (int k = 0; k < 4 * files; ++k) {
+      publish("a.h5", k % 2 == 0 ? with_other_values(good, random) : hdf5::sealed(altered(content, random)));
+      try {
+        results::validate(program.folder() / "a.h5");
+        const results::Recording recording = results::read_recording(program.folder() / "a.h5");
+        results::overview(std::span(&recording, 1));
+        results::compare(known, recording, {});
+        results::compare(recording, known, {});
+        for (const results::RunRecord& run : recording.runs) results::in_full(run);
+      } catch (const results::FileError& error) {
+        ++refused;
+        EXPECT_STRNE(error.what(), "");
+        if (std::string(error.what()).find("made to do harm") != std::string::npos) ++stopped;
+      }
+    }
+    RecordProperty(fmt::format("refused_{}", name), refused);
+    EXPECT_GT(refused, 0) << name;
+  }
+  RecordProperty("stopped", stopped);
 }
 
 TEST_F(FuzzHdf5, MotionsOfOthers) {

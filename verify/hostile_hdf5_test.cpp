@@ -77,20 +77,28 @@ class HostileHdf5 : public testing::Test {
 
 // --- One altered bit -----------------------------------------------------------------------------------------------------
 
-TEST_F(HostileHdf5, HugeDeclaredTable) { EXPECT_THAT(refused_table("huge-table"), HasSubstr("declares 68719476736 bytes, but stores only 0")); }
+TEST_F(HostileHdf5, HugeDeclaredTable) {
+  EXPECT_THAT(refused_table("huge-table"), HasSubstr("declares 68719476736 bytes, but stores only 0"));
+}
 
 TEST_F(HostileHdf5, HugeDeclaredChunks) {
   EXPECT_THAT(refused_table("huge-chunked"), HasSubstr("some of its chunks are missing"));
   EXPECT_THAT(refused_table("huge-chunk"), HasSubstr("some of its chunks are missing"));
 }
 
-TEST_F(HostileHdf5, HugeDeclaredTexts) { EXPECT_THAT(refused_table("huge-texts"), HasSubstr("declares 68719476736 bytes, but stores only 0")); }
+TEST_F(HostileHdf5, HugeDeclaredTexts) {
+  EXPECT_THAT(refused_table("huge-texts"), HasSubstr("declares 68719476736 bytes, but stores only 0"));
+}
 
-TEST_F(HostileHdf5, OneTextInAHundredThousandRows) { EXPECT_THAT(refused_table("many-references"), HasSubstr("memory allocation failed for VL data")); }
+TEST_F(HostileHdf5, OneTextInAHundredThousandRows) {
+  EXPECT_THAT(refused_table("many-references"), HasSubstr("memory allocation failed for VL data"));
+}
 
 TEST_F(HostileHdf5, DeflateBomb) { EXPECT_THAT(refused_table("bomb"), HasSubstr("MiB of numbers")); }
 
-TEST_F(HostileHdf5, ShortColumnThatCrashesReport) { EXPECT_THAT(refused_table("short-column"), HasSubstr("are not equally long")); }
+TEST_F(HostileHdf5, ShortColumnThatCrashesReport) {
+  EXPECT_THAT(refused_table("short-column"), HasSubstr("are not equally long"));
+}
 
 // --- Links ---------------------------------------------------------------------------------------------------------------
 
@@ -110,7 +118,9 @@ TEST_F(HostileHdf5, TenThousandLinksToOneGroup) {
   refused("a.h5");
 }
 
-TEST_F(HostileHdf5, AHundredGroupsInGroups) { EXPECT_THAT(refused_table("nested"), HasSubstr("more than 16 groups in groups")); }
+TEST_F(HostileHdf5, AHundredGroupsInGroups) {
+  EXPECT_THAT(refused_table("nested"), HasSubstr("more than 16 groups in groups"));
+}
 
 TEST_F(HostileHdf5, ExternalPipe) { EXPECT_THAT(refused_table("external"), HasSubstr("is stored in other files")); }
 
@@ -155,8 +165,10 @@ TEST_F(HostileHdf5, OpenedByH5pyIsAsItWas) {
 }
 
 TEST_F(HostileHdf5, AlteredByH5pyIsNamedAndRefused) {
-  for (const auto& [kind, where] :
-       {std::pair{"altered", "/runs/000/steps/t"}, {"altered-text", "/runs/000@method"}, {"removed", "/runs/"}, {"renamed", "/runs/"}}) {
+  for (const auto& [kind, where] : {std::pair{"altered", "/runs/000/steps/t"},
+                                    {"altered-text", "/runs/000@method"},
+                                    {"removed", "/runs/"},
+                                    {"renamed", "/runs/"}}) {
     const std::string name = fmt::format("{}.h5", kind);
     write_runs(name);
     change(kind, name);
@@ -167,8 +179,8 @@ TEST_F(HostileHdf5, AlteredByH5pyIsNamedAndRefused) {
 }
 
 TEST_F(HostileHdf5, AnnotatedIsNotContinued) {
-  const Words sweep{"run", "--scene", "hung-edge", "--set", "grid.n=3", "--until", "0.02", "--no-reference", "--method", "bdf2",
-                    "--step", "0.01", "--repeat", "1", "--out", "a.h5"};
+  const Words sweep{"run",      "--scene", "hung-edge", "--set", "grid.n=3", "--until", "0.02",  "--no-reference",
+                    "--method", "bdf2",    "--step",    "0.01",  "--repeat", "1",       "--out", "a.h5"};
   program.output(sweep);
   change("annotated", "a.h5");
   const auto before = content_of(program.folder() / "a.h5");
