@@ -91,7 +91,7 @@ TEST_F(HostileHdf5, HugeDeclaredTexts) {
 }
 
 TEST_F(HostileHdf5, OneTextInAHundredThousandRows) {
-  EXPECT_THAT(refused_table("many-references"), HasSubstr("memory allocation failed for VL data"));
+  EXPECT_THAT(refused_table("many-references"), HasSubstr("failed for VL data"));
 }
 
 TEST_F(HostileHdf5, DeflateBomb) { EXPECT_THAT(refused_table("bomb"), HasSubstr("MiB of numbers")); }
