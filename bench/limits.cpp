@@ -2,28 +2,19 @@
 
 #include <fmt/format.h>
 #include <malloc.h>
-#include <unistd.h>
 
 #include <cerrno>
 #include <chrono>
 #include <cmath>
-#include <fstream>
 #include <system_error>
 
 #include "bench/interruption.hpp"
+#include "results/sandbox.hpp"
 
 namespace drape::bench {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-/// What counts against RLIMIT_DATA [bytes]: /proc/self/statm has it in pages as its sixth number, with the stack.
-rlim_t data_held() {
-  std::ifstream statm("/proc/self/statm");
-  rlim_t pages = 0;
-  for (int k = 0; k < 6; ++k) statm >> pages;
-  return pages * static_cast<rlim_t>(sysconf(_SC_PAGESIZE));
-}
 
 rlimit limit_of_data() {
   rlimit limit{};
@@ -57,7 +48,7 @@ void watch(solver::SplitOde& ode, double seconds) {
 MemoryLimit::MemoryLimit(double megabytes) : before_(limit_of_data()) {
   if (!std::isfinite(megabytes)) return;
   malloc_trim(0);  // or what earlier cells have freed would be at this one's disposal
-  limit_data(data_held() + static_cast<rlim_t>(megabytes * 1024 * 1024));
+  limit_data(results::data_held() + static_cast<rlim_t>(megabytes * 1024 * 1024));
 }
 
 MemoryLimit::~MemoryLimit() {

@@ -48,6 +48,7 @@ class Reader {
 
 solver::Vectors take_vectors(Reader& reader) {
   const auto values = reader.take<std::vector<double>>();
+  if (values.size() % 3 != 0) throw DamagedFile("its vectors have not three columns");
   return Eigen::Map<const solver::Vectors>(values.data(), static_cast<Eigen::Index>(values.size() / 3), 3);
 }
 
@@ -64,6 +65,21 @@ Trajectory take_trajectory(Reader& reader) {
     trajectory.states.push_back({std::move(x), take_vectors(reader)});
   }
   return trajectory;
+}
+
+/// A right checksum does not make a right file.
+void require_consistent(const Reference& reference) {
+  const auto& [times, states] = reference.trajectory;
+  const auto rows = [&] { return states.empty() ? 0 : states.front().x.rows(); }();
+  const auto fits = [&](const Trajectory& trajectory) {
+    return trajectory.times == times && std::ranges::all_of(trajectory.states, [&](const solver::State& y) {
+             return y.x.rows() == rows && y.v.rows() == rows;
+           });
+  };
+  for (const auto* series : {&reference.error, &reference.tolerance_effect, &reference.growth})
+    if (series->size() != times.size()) throw DamagedFile("it has not a number for each time");
+  for (const Trajectory* trajectory : {&reference.trajectory, &reference.witnessed, &reference.perturbed})
+    if (!fits(*trajectory)) throw DamagedFile("its trajectories have different times or particles");
 }
 
 std::string checksum(std::string_view bytes) {
@@ -93,11 +109,14 @@ Reference decode(std::string_view bytes, std::string_view key) {
   if (reader.take<std::string>() != key) throw DamagedFile("it belongs to another key");
   Reference reference;
   for (std::string* name : {&reference.name, &reference.witness}) *name = reader.take<std::string>();
-  reference.tolerance = reader.take<std::vector<double>>().at(0);
+  const auto tolerance = reader.take<std::vector<double>>();
+  if (tolerance.size() != 1) throw DamagedFile("it has not one tolerance");
+  reference.tolerance = tolerance.front();
   for (auto* series : {&reference.error, &reference.tolerance_effect, &reference.growth})
     *series = reader.take<std::vector<double>>();
   for (Trajectory* trajectory : {&reference.trajectory, &reference.witnessed, &reference.perturbed})
     *trajectory = take_trajectory(reader);
+  require_consistent(reference);
   return reference;
 }
 

@@ -35,20 +35,37 @@ class Handle {
 };
 
 /// A file that exists in memory only. Its root remembers the order in which its attributes were written.
-Handle create_in_memory(const std::filesystem::path& name);
+Handle create_in_memory();
 
-/// Reads a file that is what image() gave. Throws Error if it has been truncated, damaged or changed since: the library crashes
-/// on some damaged files, so that it must not see them.
+/// What is in a file of ours, in memory, to be read and changed there, and what another program has done to the file: paths of
+/// what it has added, which is not in the copy, and of what it has altered or taken out (a path that ends in '/' or '@':
+/// members or attributes of that object are missing). A file that is as image() gave it has neither.
+struct Opened {
+  Handle file;
+  std::vector<std::string> added, altered;
+};
+
+/// Throws Error if it has been truncated or damaged or is none of ours. The library sees it in a process of its own only, with
+/// limits, as it crashes on some damaged files.
+Opened open_with_changes(const std::filesystem::path& path);
+Opened open_with_changes(std::span<const std::byte> bytes);
+
+/// The same, of a file or its bytes; throws Error if something is altered, but not if something is added.
 Handle open_for_reading(const std::filesystem::path& path);
+Handle open_image(std::span<const std::byte> bytes);
 
 /// A file without a checksum that one of our own scripts has just had the library write. Not for files of users: see above.
 Handle open_unsealed(const std::filesystem::path& path);
 
-/// A file in memory, to be read and changed there, that is what image() gave. Throws like the other.
-Handle open_image(std::span<const std::byte> bytes);
-
 /// What the file is on disk: the library's image, which other programs can read, followed by a checksum of it.
 std::vector<std::byte> image(const Handle& file);
+
+/// The library's bytes followed by a checksum of them.
+std::vector<std::byte> sealed(std::vector<std::byte> content);
+
+/// Notes checksums of each object and its attributes with it, for files that other programs change. To the file, its groups
+/// and theirs members may have been added since; what is below is as it was when it was signed. Part of image().
+void sign(const Handle& file);
 
 Handle create_group(const Handle& parent, const std::string& name, const std::string& description);
 Handle open_group(const Handle& parent, const std::string& name);

@@ -28,7 +28,7 @@ std::vector<solver::Vectors> read_vectors(const Handle& file, const char* name, 
 
 std::vector<std::byte> to_bytes(const ReferenceMotion& reference) {
   const Motion& motion = reference.motion;
-  const Handle file = hdf5::create_in_memory("reference");
+  const Handle file = hdf5::create_in_memory();
   hdf5::write_described_text(file, "scene", reference.scene, "name of the scene");
   hdf5::write_described_text(file, "families", reference.families, "the two families of solvers that agree on this motion");
   hdf5::write_numbers(file, "time", motion.times.data(), {motion.times.size()}, "s", "time of each frame");

@@ -141,8 +141,6 @@ void require_version(const Handle& file) {
 }
 
 Handle open_run_file(const fs::path& path) {
-  std::error_code unknown;  // then it is no file to us
-  if (!fs::is_regular_file(path, unknown)) throw hdf5::Error("there is no such file");
   Handle file = hdf5::open_for_reading(path);
   require_version(file);
   return file;
@@ -170,8 +168,8 @@ Provenance facts_of(const Handle& file) {
 }
 
 /// An empty file.
-Handle begin(const fs::path& path, const Provenance& provenance) {
-  Handle file = hdf5::create_in_memory(path);
+Handle begin(const Provenance& provenance) {
+  Handle file = hdf5::create_in_memory();
   hdf5::write_text(file, "description", "Runs of drape, a harness for time integrators of cloth");
   hdf5::write_integer(file, "schema_version", schema_version);
   for (const Fact& fact : provenance) hdf5::write_described_text(file, fact.name, fact.value, fact.description);
@@ -182,12 +180,16 @@ Handle begin(const fs::path& path, const Provenance& provenance) {
   return file;
 }
 
-/// What a process before this one has left.
+/// What a process before this one has left. What others have added would be lost with the next image.
 Handle go_on(const fs::path& path, const Provenance& provenance) {
-  Handle file = open_run_file(path);
+  auto [file, added, altered] = hdf5::open_with_changes(path);
+  require_version(file);
+  if (!added.empty() || !altered.empty())
+    throw hdf5::Error(fmt::format("cannot be continued: another program has changed {}; choose another --out",
+                                  added.empty() ? altered.front() : added.front()));
   if (const std::string why = why_not_resumed(facts_of(file), provenance); !why.empty())
     throw hdf5::Error(fmt::format("cannot be continued: {}; choose another --out", why));
-  return file;
+  return std::move(file);
 }
 
 }  // namespace
@@ -225,7 +227,7 @@ RunFile::RunFile(fs::path path, const Provenance& provenance, Start start) : pat
   const bool goes_on = start == Start::resumed && fs::exists(path_, unknown);
   if (!goes_on) require_creatable(path_);
   with_file_named(path_, [&] {
-    image_ = std::make_unique<Image>(goes_on ? go_on(path_, provenance) : begin(path_, provenance));
+    image_ = std::make_unique<Image>(goes_on ? go_on(path_, provenance) : begin(provenance));
     image_->published = goes_on;
   });
 }
@@ -281,7 +283,7 @@ bool RunFile::finished() const {
 
 std::vector<std::byte> to_bytes(const RunRecord& run) {
   return with_file_named("a run", [&] {
-    const Handle file = hdf5::create_in_memory("run");
+    const Handle file = hdf5::create_in_memory();
     write_run(file, run_name(0), run);
     return hdf5::image(file);
   });

@@ -78,6 +78,8 @@ Table read_table(const Handle& tables, const std::string& name) {
                              info->description,
                              read_cells(group, column, info->unit),
                              {}});
+    if (table.columns.back().cells.size() != rows(table))
+      throw hdf5::Error(fmt::format("the columns of the table {} are not equally long", name));
   }
   return table;
 }

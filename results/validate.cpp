@@ -239,8 +239,10 @@ void check_facts(Check& check, const Handle& file) {
 
 std::vector<std::string> validate(const std::filesystem::path& path) {
   try {
-    const Handle file = hdf5::open_for_reading(path);
+    const auto [file, added, altered] = hdf5::open_with_changes(path);
     Check check(file);
+    for (const std::string& where : altered) check.note(where, "has been altered by another program");
+    for (const std::string& where : added) check.note(where, "has been added by another program");
     if (const Item* version = check.find("@schema_version"); version != nullptr && version->type == "int32")
       if (const int found = hdf5::read_integer(file, "schema_version"); found != schema_version)
         return {fmt::format("@schema_version: is {}, this program knows {}", found, schema_version)};

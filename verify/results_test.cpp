@@ -355,7 +355,7 @@ TEST(ReadRuns, RefusesForeignHdf5AndOtherVersions) {
     publish(path, hdf5::image(file), Existing::replace);
     return complaint([&] { read_runs(path); });
   };
-  const hdf5::Handle file = hdf5::create_in_memory("image");
+  const hdf5::Handle file = hdf5::create_in_memory();
   EXPECT_THAT(publish_image(folder / "foreign.h5", file), HasSubstr("foreign.h5: schema_version: can't locate attribute"));
   hdf5::write_integer(file, "schema_version", schema_version + 1);
   EXPECT_THAT(publish_image(folder / "newer.h5", file), HasSubstr("schema_version is 5, this program reads 4"));

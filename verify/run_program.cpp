@@ -4,6 +4,7 @@
 #include <spawn.h>
 #include <sys/ioctl.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -90,10 +91,15 @@ pid_t spawn(const Command& command, int out, int err) {
   return pid;
 }
 
-int exit_code(pid_t pid) {
+/// Waits for a program's end; what it has shown is still to be taken.
+ProgramResult end_of(pid_t pid) {
   int status = 0;
-  require(waitpid(pid, &status, 0) == pid, "waitpid");
-  return WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
+  rusage used{};
+  require(wait4(pid, &status, 0, &used) == pid, "wait4");
+  return {.exit_code = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status),
+          .out = {},
+          .err = {},
+          .peak_memory = static_cast<std::size_t>(used.ru_maxrss) * 1024};
 }
 
 }  // namespace
@@ -102,8 +108,9 @@ ProgramResult run_program(const Command& command) {
   const Descriptor out = memory(), err = memory();
   std::optional<Descriptor> elsewhere;
   if (!command.output.empty()) elsewhere.emplace(open(command.output.c_str(), O_WRONLY | O_CLOEXEC), command.output);
-  const int code = exit_code(spawn(command, elsewhere ? elsewhere->fd : out.fd, err.fd));
-  return {code, content(out), content(err)};
+  ProgramResult result = end_of(spawn(command, elsewhere ? elsewhere->fd : out.fd, err.fd));
+  result.out = content(out), result.err = content(err);
+  return result;
 }
 
 struct RunningProgram::Process {
@@ -124,8 +131,9 @@ RunningProgram::~RunningProgram() {
 void RunningProgram::send(int signal) const { kill(process_->pid, signal); }
 
 ProgramResult RunningProgram::wait() {
-  const int code = exit_code(std::exchange(process_->pid, 0));
-  return {code, content(process_->out), content(process_->err)};
+  ProgramResult result = end_of(std::exchange(process_->pid, 0));
+  result.out = content(process_->out), result.err = content(process_->err);
+  return result;
 }
 
 ProgramResult run_on_terminal(const Command& command, unsigned short columns, std::string_view until) {
@@ -139,8 +147,9 @@ ProgramResult run_on_terminal(const Command& command, unsigned short columns, st
   std::string shown;
   while (append(shown, terminal.fd))
     if (!until.empty() && shown.find(until) != std::string::npos) kill(pid, SIGTERM);
-  const int code = exit_code(pid);
-  return {code, content(out), shown};
+  ProgramResult result = end_of(pid);
+  result.out = content(out), result.err = shown;
+  return result;
 }
 
 }  // namespace drape::verify

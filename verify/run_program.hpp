@@ -22,6 +22,7 @@ struct ProgramResult {
   int exit_code = 0;  ///< as in a shell: 128 + signal if it was killed
   std::string out;
   std::string err;
+  std::size_t peak_memory = 0;  ///< [bytes], of the program or one that it has started, whichever took most
 };
 
 /// Runs a program to its end; its standard error is no terminal.

@@ -165,7 +165,7 @@ INSTANTIATE_TEST_SUITE_P(All, Planted, testing::ValuesIn(deviations), [](const a
 
 TEST(Validate, KnowsOneVersion) {
   const TemporaryFolder folder;
-  const Handle file = hdf5::create_in_memory("image");
+  const Handle file = hdf5::create_in_memory();
   hdf5::write_integer(file, "schema_version", schema_version + 1);
   publish(folder / "newer.h5", hdf5::image(file), Existing::refuse);
   EXPECT_THAT(validate(folder / "newer.h5"), testing::ElementsAre("@schema_version: is 5, this program knows 4"));
