@@ -3,10 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
+#include <ranges>
 
-#include "bench/interruption.hpp"
-#include "bench/limits.hpp"
 #include "model/scene_file.hpp"
+#include "reference/plausible.hpp"
 
 namespace drape::bench {
 namespace {
@@ -33,17 +34,22 @@ double centre_distance(const model::Cloth& cloth, const State& a, const State& b
   return (cloth.ode.mass.asDiagonal() * (a.x - b.x)).colwise().sum().norm() / cloth.ode.mass.sum();
 }
 
-reference::Reference compute_reference(const model::Cloth& cloth, const std::vector<double>& times,
-                                       const reference::SolveOptions& options) {
-  solver::SplitOde ode = cloth.ode;
-  watch(ode, Limits().seconds);
-  try {
-    return ode.contacts ? reference::contact_reference(ode, cloth.start, 0, times, options)
-                        : reference::reference(ode, cloth.start, 0, times, options);
-  } catch (const reference::ReferenceError&) {
-    check_interruption();  // it may have been the reason
-    throw;
-  }
+using Clock = std::chrono::steady_clock;
+
+std::vector<double> tenths(const model::Scene& scene) {
+  constexpr int outputs = 10;
+  std::vector<double> times;
+  for (int k = 1; k <= outputs; ++k) times.push_back(scene.end * k / outputs);
+  return times;
+}
+
+constexpr double tolerances[] = {1e-9, 1e-10, 1e-11, 1e-12};  ///< of references
+
+/// The loosest of them that promises an uncertainty, as it falls with the tolerance; at least the next.
+double tightened(double tolerance, double factor) {
+  for (const double next : tolerances)
+    if (next < 0.99 * tolerance && next <= 1.01 * factor * tolerance) return next;
+  return tolerances[std::size(tolerances) - 1];
 }
 
 }  // namespace
@@ -53,23 +59,63 @@ References::~References() {
 }
 
 reference::Reference References::operator()(const model::Scene& scene, const model::Cloth& cloth) {
-  constexpr int outputs = 10;
-  std::vector<double> times;
-  for (int k = 1; k <= outputs; ++k) times.push_back(scene.end * k / outputs);
-  return (*this)(scene, cloth, times);
+  return (*this)(scene, cloth, tenths(scene));
 }
 
 reference::Reference References::operator()(const model::Scene& scene, const model::Cloth& cloth,
                                             const std::vector<double>& times) {
-  const reference::SolveOptions options{.rtol = rtol_, .size = model::size(scene)};
-  const auto key = reference::cache_key(model::to_toml(scene), 0, times, options);
-  reference::Reference reference = reference::cached(cache_, key, [&] { return compute_reference(cloth, times, options); });
+  return certified(scene, cloth, times, agreement_);
+}
+
+reference::Reference References::resolving(const model::Scene& scene, const model::Cloth& cloth, double error) {
+  return certified(scene, cloth, tenths(scene), std::min(agreement_, error / 10));
+}
+
+reference::Reference References::certified(const model::Scene& scene, const model::Cloth& cloth,
+                                           const std::vector<double>& times, double uncertainty) {
+  const double size = model::size(scene);
+  reference::Reference reference = tight(scene, cloth, times, uncertainty * size);
   if (cloth.ode.contacts) return reference;  // of first order: its uncertainty decides what is shown
   try {
-    reference::certify(reference, agreement_, results::comparable_growth, options.size);
+    reference::certify(reference, agreement_, results::comparable_growth, size);
   } catch (const reference::NotCertified& error) {
     throw reference::NotCertified(fmt::format("{}: {}; allow more by --agreement", scene.name, error.what()));
   }
+  return reference;
+}
+
+reference::Reference References::tight(const model::Scene& scene, const model::Cloth& cloth, const std::vector<double>& times,
+                                       double uncertainty) {
+  const Clock::time_point begin = Clock::now();
+  const auto left = [&] { return watch_.seconds - std::chrono::duration<double>(Clock::now() - begin).count(); };
+  reference::Reference best = at(rtol_, scene, cloth, times, left());
+  for (;;) {
+    const double worst = std::ranges::max(best.error), tightest = std::ranges::min(tolerances);
+    const bool comparable = !cloth.ode.contacts && std::ranges::max(best.growth) <= results::comparable_growth;
+    if (!comparable || !(worst > uncertainty) || best.tolerance <= tightest) return best;
+    try {
+      best = at(tightened(best.tolerance, uncertainty / worst), scene, cloth, times, left());
+    } catch (const reference::ReferenceError&) {
+      return best;  // its uncertainty says what it is worth
+    }
+  }
+}
+
+reference::Reference References::at(double tolerance, const model::Scene& scene, const model::Cloth& cloth,
+                                    const std::vector<double>& times, double seconds) {
+  reference::SolveOptions options{.rtol = tolerance, .size = model::size(scene)};
+  const auto key = [&] { return reference::cache_key(model::to_toml(scene), 0, times, options); };
+  const auto check = [&](const reference::Reference& found) {
+    reference::require_plausible(found, cloth.ode, cloth.start, 0, times, options.size);
+  };
+  for (const double tighter : tolerances | std::views::reverse) {
+    options.rtol = tighter;
+    if (tighter > tolerance) break;
+    if (auto known = cache_.find(key(), check)) return *std::move(known);
+  }
+  options.rtol = tolerance;
+  reference::Reference reference = compute_reference(scene, cloth, times, options, watch_, seconds);
+  cache_.store(key(), reference);
   return reference;
 }
 

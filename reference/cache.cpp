@@ -67,7 +67,7 @@ std::filesystem::path Cache::file(std::string_view key) const {
   return folder_ / fmt::format("{:016x}{:016x}.reference", hash.high64, hash.low64);
 }
 
-std::optional<Reference> Cache::find(std::string_view key) {
+std::optional<Reference> Cache::find(std::string_view key, const Check& check) {
   const std::filesystem::path path = file(key);
   std::ifstream stream(path, std::ios::binary);
   if (!stream) {
@@ -76,6 +76,7 @@ std::optional<Reference> Cache::find(std::string_view key) {
   }
   try {
     Reference reference = decode(std::string(std::istreambuf_iterator<char>(stream), {}), complete(key));
+    if (check) check(reference);
     ++counts_.hits;
     return reference;
   } catch (const DamagedFile& error) {

@@ -78,8 +78,7 @@ std::string encode(std::string_view key, const Reference& reference) {
   put(out, key.data(), key.size());
   for (const std::string* name : {&reference.name, &reference.witness}) put(out, name->data(), name->size());
   put(out, &reference.tolerance, 1);
-  for (const auto* series : {&reference.error, &reference.tolerance_effect, &reference.growth})
-    put(out, series->data(), series->size());
+  for (const auto* series : {&reference.error, &reference.growth}) put(out, series->data(), series->size());
   for (const Trajectory* trajectory : {&reference.trajectory, &reference.witnessed, &reference.perturbed})
     put_trajectory(out, *trajectory);
   return out + checksum(out);
@@ -94,8 +93,7 @@ Reference decode(std::string_view bytes, std::string_view key) {
   Reference reference;
   for (std::string* name : {&reference.name, &reference.witness}) *name = reader.take<std::string>();
   reference.tolerance = reader.take<std::vector<double>>().at(0);
-  for (auto* series : {&reference.error, &reference.tolerance_effect, &reference.growth})
-    *series = reader.take<std::vector<double>>();
+  for (auto* series : {&reference.error, &reference.growth}) *series = reader.take<std::vector<double>>();
   for (Trajectory* trajectory : {&reference.trajectory, &reference.witnessed, &reference.perturbed})
     *trajectory = take_trajectory(reader);
   return reference;
