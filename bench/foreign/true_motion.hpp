@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/reference_work.hpp"
 #include "model/cloth.hpp"
 #include "reference/trajectory.hpp"
 
