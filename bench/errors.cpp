@@ -110,13 +110,12 @@ reference::Reference References::at(double tolerance, const model::Scene& scene,
   };
   for (const double tighter : tolerances | std::views::reverse) {
     options.rtol = tighter;
-    if (tighter > tolerance) break;
+    if (tighter >= tolerance) break;
     if (auto known = cache_.find(key(), check)) return *std::move(known);
   }
   options.rtol = tolerance;
-  reference::Reference reference = compute_reference(scene, cloth, times, options, watch_, seconds);
-  cache_.store(key(), reference);
-  return reference;
+  return reference::cached(
+      cache_, key(), [&] { return compute_reference(scene, cloth, times, options, watch_, seconds); }, check);
 }
 
 results::ErrorRecord distance(const results::RunRecord& run, const reference::Reference& reference, const model::Scene& scene,

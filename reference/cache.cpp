@@ -102,8 +102,8 @@ std::string cache_key(std::string_view scene_toml, double t0, std::span<const do
                      options.size);
 }
 
-Reference cached(Cache& cache, std::string_view key, const std::function<Reference()>& compute) {
-  if (auto known = cache.find(key)) return *std::move(known);
+Reference cached(Cache& cache, std::string_view key, const std::function<Reference()>& compute, const Cache::Check& check) {
+  if (auto known = cache.find(key, check)) return *std::move(known);
   Reference reference = compute();
   cache.store(key, reference);
   return reference;

@@ -54,6 +54,6 @@ class Cache {
 std::string cache_key(std::string_view scene_toml, double t0, std::span<const double> times, const SolveOptions& options);
 
 /// The reference from the cache, or else from `compute` and into the cache. Exceptions of `compute` pass through.
-Reference cached(Cache& cache, std::string_view key, const std::function<Reference()>& compute);
+Reference cached(Cache& cache, std::string_view key, const std::function<Reference()>& compute, const Cache::Check& check = {});
 
 }  // namespace drape::reference
