@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <ranges>
 
 #include "model/scene_file.hpp"
@@ -33,8 +32,6 @@ double energy_scale(const model::Cloth& cloth, const reference::Trajectory& traj
 double centre_distance(const model::Cloth& cloth, const State& a, const State& b) {
   return (cloth.ode.mass.asDiagonal() * (a.x - b.x)).colwise().sum().norm() / cloth.ode.mass.sum();
 }
-
-using Clock = std::chrono::steady_clock;
 
 std::vector<double> tenths(const model::Scene& scene) {
   constexpr int outputs = 10;
@@ -86,8 +83,7 @@ reference::Reference References::certified(const model::Scene& scene, const mode
 
 reference::Reference References::tight(const model::Scene& scene, const model::Cloth& cloth, const std::vector<double>& times,
                                        double uncertainty) {
-  const Clock::time_point begin = Clock::now();
-  const auto left = [&] { return watch_.seconds - std::chrono::duration<double>(Clock::now() - begin).count(); };
+  const auto left = [&] { return watch_.seconds - std::chrono::duration<double>(Clock::now() - begin_).count(); };
   reference::Reference best = at(rtol_, scene, cloth, times, left());
   for (;;) {
     const double worst = std::ranges::max(best.error), tightest = std::ranges::min(tolerances);

@@ -12,7 +12,7 @@ class References {
   static constexpr double loosest = 1e-9;
 
   /// `agreement`: largest disagreement of the two families, over the size of the scene. `rtol`: the tolerance to begin with,
-  /// which is tightened, down to 1e-12, where they disagree by more than what is asked for.
+  /// which is tightened, down to 1e-12, where they disagree by more than what is asked for. Its time begins now.
   explicit References(double agreement, ReferenceWatch watch = {}, double rtol = loosest)
       : agreement_(agreement), rtol_(rtol), watch_(std::move(watch)) {}
 
@@ -33,6 +33,8 @@ class References {
   reference::Reference resolving(const model::Scene& scene, const model::Cloth& cloth, double error);
 
  private:
+  using Clock = std::chrono::steady_clock;
+
   reference::Reference certified(const model::Scene& scene, const model::Cloth& cloth, const std::vector<double>& times,
                                  double uncertainty);
   reference::Reference tight(const model::Scene& scene, const model::Cloth& cloth, const std::vector<double>& times,
@@ -42,6 +44,7 @@ class References {
 
   double agreement_, rtol_;
   ReferenceWatch watch_;
+  Clock::time_point begin_ = Clock::now();
   reference::Cache cache_;
 };
 

@@ -11,7 +11,7 @@ namespace drape::bench {
 
 /// While references are computed.
 struct ReferenceWatch {
-  double seconds = std::numeric_limits<double>::infinity();  ///< wall time for one scene
+  double seconds = std::numeric_limits<double>::infinity();  ///< wall time for all references together
   std::function<void(const std::string&)> say = {};          ///< how far the motions have come; may be empty
 };
 
