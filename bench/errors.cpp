@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
-#include "bench/interruption.hpp"
-#include "bench/limits.hpp"
+#include <algorithm>
+#include <ranges>
+
 #include "bench/motion_error.hpp"
 #include "model/scene_file.hpp"
+#include "reference/plausible.hpp"
 #include "solver/largest.hpp"
 #include "solver/printable.hpp"
 
@@ -18,17 +20,13 @@ double centre_distance(const model::Cloth& cloth, const State& a, const State& b
   return (cloth.ode.mass.asDiagonal() * (a.x - b.x)).colwise().sum().norm() / cloth.ode.mass.sum();
 }
 
-reference::Reference compute_reference(const model::Cloth& cloth, const std::vector<double>& times,
-                                       const reference::SolveOptions& options) {
-  solver::SplitOde ode = cloth.ode;
-  watch(ode, Limits().seconds);
-  try {
-    return ode.contacts ? reference::contact_reference(ode, cloth.start, 0, times, options)
-                        : reference::reference(ode, cloth.start, 0, times, options);
-  } catch (const reference::ReferenceError&) {
-    check_interruption();  // it may have been the reason
-    throw;
-  }
+constexpr double tolerances[] = {1e-9, 1e-10, 1e-11, 1e-12};  ///< of references
+
+/// The loosest of them that promises an uncertainty, as it falls with the tolerance; at least the next.
+double tightened(double tolerance, double factor) {
+  for (const double next : tolerances)
+    if (next < 0.99 * tolerance && next <= 1.01 * factor * tolerance) return next;
+  return tolerances[std::size(tolerances) - 1];
 }
 
 }  // namespace
@@ -50,16 +48,57 @@ reference::Reference References::operator()(const model::Scene& scene, const mod
 
 reference::Reference References::operator()(const model::Scene& scene, const model::Cloth& cloth,
                                             const std::vector<double>& times) {
-  const reference::SolveOptions options{.rtol = rtol_, .size = model::size(scene)};
-  const auto key = reference::cache_key(model::to_toml(scene), 0, times, options);
-  reference::Reference reference = reference::cached(cache_, key, [&] { return compute_reference(cloth, times, options); });
+  return certified(scene, cloth, times, agreement_);
+}
+
+reference::Reference References::resolving(const model::Scene& scene, const model::Cloth& cloth, double error) {
+  return certified(scene, cloth, compared_times(scene), std::min(agreement_, error / 10));
+}
+
+reference::Reference References::certified(const model::Scene& scene, const model::Cloth& cloth,
+                                           const std::vector<double>& times, double uncertainty) {
+  const double size = model::size(scene);
+  reference::Reference reference = tight(scene, cloth, times, uncertainty * size);
   if (cloth.ode.contacts) return reference;  // of first order: its uncertainty decides what is shown
   try {
-    reference::certify(reference, agreement_, results::comparable_growth, options.size);
+    reference::certify(reference, agreement_, results::comparable_growth, size);
   } catch (const reference::NotCertified& error) {
     throw reference::NotCertified(fmt::format("{}: {}; allow more by --agreement", scene.name, error.what()));
   }
   return reference;
+}
+
+reference::Reference References::tight(const model::Scene& scene, const model::Cloth& cloth, const std::vector<double>& times,
+                                       double uncertainty) {
+  const auto left = [&] { return watch_.seconds - std::chrono::duration<double>(Clock::now() - begin_).count(); };
+  reference::Reference best = at(rtol_, scene, cloth, times, left());
+  for (;;) {
+    const double worst = std::ranges::max(best.error), tightest = std::ranges::min(tolerances);
+    const bool comparable = !cloth.ode.contacts && std::ranges::max(best.growth) <= results::comparable_growth;
+    if (!comparable || !(worst > uncertainty) || best.tolerance <= tightest) return best;
+    try {
+      best = at(tightened(best.tolerance, uncertainty / worst), scene, cloth, times, left());
+    } catch (const reference::ReferenceError&) {
+      return best;  // its uncertainty says what it is worth
+    }
+  }
+}
+
+reference::Reference References::at(double tolerance, const model::Scene& scene, const model::Cloth& cloth,
+                                    const std::vector<double>& times, double seconds) {
+  reference::SolveOptions options{.rtol = tolerance, .size = model::size(scene)};
+  const auto key = [&] { return reference::cache_key(model::to_toml(scene), 0, times, options); };
+  const auto check = [&](const reference::Reference& found) {
+    reference::require_plausible(found, cloth.ode, cloth.start, 0, times, options.size);
+  };
+  for (const double tighter : tolerances | std::views::reverse) {
+    options.rtol = tighter;
+    if (tighter >= tolerance) break;
+    if (auto known = cache_.find(key(), check)) return *std::move(known);
+  }
+  options.rtol = tolerance;
+  return reference::cached(
+      cache_, key(), [&] { return compute_reference(scene, cloth, times, options, watch_, seconds); }, check);
 }
 
 results::ErrorRecord distance(const results::RunRecord& run, const reference::Reference& reference, const model::Scene& scene,

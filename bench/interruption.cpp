@@ -1,11 +1,13 @@
 #include "bench/interruption.hpp"
 
+#include <atomic>
 #include <csignal>
 
 namespace drape::bench {
 namespace {
 
-volatile std::sig_atomic_t noted_signal = 0;
+std::atomic<int> noted_signal = 0;  // threads read it
+static_assert(std::atomic<int>::is_always_lock_free, "a handler may write it");
 
 }  // namespace
 

@@ -33,6 +33,20 @@ void Progress::show(const std::string& activity) {
   draw();
 }
 
+void Progress::report(const std::string& activity) {
+  if (terminal_) return show(activity);
+  const auto now = std::chrono::steady_clock::now();
+  if (now - reported_ < std::chrono::seconds(5)) return;
+  reported_ = now;
+  note(activity);
+}
+
+void Progress::note(const std::string& line) {
+  fmt::print(stderr, "{}{}\n", terminal_ ? "\r\033[K" : "", line);
+  std::fflush(stderr);
+  draw();
+}
+
 void Progress::advance() {
   const auto now = std::chrono::steady_clock::now();
   if (now - std::exchange(last_, now) < std::chrono::milliseconds(1)) ++known_;

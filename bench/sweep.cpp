@@ -5,7 +5,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <limits>
 #include <new>
+#include <utility>
 
 #include "bench/contact_record.hpp"
 #include "bench/errors.hpp"
@@ -15,6 +17,7 @@
 #include "bench/timing.hpp"
 #include "bench/trajectory_record.hpp"
 #include "results/xdmf.hpp"
+#include "solver/largest.hpp"
 
 namespace drape::bench {
 namespace {
@@ -23,38 +26,82 @@ std::string title(const Cell& cell) {
   return fmt::format("{} {} h = {} {}", cell.scene.name, cell.method_name(), cell.step, cell.overrides);
 }
 
-/// What the runs of a group are measured by: their common scene, compiled once, and its reference or why there is none.
-struct Truth {
-  model::Cloth cloth;
-  std::optional<reference::Reference> reference;
-  std::string remark;
-};
+/// A run with its states at the compared times, which its error is found from when the reference is there.
+struct MeasuredRun {
+  results::RunRecord run;
+  std::vector<solver::Vectors> positions, velocities;  ///< none if nothing is compared
 
-Truth find_reference(const model::Scene& scene, References& references) {
-  Truth truth{model::compile(scene), std::nullopt, ""};
-  try {
-    truth.reference = references(scene, truth.cloth);
-  } catch (const reference::ReferenceError& error) {
-    truth.remark = fmt::format("no reference: {}", error.what());
-  } catch (const std::bad_alloc&) {
-    truth.remark = "no reference: it needs more memory than the machine has";
+  std::vector<solver::State> states() const {
+    std::vector<solver::State> all;
+    for (std::size_t k = 0; k < positions.size(); ++k) all.push_back({positions[k], velocities[k]});
+    return all;
   }
-  return truth;
+};
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(MeasuredRun, run, positions, velocities)
+
+/// The times of repetitions [ms] of a run, and the steps that each took.
+struct TimedRun {
+  std::vector<double> times;
+  std::int64_t steps = 0;
+};
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TimedRun, times, steps)
+
+MeasuredRun measure(const Cell& cell, const SweepOptions& options) {
+  const solver::Observer look = options.look ? options.look(cell) : solver::Observer();
+  if (!options.reference) return {record(cell, look, options.frames_every, options.limits), {}, {}};
+  Samples samples(compared_times(cell.scene));
+  const auto see = [&](const solver::StepReport& step) {
+    samples.see(step);
+    if (look) look(step);
+  };
+  MeasuredRun measured{record(cell, see, options.frames_every, options.limits), {}, {}};
+  if (measured.run.outcome != to_string(solver::Outcome::success)) return measured;
+  for (const solver::State& y : samples.states()) {
+    measured.positions.push_back(y.x);
+    measured.velocities.push_back(y.v);
+  }
+  return measured;
 }
 
-void compare(results::RunRecord& run, const Samples& samples, const reference::Reference& reference, const model::Scene& scene,
+void compare(MeasuredRun& measured, const reference::Reference& reference, const model::Scene& scene,
              const model::Cloth& cloth) {
+  results::RunRecord& run = measured.run;
   run.error = distance(run, reference, scene, cloth);
-  run.motion_error = motion_error(samples.states(), reference, scene, cloth);
+  run.motion_error = motion_error(measured.states(), reference, scene, cloth);
   const reference::Trajectory& truth = reference.trajectory;
   if (run.contact) run.contact->reference_area = contact_area(scene, cloth, truth.times.back(), truth.states.back().x);
 }
 
-void measure_error(const Cell& cell, results::RunRecord& run, const Samples& samples, const Truth& truth) {
-  if (!truth.reference)
-    run.message += (run.message.empty() ? "" : "; ") + truth.remark;
-  else if (run.outcome == to_string(solver::Outcome::success))
-    compare(run, samples, *truth.reference, cell.scene, truth.cloth);
+/// Compares all runs that succeeded; returns the smallest of their errors, over the size.
+double compare_all(std::vector<MeasuredRun>& runs, const reference::Reference& reference, const model::Scene& scene,
+                   const model::Cloth& cloth) {
+  double smallest = std::numeric_limits<double>::infinity();
+  for (MeasuredRun& measured : runs) {
+    if (measured.run.outcome != to_string(solver::Outcome::success)) continue;
+    compare(measured, reference, scene, cloth);
+    smallest = std::min(smallest, measured.run.error->rms);
+  }
+  return smallest;
+}
+
+/// Measures the runs of a group by the reference of their common scene, which is as tight as the smallest error needs, or says
+/// with each why there is none.
+void measure_errors(const model::Scene& scene, std::vector<MeasuredRun>& runs, References& references) {
+  const auto remark = [&](const char* why) {
+    for (MeasuredRun& measured : runs)
+      measured.run.message += fmt::format("{}no reference: {}", measured.run.message.empty() ? "" : "; ", why);
+  };
+  try {
+    const model::Cloth cloth = model::compile(scene);
+    const reference::Reference first = references(scene, cloth);
+    const double smallest = compare_all(runs, first, scene, cloth);
+    if (cloth.ode.contacts || 10 * solver::largest(first.error) <= smallest * model::size(scene)) return;
+    compare_all(runs, references.resolving(scene, cloth, smallest), scene, cloth);
+  } catch (const reference::ReferenceError& error) {
+    remark(error.what());
+  } catch (const std::bad_alloc&) {
+    remark("it needs more memory than the machine has");
+  }
 }
 
 /// Before anything is computed.
@@ -68,59 +115,72 @@ std::size_t steps_of(const results::RunRecord& run) {
   return run.steps.size() + (run.outcome == to_string(solver::Outcome::unstable) ? 1 : 0);
 }
 
-/// Times those runs of a group that have kept their limits, as far as they went.
-void time_all(const Group& group, int repetitions, std::vector<results::RunRecord>& runs, Units& units) {
+/// Times those runs of a group that have kept their limits, as far as they went; the others have no times.
+std::vector<TimedRun> time_all(const Group& group, int repetitions, const std::vector<MeasuredRun>& runs, Units& units) {
   Group timed;
-  std::vector<results::RunRecord*> places;
+  std::vector<std::size_t> places;
   for (std::size_t k = 0; k < group.size(); ++k) {
-    if (runs[k].outcome == out_of_time || runs[k].outcome == out_of_memory) continue;
+    const results::RunRecord& run = runs[k].run;
+    if (run.outcome == out_of_time || run.outcome == out_of_memory) continue;
     timed.push_back(group[k]);
-    timed.back().most_steps = steps_of(runs[k]);
-    places.push_back(&runs[k]);
+    timed.back().most_steps = steps_of(run);
+    places.push_back(k);
   }
   std::vector<std::size_t> steps;
   auto times = time_group(
       timed, repetitions, [&] { units.advance(); }, &steps);
-  for (std::size_t k = 0; k < timed.size(); ++k) {
-    places[k]->times_ms = std::move(times[k]);
-    places[k]->work.push_back(
-        {"timed_steps", "accepted steps of a repetition that was timed", static_cast<std::int64_t>(steps[k])});
-  }
+  std::vector<TimedRun> all(group.size());
+  for (std::size_t k = 0; k < timed.size(); ++k) all[places[k]] = {std::move(times[k]), static_cast<std::int64_t>(steps[k])};
+  return all;
 }
 
-/// Runs a group and records it as a whole. Each cell is a unit of work, their repetitions are not: they must be interleaved.
-void run_group(const Group& group, const SweepOptions& options, References& references, results::RunFile& file, Units& units) {
-  std::optional<Truth> truth;
-  const auto measured = [&](const Cell& cell) {
-    Samples samples(compared_times(cell.scene));
-    const solver::Observer look = options.look ? options.look(cell) : solver::Observer();
-    const auto see = [&](const solver::StepReport& step) {
-      samples.see(step);
-      if (look) look(step);
-    };
-    results::RunRecord run = record(cell, see, options.frames_every, options.limits);
-    if (!options.reference) return run;
-    if (!truth) {
-      units.show("reference of " + group.front().scene.name);
-      truth = find_reference(group.front().scene, references);
-    }
-    measure_error(cell, run, samples, *truth);
-    return run;
-  };
-  std::vector<results::RunRecord> runs;
+/// What is known of a run before its error is.
+std::string preview(const results::RunRecord& run) {
+  std::string line = fmt::format("{} {} h = {}: {}", run.scene, run.method, run.step, run.outcome);
+  if (!run.times_ms.empty()) line += fmt::format(", {:.4g} ms", std::ranges::min(run.times_ms));
+  return line + "; its error follows";
+}
+
+void add_errors(const model::Scene& scene, std::vector<MeasuredRun>& runs, const SweepOptions& options, Units& units) {
+  units.show("reference of " + scene.name);
+  bool previewed = false;
+  References references(options.agreement, {options.limits.seconds, [&](const std::string& pace) {
+                                              if (!std::exchange(previewed, true))
+                                                for (const MeasuredRun& measured : runs) units.note(preview(measured.run));
+                                              units.report("reference of " + scene.name + ": " + pace);
+                                            }});
+  measure_errors(scene, runs, references);
+  check_interruption();
+  units.advance();
+}
+
+/// Runs a group and records it as a whole: each cell is a unit of work, and so are their repetitions together, which must be
+/// interleaved. The reference comes last, since it may take longer than all the rest.
+void run_group(const Group& group, const SweepOptions& options, results::RunFile& file, Units& units) {
+  const model::Scene& scene = group.front().scene;
+  std::vector<MeasuredRun> measured;
+  std::string ids;
   for (const Cell& cell : group) {
     const std::string id = identity(cell, options);
-    runs.push_back(units(id, [&] {
+    ids += id;
+    measured.push_back(units(id, [&] {
       units.show(title(cell));
-      results::RunRecord run = measured(cell);
-      run.cell = id;
-      return run;
+      MeasuredRun one = measure(cell, options);
+      one.run.cell = id;
+      return one;
     }));
     units.advance();
   }
-  if (options.reference) units.advance();
-  units.show("timing " + group.front().scene.name);
-  time_all(group, options.repetitions, runs, units);
+  units.show("timing " + scene.name);
+  auto timed = units("times " + hash_of(ids), [&] { return time_all(group, options.repetitions, measured, units); });
+  for (std::size_t k = 0; k < measured.size(); ++k) {
+    if (timed[k].times.empty()) continue;
+    measured[k].run.times_ms = std::move(timed[k].times);
+    measured[k].run.work.push_back({"timed_steps", "accepted steps of a repetition that was timed", timed[k].steps});
+  }
+  if (options.reference) add_errors(scene, measured, options, units);
+  std::vector<results::RunRecord> runs;
+  for (MeasuredRun& one : measured) runs.push_back(std::move(one.run));
   file.add(runs);
 }
 
@@ -134,12 +194,11 @@ std::vector<results::RunRecord> sweep(const std::vector<Group>& groups, const Sw
   int parts = 0;
   for (const Group& group : groups) parts += parts_of(group);
   record_in_file(options, identity(groups, options), parts, [&](results::RunFile& file, Units& units) {
-    References references(options.agreement);
     const std::size_t recorded = file.run_count();
     std::size_t before = 0;  // runs of the groups before this one
     for (const Group& group : groups) {
       if (before >= recorded)
-        run_group(group, options, references, file, units);
+        run_group(group, options, file, units);
       else
         for (int k = 0; k < parts_of(group); ++k) units.advance();
       before += group.size();

@@ -22,6 +22,8 @@ class Units {
   void begin(const std::string& part) { prefix_ = part + ": "; }
 
   void show(const std::string& activity) { progress_.show(activity); }
+  void report(const std::string& activity) { progress_.report(activity); }
+  void note(const std::string& line) { progress_.note(line); }
   void advance() { progress_.advance(); }
 
   /// What compute() returns, or what it returned to a process before this one: something that json holds. A result during which

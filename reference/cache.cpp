@@ -61,7 +61,7 @@ std::filesystem::path Cache::file(std::string_view key) const {
   return folder_ / fmt::format("{:016x}{:016x}.reference", hash.high64, hash.low64);
 }
 
-std::optional<Reference> Cache::find(std::string_view key) {
+std::optional<Reference> Cache::find(std::string_view key, const Check& check) {
   const std::filesystem::path path = file(key);
   if (std::error_code unreachable; !std::filesystem::exists(path, unreachable)) {
     ++counts_.absent;
@@ -69,6 +69,7 @@ std::optional<Reference> Cache::find(std::string_view key) {
   }
   try {
     Reference reference = decode(solver::content_of(path, largest_file), complete(key));
+    if (check) check(reference);
     ++counts_.hits;
     return reference;
   } catch (const std::runtime_error& error) {
@@ -94,8 +95,8 @@ std::string cache_key(std::string_view scene_toml, double t0, std::span<const do
                      options.size);
 }
 
-Reference cached(Cache& cache, std::string_view key, const std::function<Reference()>& compute) {
-  if (auto known = cache.find(key)) return *std::move(known);
+Reference cached(Cache& cache, std::string_view key, const std::function<Reference()>& compute, const Cache::Check& check) {
+  if (auto known = cache.find(key, check)) return *std::move(known);
   Reference reference = compute();
   cache.store(key, reference);
   return reference;

@@ -16,14 +16,18 @@ std::filesystem::path default_cache_folder();
 ///
 /// To the caller's key text is added all that he cannot know: the source code of solver/, model/ and reference/, the
 /// compiler and its flags, and the versions of the libraries. A file holds the complete text, compared on reading, and a
-/// checksum; a file that fails either test counts as absent. Files are never removed, but for what killed processes left
-/// unfinished: the folder may be deleted at any time. Nothing about the disk stops a run: what cannot be read is computed, what
-/// cannot be written is not kept.
+/// checksum; a file that fails either test, or the caller's own, counts as absent. Files are never removed, but for what killed
+/// processes left unfinished: the folder may be deleted at any time. Nothing about the disk stops a run: what cannot be read is
+/// computed, what cannot be written is not kept.
 class Cache {
  public:
   explicit Cache(std::filesystem::path folder = default_cache_folder());
 
-  std::optional<Reference> find(std::string_view key);
+  /// Throws DamagedFile if a reference cannot be what the caller is looking for.
+  using Check = std::function<void(const Reference&)>;
+
+  /// A file whose content `check` objects to counts as damaged.
+  std::optional<Reference> find(std::string_view key, const Check& check = {});
   void store(std::string_view key, const Reference& reference);
 
   /// The file of a key, whether it is there or not.
@@ -50,6 +54,6 @@ class Cache {
 std::string cache_key(std::string_view scene_toml, double t0, std::span<const double> times, const SolveOptions& options);
 
 /// The reference from the cache, or else from `compute` and into the cache. Exceptions of `compute` pass through.
-Reference cached(Cache& cache, std::string_view key, const std::function<Reference()>& compute);
+Reference cached(Cache& cache, std::string_view key, const std::function<Reference()>& compute, const Cache::Check& check = {});
 
 }  // namespace drape::reference

@@ -76,7 +76,7 @@ void require_consistent(const Reference& reference) {
              return y.x.rows() == rows && y.v.rows() == rows;
            });
   };
-  for (const auto* series : {&reference.error, &reference.tolerance_effect, &reference.growth})
+  for (const auto* series : {&reference.error, &reference.growth})
     if (series->size() != times.size()) throw DamagedFile("it has not a number for each time");
   for (const Trajectory* trajectory : {&reference.trajectory, &reference.witnessed, &reference.perturbed})
     if (!fits(*trajectory)) throw DamagedFile("its trajectories have different times or particles");
@@ -94,8 +94,7 @@ std::string encode(std::string_view key, const Reference& reference) {
   put(out, key.data(), key.size());
   for (const std::string* name : {&reference.name, &reference.witness}) put(out, name->data(), name->size());
   put(out, &reference.tolerance, 1);
-  for (const auto* series : {&reference.error, &reference.tolerance_effect, &reference.growth})
-    put(out, series->data(), series->size());
+  for (const auto* series : {&reference.error, &reference.growth}) put(out, series->data(), series->size());
   for (const Trajectory* trajectory : {&reference.trajectory, &reference.witnessed, &reference.perturbed})
     put_trajectory(out, *trajectory);
   return out + checksum(out);
@@ -112,8 +111,7 @@ Reference decode(std::string_view bytes, std::string_view key) {
   const auto tolerance = reader.take<std::vector<double>>();
   if (tolerance.size() != 1) throw DamagedFile("it has not one tolerance");
   reference.tolerance = tolerance.front();
-  for (auto* series : {&reference.error, &reference.tolerance_effect, &reference.growth})
-    *series = reader.take<std::vector<double>>();
+  for (auto* series : {&reference.error, &reference.growth}) *series = reader.take<std::vector<double>>();
   for (Trajectory* trajectory : {&reference.trajectory, &reference.witnessed, &reference.perturbed})
     *trajectory = take_trajectory(reader);
   require_consistent(reference);

@@ -29,7 +29,8 @@ Command BenchIntegrators::command(const Words& arguments) const {
 std::string BenchIntegrators::output(const Words& arguments) const {
   const ProgramResult result = run(arguments);
   EXPECT_EQ(result.exit_code, 0);
-  EXPECT_EQ(result.err, "");
+  for (const std::string& line : lines(result.err))  // on a slow machine it says how far its reference is
+    EXPECT_TRUE(line.starts_with("reference of ") || line.ends_with("; its error follows")) << line;
   return result.out;
 }
 

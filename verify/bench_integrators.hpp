@@ -25,7 +25,7 @@ class BenchIntegrators {
 
   ProgramResult run(const Words& arguments) const { return run_program(command(arguments)); }
 
-  /// What it prints; expects it to succeed without a word on standard error.
+  /// What it prints; expects it to succeed without a word on standard error but how far a reference has come.
   std::string output(const Words& arguments) const;
 
   void write(const std::string& name, const std::string& content) const;

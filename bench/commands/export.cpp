@@ -6,6 +6,7 @@
 #include "bench/commands/commands.hpp"
 #include "bench/commands/output.hpp"
 #include "bench/commands/scene_choice.hpp"
+#include "bench/progress.hpp"
 #include "bench/sweep.hpp"
 #include "bench/trajectory_record.hpp"
 #include "results/atomic_file.hpp"
@@ -29,7 +30,9 @@ void export_scene(const ExportArguments& a) {
     throw std::invalid_argument(fmt::format("--every: expected at most the scene's end, {:g} s, not {:g}", scene.end, a.every));
   times.insert(times.begin(), 0);
   results::require_empty_folder(a.out, "the exported scene");
-  const auto files = exported(true_motion(scene, times, a.agreement), times);
+  Progress progress(1);
+  const auto say = [&](const std::string& pace) { progress.report("reference of " + scene.name + ": " + pace); };
+  const auto files = exported(true_motion(scene, times, a.agreement, {.say = say}), times);
   results::publish_folder(a.out, files);
   for (const auto& [name, content] : files)
     fmt::print("{}\n", solver::printable((std::filesystem::path(a.out) / name).string()));

@@ -43,7 +43,8 @@ void add_energies(TableBuilder& table, const FrameScore& frame) {
 
 Table over_time(Scoring& s, Units& units) {
   units.show("reference of " + s.scene.name);
-  s.truth = true_motion(s.scene, s.foreign.times, s.options.agreement);
+  const auto say = [&](const std::string& pace) { units.report("reference of " + s.scene.name + ": " + pace); };
+  s.truth = true_motion(s.scene, s.foreign.times, s.options.agreement, {.say = say});
   s.frames = frame_scores(s.foreign, *s.truth);
   units.advance();
   TableBuilder table(

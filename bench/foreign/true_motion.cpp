@@ -48,9 +48,10 @@ void require_known(const model::Scene& scene, const reference::Reference& refere
 
 }  // namespace
 
-TrueMotion true_motion(const model::Scene& scene, std::span<const double> times, double agreement) {
+TrueMotion true_motion(const model::Scene& scene, std::span<const double> times, double agreement,
+                       const ReferenceWatch& watch) {
   TrueMotion truth{scene, model::compile(scene), {}, 0, {}, {}, {}};
-  References references(agreement);
+  References references(agreement, watch, 1e-10);  // nothing here tells the errors that will be judged by it
   reference::Reference reference = references(scene, truth.cloth, all_times(times, scene.end));
   require_known(scene, reference);
   const solver::State start = reference::prescribed_start(truth.cloth.ode, truth.cloth.start);

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/reference_work.hpp"
 #include "model/cloth.hpp"
 #include "reference/trajectory.hpp"
 
@@ -24,7 +25,7 @@ struct TrueMotion {
 /// `times` [s] ascend from 0 to at most the scene's end. `agreement`: as References has it. Throws reference::NotCertified
 /// where the families disagree by more, or, as with contact, by more than errors can be measured by; and
 /// reference::ReferenceError.
-TrueMotion true_motion(const model::Scene& scene, std::span<const double> times, double agreement);
+TrueMotion true_motion(const model::Scene& scene, std::span<const double> times, double agreement, const ReferenceWatch& watch);
 
 /// The state of a motion at a time: between its times by cubic Hermite interpolation, before the start as at the start, but at
 /// rest.

@@ -99,7 +99,8 @@ results::Table orders_on(const Setting& setting, bool quick, Units& units) {
   const model::Scene scene = model::load_scene(setting.scene, setting.overrides);
   const model::Cloth cloth = model::compile(scene);
   units.show("reference of " + scene.name);
-  References references(SweepOptions().agreement, 1e-12);  // the more of a curve is resolved
+  const auto say = [&](const std::string& pace) { units.report("reference of " + scene.name + ": " + pace); };
+  References references(SweepOptions().agreement, {.say = say}, 1e-12);  // the more of a curve is resolved
   const reference::Reference reference = references(scene, cloth);
   units.advance();
   results::TableBuilder table("orders-" + scene.name, fmt::format("Order in time on {}, {:g} s; reference {} + {}", scene.name,

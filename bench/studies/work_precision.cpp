@@ -61,8 +61,9 @@ Problem problem(const Entry& entry) {
 }
 
 /// From the two families that certify a reference.
-void find_truth(Problem& problem) {
-  References references(1e-6);
+void find_truth(Problem& problem, Units& units) {
+  const auto say = [&](const std::string& pace) { units.report("reference of " + problem.name + ": " + pace); };
+  References references(1e-6, {.say = say}, 1e-10);  // errors down to 1e-7 are compared, and at a few times only
   const auto reference = references(problem.scene, model::compile(problem.scene));
   for (const int tenth : held_out) {
     const auto k = static_cast<std::size_t>(tenth - 1);
@@ -133,7 +134,7 @@ results::Table try_scene(const Entry& entry, All& all, Units& units) {
   if (entry.scene.name == "peer-edge")
     set_explicit_truth(problem, units("truth", [&] { return find_explicit_truth(problem); }));
   else
-    find_truth(problem);
+    find_truth(problem, units);
   scene.families = families(problem.scene, entry.search);
   scene.trials = try_all(problem, scene.families, entry.effort, units);
   units.show("timing " + entry.name);
