@@ -3,10 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <ctime>
 #include <memory>
-#include <set>
 #include <stdexcept>
 
 #include "bench/limits.hpp"
@@ -15,8 +14,6 @@
 
 namespace drape::bench {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 /// Below so many uncertainties of the truth an error says nothing.
 constexpr double too_exact = 1;
@@ -31,12 +28,18 @@ constexpr std::size_t leap = 4;
 /// A first run may have been so much slower than others by chance.
 constexpr double slack = 1.4;
 
-double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+/// CPU time of the process [s].
+double cpu_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
 
 double largest_error(const Problem& problem, const std::vector<solver::Vectors>& positions) {
   double largest = 0;
   for (std::size_t k = 0; k < problem.truth.size(); ++k)
-    largest = std::max(largest, reference::rms_distance(positions.at(k), problem.truth[k]) / problem.length);
+    if (const double error = reference::rms_distance(positions.at(k), problem.truth[k]) / problem.length; !(error <= largest))
+      largest = std::isnan(largest) ? largest : error;
   return largest;
 }
 
@@ -70,9 +73,9 @@ Tried attempt(const Problem& problem, const Family& family, std::size_t candidat
   model::Cloth cloth = model::compile(problem.scene);
   watch(cloth.ode, cap);
   try {
-    const auto begin = Clock::now();
+    const double begin = cpu_seconds();
     const auto positions = family.candidates[candidate].solve(cloth, problem.times);
-    const double milliseconds = 1e3 * seconds_since(begin);
+    const double milliseconds = 1e3 * (cpu_seconds() - begin);
     trial.measured = {largest_error(problem, positions), {milliseconds}};
     if (!std::isfinite(trial.measured.error)) throw std::runtime_error("not finite");
   } catch (const std::exception& error) {
@@ -97,9 +100,9 @@ std::vector<Tried> try_family(const Problem& problem, const Family& family, doub
   double before = INFINITY;  // seconds
   bool succeeded = false;
   for (std::size_t k = 0; k < family.candidates.size();) {
-    const auto begin = Clock::now();
+    const double begin = cpu_seconds();
     const Tried& trial = trials.emplace_back(attempt(problem, family, k, cap));
-    const double seconds = seconds_since(begin);
+    const double seconds = cpu_seconds() - begin;
     const bool too_long = seconds > 0.7 * cap;
     succeeded |= trial.outcome == "success";
     times_outdone = seconds > before && outdone(trial.measured, rivals) ? times_outdone + 1 : 0;
@@ -157,18 +160,23 @@ std::vector<Contender> contenders(const std::vector<Trial>& trials) {
   };
   for (std::size_t k = 0; k < trials.size(); ++k) {
     const Family& family = *trials[k].family;
-    if (family.code == "drape" || family.code == "explicit" || family.code == "thesis") join("ours", k);
+    join(is_ours(family.code) ? "ours" : "sundials", k);
     if (family.code == "drape" || family.code == "thesis") join("implicit", k);
     if (family.code != "drape") join(family.code, k);
     if (!family.method.empty()) join("defaults", k);
     if (!family.method.empty()) join(fmt::format("default {} by {}", family.method, family.control), k);
+    join(family.name, k);
   }
   return all;
 }
 
-void time_fronts(const Problem& problem, std::vector<Trial>& trials, const Effort& effort, Units& units) {
+void time_fronts(const Problem& problem, std::vector<Trial>& trials, const Effort& effort, const std::set<std::string>& named,
+                 Units& units) {
+  std::set<std::string> families;
+  for (const Trial& trial : trials) families.insert(trial.family->name);
   std::set<std::size_t> chosen;
   for (const Contender& contender : contenders(trials)) {
+    if (families.contains(contender.name) && !named.contains(contender.name)) continue;
     std::vector<results::Measured> measured;
     for (const std::size_t k : contender.members) measured.push_back(trials[k].measured);
     for (const std::size_t k : results::near_quickest(measured, asked(problem), slack)) chosen.insert(contender.members[k]);
@@ -180,7 +188,10 @@ void time_fronts(const Problem& problem, std::vector<Trial>& trials, const Effor
         solve(*cloth, problem.times);
       };
     });
-  const auto times = units("times", [&] { return time_runs(runs, effort.repetitions, [] {}); });
+  const auto times = units("times", [&] {
+    return time_runs(
+        runs, effort.repetitions, [] {}, TimeOf::process);
+  });
   for (std::size_t place = 0; const std::size_t k : chosen) {
     trials[k].measured.times = times[place++];
     trials[k].timed = true;
