@@ -116,7 +116,7 @@ void Arkode::set_newton(Implicit implicit, const SolveOptions& options) {
   require(ARKStepSetPredictorMethod(arkode, 1));
   require(ARKStepSetMaxNonlinIters(arkode, std::max(8, options.tuning.max_iterations)));
   if (options.tuning.nonlinear > 0) require(ARKStepSetNonlinConvCoef(arkode, options.tuning.nonlinear));
-  if (options.tuning.step > 0 && implicit == Implicit::everything) require(ARKStepSetDeduceImplicitRhs(arkode, SUNTRUE));
+  if (options.tuning.deduced) require(ARKStepSetDeduceImplicitRhs(arkode, SUNTRUE));
   linear_solver_ = make_linear_solver(*options.newton, y_.get(), session_.context());
   problem_.newton.emplace(problem_.ode, implicit_part(implicit), options, "arkode");
   require(ARKStepSetLinearSolver(arkode, linear_solver_.get(), nullptr), ARKStepGetLinReturnFlagName);

@@ -31,7 +31,7 @@ bool FirstOrderNewton::prepare(double t, const State& y, bool known, double gamm
 }
 
 void FirstOrderNewton::solve(double t, const State& y, const State& dy, double gamma, const State& r, State& z) {
-  if (reduced_) return solve_reduced(t, y, dy, gamma, r, z);
+  if (reduced_) return solve_reduced(t, y, dy, r, z);
   Eigen::VectorXd unknowns = ode_.gather(r);
   klu_->solve(unknowns);
   unknowns *= 2 / (1 + gamma / gamma_);  // as CVODE and ARKODE do for a matrix that was factored for another γ
@@ -40,7 +40,8 @@ void FirstOrderNewton::solve(double t, const State& y, const State& dy, double g
   ode_.scatter(unknowns, z);
 }
 
-void FirstOrderNewton::solve_reduced(double t, const State& y, const State& dy, double gamma, const State& r, State& z) {
+void FirstOrderNewton::solve_reduced(double t, const State& y, const State& dy, const State& r, State& z) {
+  const double gamma = reduced_->gamma();
   const auto& mass = ode_.ode().mass;
   const auto force = [&] { return mass.asDiagonal() * dy.v; };
   reduced_->derivative(t, y, force, r.x, nullptr, right_);

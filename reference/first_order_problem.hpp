@@ -21,8 +21,7 @@ class FirstOrderNewton {
   void solve(double t, const solver::State& y, const solver::State& dy, double gamma, const solver::State& r, solver::State& z);
 
  private:
-  void solve_reduced(double t, const solver::State& y, const solver::State& dy, double gamma, const solver::State& r,
-                     solver::State& z);
+  void solve_reduced(double t, const solver::State& y, const solver::State& dy, const solver::State& r, solver::State& z);
 
   const FirstOrderOde& ode_;
   Part part_;

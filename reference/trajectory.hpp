@@ -18,6 +18,7 @@ struct Tuning {
   double nonlinear = 0;              ///< coefficient of the convergence test of nonlinear systems, over that of the error test
   int max_iterations = 0;            ///< of a nonlinear system
   double step = 0;                   ///< [s], constant steps of ARKODE; rtol is the tolerance of its nonlinear systems then
+  bool deduced = false;              ///< whether it infers derivatives of stages instead of evaluating them
   const Tableau* tableau = nullptr;  ///< its method then
 };
 

@@ -17,9 +17,9 @@ const std::string gmres = "constant-gmres", constant = "constant", newton = "new
 /// The smallest first: each search takes so many of them, as many as there are of ours.
 std::size_t number_of(Search search) { return search == Search::full ? 48 : search == Search::usual ? 31 : 12; }
 
-PeerSetup by_steps(const std::string& tableau, double stage_tolerance, double velocity_weight = 100) {
+PeerSetup by_steps(const std::string& tableau, double stage_tolerance, bool deduced = false) {
   const bool systems = reference::tableau(tableau).solves_systems();
-  return {"arkode-steps", systems ? constant : "", 0, velocity_weight, kept, 0, tableau, systems ? stage_tolerance : 1e-3};
+  return {"arkode-steps", systems ? constant : "", 0, 100, kept, 0, tableau, systems ? stage_tolerance : 1e-3, deduced};
 }
 
 }  // namespace
@@ -32,6 +32,7 @@ std::string PeerSetup::name() const {
   if (!newton.empty() && !tableau.empty()) text += fmt::format(" to {:.0e}", stage_tolerance);
   if (velocity_weight != 1) text += fmt::format(", velocities x{:g}", velocity_weight);
   if (kept_factor == kept && tableau.empty()) text += ", factor kept";
+  if (deduced) text += ", deduced";
   if (nonlinear > 0) text += fmt::format(", nonlinear {:g}", nonlinear);
   return text;
 }
@@ -48,6 +49,7 @@ std::vector<solver::Vectors> solve_by_peer(const PeerSetup& setup, double value,
   options.rtol = setup.stage_tolerance;
   options.tuning.max_iterations = 60;  // far from the solution the constant matrix converges slowly
   options.tuning.step = value;
+  options.tuning.deduced = setup.deduced;
   options.tuning.tableau = &reference::tableau(setup.tableau);
   return positions_of(reference::arkode_steps(cloth.ode, cloth.start, 0, times, options).states);
 }
@@ -104,7 +106,7 @@ std::vector<PeerSetup> peer_setups(Search search) {
       by_steps("esdirk-3", 1e-3),
       by_steps("esdirk-5", 1e-4),
       by_steps("ars-443", 1e-3),
-      by_steps("bogacki-shampine", 0),
+      by_steps("midpoint", 1e-3, true),
       by_steps("fehlberg-8", 0),
   };
   all.resize(std::min(all.size(), number_of(search)));

@@ -15,6 +15,7 @@ struct PeerSetup {
   double nonlinear = 0;
   std::string tableau = {};
   double stage_tolerance = 0;  ///< of nonlinear systems with constant steps
+  bool deduced = false;
 
   /// Whose it is, for contenders: the package.
   std::string name() const;

@@ -28,10 +28,9 @@ constexpr std::size_t leap = 4;
 /// A first run may have been so much slower than others by chance.
 constexpr double slack = 1.4;
 
-/// CPU time of the process [s].
-double cpu_seconds() {
+double seconds(TimeOf time_of) {
   timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  clock_gettime(time_of == TimeOf::wall ? CLOCK_MONOTONIC : CLOCK_PROCESS_CPUTIME_ID, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
@@ -67,15 +66,15 @@ void note_work(const solver::Work& work, Tried& trial) {
   trial.steps = count(work, {"steps", "cvode/steps", "arkode/steps", "ida/steps"});
 }
 
-Tried attempt(const Problem& problem, const Family& family, std::size_t candidate, double cap) {
+Tried attempt(const Problem& problem, const Family& family, std::size_t candidate, const Effort& effort) {
   check_interruption();  // SUNDIALS' failure of the one before may have been one
   Tried trial{.candidate = candidate};
   model::Cloth cloth = model::compile(problem.scene);
-  watch(cloth.ode, cap);
+  watch(cloth.ode, effort.cap);
   try {
-    const double begin = cpu_seconds();
+    const double begin = seconds(effort.time_of);
     const auto positions = family.candidates[candidate].solve(cloth, problem.times);
-    const double milliseconds = 1e3 * (cpu_seconds() - begin);
+    const double milliseconds = 1e3 * (seconds(effort.time_of) - begin);
     trial.measured = {largest_error(problem, positions), {milliseconds}};
     if (!std::isfinite(trial.measured.error)) throw std::runtime_error("not finite");
   } catch (const std::exception& error) {
@@ -94,19 +93,20 @@ bool outdone(const results::Measured& trial, const std::vector<results::Measured
 }
 
 /// `rivals`: other trials of the same code.
-std::vector<Tried> try_family(const Problem& problem, const Family& family, double cap, std::vector<results::Measured> rivals) {
+std::vector<Tried> try_family(const Problem& problem, const Family& family, const Effort& effort,
+                              std::vector<results::Measured> rivals) {
   std::vector<Tried> trials;
   int times_outdone = 0;
-  double before = INFINITY;  // seconds
+  double before = INFINITY;
   bool succeeded = false;
   for (std::size_t k = 0; k < family.candidates.size();) {
-    const double begin = cpu_seconds();
-    const Tried& trial = trials.emplace_back(attempt(problem, family, k, cap));
-    const double seconds = cpu_seconds() - begin;
-    const bool too_long = seconds > 0.7 * cap;
+    const double begin = seconds(effort.time_of);
+    const Tried& trial = trials.emplace_back(attempt(problem, family, k, effort));
+    const double taken = seconds(effort.time_of) - begin;
+    const bool too_long = taken > 0.7 * effort.cap;
     succeeded |= trial.outcome == "success";
-    times_outdone = seconds > before && outdone(trial.measured, rivals) ? times_outdone + 1 : 0;
-    before = seconds;
+    times_outdone = taken > before && outdone(trial.measured, rivals) ? times_outdone + 1 : 0;
+    before = taken;
     rivals.push_back(trial.measured);
     const bool exact = trial.measured.error < std::max(too_exact * problem.uncertainty, problem.enough);
     if ((too_long && succeeded) || exact || times_outdone > 1) break;
@@ -142,7 +142,7 @@ std::vector<Trial> try_all(const Problem& problem, const std::vector<Family>& fa
   std::vector<Trial> trials;
   for (const Family& family : families) {
     units.show(fmt::format("{}: {}", problem.name, family.name));
-    const auto tried = units(family.name, [&] { return try_family(problem, family, effort.cap, rivals_of(family, trials)); });
+    const auto tried = units(family.name, [&] { return try_family(problem, family, effort, rivals_of(family, trials)); });
     for (const Tried& t : tried)
       trials.push_back(
           {&family, &family.candidates.at(t.candidate), t.outcome, t.measured, false, t.forces, t.factorisations, t.steps});
@@ -190,7 +190,7 @@ void time_fronts(const Problem& problem, std::vector<Trial>& trials, const Effor
     });
   const auto times = units("times", [&] {
     return time_runs(
-        runs, effort.repetitions, [] {}, TimeOf::process);
+        runs, effort.repetitions, [] {}, effort.time_of);
   });
   for (std::size_t place = 0; const std::size_t k : chosen) {
     trials[k].measured.times = times[place++];

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "bench/studies/work_precision_candidates.hpp"
+#include "bench/timing.hpp"
 #include "bench/units.hpp"
 #include "results/work_precision.hpp"
 
@@ -46,10 +47,11 @@ struct Trial {
   std::int64_t forces = 0, factorisations = 0, steps = 0;
 };
 
-/// How long a study may take.
+/// How long a study may take, and what times are.
 struct Effort {
   double cap = 1;       ///< time of a run before it is given up [s]
   int repetitions = 7;  ///< of those near a front
+  TimeOf time_of = TimeOf::process;
 };
 
 /// Runs every candidate once, from coarse to fine until it takes too long or is more exact than the truth.
@@ -66,7 +68,7 @@ struct Contender {
 /// family, by its name.
 std::vector<Contender> contenders(const std::vector<Trial>& trials);
 
-/// Measures CPU times of what is near the front of any contender, all interleaved; of the families only those that are named.
+/// Times what is near the front of any contender, all interleaved; of the families only those that are named.
 void time_fronts(const Problem& problem, std::vector<Trial>& trials, const Effort& effort, const std::set<std::string>& named,
                  Units& units);
 
