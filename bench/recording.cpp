@@ -1,9 +1,13 @@
 #include "bench/recording.hpp"
 
+#include "reference/sundials_build.hpp"
+
 namespace drape::bench {
 
 void record_in_file(const SweepOptions& options, const std::string& sweep, int parts, const Work& work) {
-  const results::Provenance facts = results::provenance(options.command_line, sweep);
+  results::Provenance facts = results::provenance(options.command_line, sweep);
+  facts.push_back(
+      {"sundials_build", reference::sundials_build(), "how the SUNDIALS that was loaded is compiled, and what is ours"});
   results::Journal journal(options.out, facts, options.start);
   results::RunFile file(options.out, facts, options.start);
   if (!file.finished()) {

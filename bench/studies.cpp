@@ -16,6 +16,7 @@ std::span<const Study> studies() {
       {"modes", "amplification of linear modes by the running code: stability limits, artificial inertia and damping", nullptr,
        modes},
       {"references", "CVODE, ARKODE and IDA on the hung sheets: how far they agree, and at what cost", nullptr, references},
+      {"peers", "SUNDIALS set up by an independent driver: its errors and CPU times reproduced", nullptr, peers},
       {"table-3.1", "the work of BDF(2) on the tablecloth against stiffness and damping, with the thesis' counts", nullptr,
        table_3_1},
       {"table-3.2", "all methods on the tablecloth: work and time, with the thesis' figures", nullptr, table_3_2},

@@ -42,6 +42,7 @@ std::vector<TableJob> convergence(bool quick);
 std::vector<TableJob> orders(bool quick);
 std::vector<TableJob> modes(bool quick);
 std::vector<TableJob> references(bool quick);
+std::vector<TableJob> peers(bool quick);
 std::vector<TableJob> table_3_1(bool quick);
 std::vector<TableJob> table_3_2(bool quick);
 std::vector<TableJob> figure_3_2(bool quick);

@@ -12,18 +12,20 @@ namespace {
 /// Collects the times of single repetitions; the name of a benchmark is its place in the group.
 class Collector : public benchmark::BenchmarkReporter {
  public:
-  explicit Collector(std::vector<std::vector<double>>& times) : times_(times) {}
+  Collector(std::vector<std::vector<double>>& times, TimeOf time_of) : times_(times), time_of_(time_of) {}
 
   bool ReportContext(const Context&) override { return true; }
 
   void ReportRuns(const std::vector<Run>& runs) override {
     for (const Run& run : runs)
       if (run.run_type == Run::RT_Iteration)
-        times_[std::stoul(run.run_name.function_name)].push_back(1e3 * run.real_accumulated_time);
+        times_[std::stoul(run.run_name.function_name)].push_back(
+            1e3 * (time_of_ == TimeOf::wall ? run.real_accumulated_time : run.cpu_accumulated_time));
   }
 
  private:
   std::vector<std::vector<double>>& times_;
+  TimeOf time_of_;
 };
 
 /// Ends a repetition from within its observer.
@@ -58,8 +60,8 @@ void interleave_repetitions() {
 
 }  // namespace
 
-std::vector<std::vector<double>> time_runs(const std::vector<Prepare>& runs, int repetitions,
-                                           const std::function<void()>& done) {
+std::vector<std::vector<double>> time_runs(const std::vector<Prepare>& runs, int repetitions, const std::function<void()>& done,
+                                           TimeOf time_of) {
   if (runs.empty()) return {};
   interleave_repetitions();
   std::vector<std::vector<double>> times(runs.size());
@@ -74,8 +76,9 @@ std::vector<std::vector<double>> time_runs(const std::vector<Prepare>& runs, int
                                  })
         ->Iterations(1)
         ->Repetitions(repetitions)
+        ->MeasureProcessCPUTime()
         ->UseRealTime();
-  Collector collector(times);
+  Collector collector(times, time_of);
   benchmark::RunSpecifiedBenchmarks(&collector);
   return times;
 }

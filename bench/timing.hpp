@@ -10,10 +10,13 @@ namespace drape::bench {
 /// Prepares a run outside of what is timed, and returns what is timed.
 using Prepare = std::function<std::function<void()>()>;
 
-/// Wall times [ms] of runs: `repetitions` each, interleaved in random order by Google Benchmark. `done` is called after each.
+/// Wall time, or CPU time of the whole process, which what else runs on the machine lengthens little.
+enum class TimeOf { wall, process };
+
+/// Times [ms] of runs: `repetitions` each, interleaved in random order by Google Benchmark. `done` is called after each.
 /// Throws Interrupted.
-std::vector<std::vector<double>> time_runs(const std::vector<Prepare>& runs, int repetitions,
-                                           const std::function<void()>& done);
+std::vector<std::vector<double>> time_runs(const std::vector<Prepare>& runs, int repetitions, const std::function<void()>& done,
+                                           TimeOf time_of = TimeOf::wall);
 
 /// Wall times [ms] of the solver for every cell of a group: as time_runs() has them. Compiling the scene is outside,
 /// building the matrix and all steps are inside, up to `most_steps` of the cell; energies are not evaluated. `steps`: how many

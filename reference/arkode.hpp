@@ -21,4 +21,8 @@ Trajectory arkode_imex(const solver::SplitOde& ode, const solver::State& y0, dou
 Trajectory arkode_erk(const solver::SplitOde& ode, const solver::State& y0, double t0, std::span<const double> times,
                       const SolveOptions& options = {});
 
+/// The same with constant steps and the method of options.tuning, which must have both: implicit, explicit or additive.
+Trajectory arkode_steps(const solver::SplitOde& ode, const solver::State& y0, double t0, std::span<const double> times,
+                        const SolveOptions& options);
+
 }  // namespace drape::reference

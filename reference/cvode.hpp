@@ -14,4 +14,9 @@ namespace drape::reference {
 Trajectory cvode(const solver::SplitOde& ode, const solver::State& y0, double t0, std::span<const double> times,
                  const SolveOptions& options = {});
 
+/// The same with the Adams-Moulton formulas of orders 1 to 12 (max_order of them) and functional iteration: no matrices, for
+/// problems that are not stiff.
+Trajectory cvode_adams(const solver::SplitOde& ode, const solver::State& y0, double t0, std::span<const double> times,
+                       const SolveOptions& options = {});
+
 }  // namespace drape::reference

@@ -21,6 +21,8 @@ std::span<const Family> families() {
       {"arkode-esdirk", "ARKODE: ESDIRK method of order 5, everything implicit", arkode_esdirk},
       {"arkode-imex", "ARKODE: additive Runge-Kutta pair of order 5 on the split of the thesis", arkode_imex},
       {"ida-bdf", "IDA: BDF of orders 1 to 5 on the residual form, pins as algebraic equations", ida_trajectory},
+      {"cvode-adams", "CVODE: Adams-Moulton formulas with functional iteration", cvode_adams, false},
+      {"arkode-erk", "ARKODE: explicit Runge-Kutta method of order 5", arkode_erk, false},
   };
   return table;
 }

@@ -12,6 +12,7 @@ struct Family {
   std::string_view description;
   Trajectory (*solve)(const solver::SplitOde& ode, const solver::State& y0, double t0, std::span<const double> times,
                       const SolveOptions& options);
+  bool implicit = true;  ///< solves linear systems
 };
 
 /// All families: linear multistep methods, Runge-Kutta methods, and the residual form.

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "reference/sparse_rows.hpp"
+#include "solver/kernels.hpp"
 
 namespace drape::reference {
 
@@ -33,74 +34,60 @@ FirstOrderOde::FirstOrderOde(const solver::SplitOde& ode, const State& start, do
       coordinates_(ode),
       start_(prescribed_start(ode, start)),
       t0_(t0),
-      inverse_mass_(size() / 2),
-      scratch_{.state = start_, .force = Vectors::Zero(ode.particles(), 3)} {
-  for (Eigen::Index r = 0; r < inverse_mass_.size(); ++r) inverse_mass_[r] = 1 / ode.mass[coordinates_.free[r] / 3];
+      inverse_mass_(ode.mass.cwiseInverse().replicate(1, 3)),
+      scratch_{.damping = Vectors::Zero(ode.particles(), 3)} {
+  solver::filter(ode.pins, inverse_mass_);
 }
 
-Eigen::VectorXd FirstOrderOde::initial() const {
-  const int n = size() / 2;
-  Eigen::VectorXd y(size());
-  for (int r = 0; r < n; ++r) {
-    y[r] = start_.x.data()[coordinates_.free[r]];
-    y[n + r] = start_.v.data()[coordinates_.free[r]];
+State FirstOrderOde::output(double t, State y) const {
+  for (const int i : coordinates_.pinned) {
+    y.x.data()[i] = start_.x.data()[i] + start_.v.data()[i] * (t - t0_);
+    y.v.data()[i] = start_.v.data()[i];
   }
   return y;
 }
 
-State FirstOrderOde::state(double t, const Eigen::Ref<const Eigen::VectorXd>& y) const { return put_in(t, y); }
-
-const State& FirstOrderOde::put_in(double t, const Eigen::Ref<const Eigen::VectorXd>& y) const {
-  const int n = size() / 2;
-  State& s = scratch_.state;
-  for (int i : coordinates_.pinned) s.x.data()[i] = start_.x.data()[i] + start_.v.data()[i] * (t - t0_);
-  for (int r = 0; r < n; ++r) {
-    s.x.data()[coordinates_.free[r]] = y[r];
-    s.v.data()[coordinates_.free[r]] = y[n + r];
+Eigen::VectorXd FirstOrderOde::gather(const State& y) const {
+  Eigen::VectorXd unknowns(size());
+  for (int r = 0; r < size() / 2; ++r) {
+    unknowns[r] = y.x.data()[coordinates_.free[r]];
+    unknowns[size() / 2 + r] = y.v.data()[coordinates_.free[r]];
   }
-  return s;
+  return unknowns;
 }
 
-Vectors FirstOrderOde::spread(const Eigen::Ref<const Eigen::VectorXd>& free) const {
-  Vectors all = Vectors::Zero(ode_.particles(), 3);
-  for (Eigen::Index r = 0; r < free.size(); ++r) all.data()[coordinates_.free[r]] = free[r];
-  return all;
+void FirstOrderOde::scatter(const Eigen::VectorXd& unknowns, State& y) const {
+  for (int r = 0; r < size() / 2; ++r) {
+    y.x.data()[coordinates_.free[r]] = unknowns[r];
+    y.v.data()[coordinates_.free[r]] = unknowns[size() / 2 + r];
+  }
 }
 
-void FirstOrderOde::gather(const Vectors& all, Eigen::Ref<Eigen::VectorXd> free) const {
-  for (Eigen::Index r = 0; r < free.size(); ++r) free[r] = all.data()[coordinates_.free[r]];
+void FirstOrderOde::evaluate(double t, const State& y, Part part, Vectors& f) const {
+  if (part != Part::linear) return (part == Part::whole ? ode_.force : ode_.explicit_force)(t, y.x, y.v, f);
+  solver::multiply(ode_.stiffness, y.x, f);
+  if (ode_.damping.nonZeros() == 0) return;
+  solver::multiply(ode_.damping, y.v, scratch_.damping);
+  f += scratch_.damping;
 }
 
-void FirstOrderOde::evaluate(double t, const State& s, Part part, Vectors& f) const {
-  if (part != Part::linear) return (part == Part::whole ? ode_.force : ode_.explicit_force)(t, s.x, s.v, f);
-  f.noalias() = ode_.stiffness * s.x;
-  if (ode_.damping.nonZeros() > 0) f += ode_.damping * s.v;
-}
-
-void FirstOrderOde::derivative(double t, const Eigen::Ref<const Eigen::VectorXd>& y, Eigen::Ref<Eigen::VectorXd> dy,
-                               Part part) const {
-  const int n = size() / 2;
-  evaluate(t, put_in(t, y), part, scratch_.force);
+void FirstOrderOde::derivative(double t, const State& y, State& dy, Part part) const {
   if (part == Part::remainder)
-    dy.head(n).setZero();
+    dy.x.setZero();
   else
-    dy.head(n) = y.tail(n);
-  gather(scratch_.force, dy.tail(n));
-  dy.tail(n).array() *= inverse_mass_.array();
-  if (std::isfinite(dy.sum())) return;
-  for (int r = 0; r < n; ++r)
-    if (!std::isfinite(dy[n + r]))
-      throw std::runtime_error(fmt::format("the force on particle {} is not finite at t = {} s", coordinates_.free[r] / 3, t));
+    dy.x = y.v;
+  evaluate(t, y, part, dy.v);
+  dy.v.array() *= inverse_mass_.array();
+  if (std::isfinite(dy.v.sum())) return;
+  for (int i = 0; i < ode_.particles(); ++i)
+    if (!dy.v.row(i).allFinite())
+      throw std::runtime_error(fmt::format("the force on particle {} is not finite at t = {} s", i, t));
 }
 
-void FirstOrderOde::update_derivatives(double t, const Eigen::Ref<const Eigen::VectorXd>& y, Part part) const {
-  if (part == Part::whole) {
-    const State& s = put_in(t, y);
-    ode_.jacobian(t, s.x, s.v, scratch_.df_dx, scratch_.df_dv);
-  } else {
-    scratch_.df_dx = threefold(ode_.stiffness);
-    scratch_.df_dv = threefold(ode_.damping);
-  }
+void FirstOrderOde::update_derivatives(double t, const State& y, Part part) const {
+  if (part == Part::whole) return ode_.jacobian(t, y.x, y.v, scratch_.df_dx, scratch_.df_dv);
+  scratch_.df_dx = threefold(ode_.stiffness);
+  scratch_.df_dv = threefold(ode_.damping);
 }
 
 template <class Add>
@@ -113,14 +100,14 @@ void FirstOrderOde::for_entries(const Add& add) const {
   for (int r = 0; r < n; ++r) {
     const int i = coordinates_.free[r];
     for (SparseMatrix::InnerIterator entry(scratch_.df_dx, i); entry; ++entry)
-      if (const int c = coordinates_.unknown[entry.col()]; c >= 0) add(n + r, c, inverse_mass_[r] * entry.value());
+      if (const int c = coordinates_.unknown[entry.col()]; c >= 0) add(n + r, c, inverse_mass_.data()[i] * entry.value());
     for_row_with_diagonal(scratch_.df_dv, i, [&](int column, double value) {
-      if (const int c = coordinates_.unknown[column]; c >= 0) add(n + r, n + c, inverse_mass_[r] * value);
+      if (const int c = coordinates_.unknown[column]; c >= 0) add(n + r, n + c, inverse_mass_.data()[i] * value);
     });
   }
 }
 
-const WideSparseMatrix& FirstOrderOde::jacobian(double t, const Eigen::Ref<const Eigen::VectorXd>& y, Part part) const {
+const WideSparseMatrix& FirstOrderOde::jacobian(double t, const State& y, Part part) const {
   update_derivatives(t, y, part);
   fill(scratch_.jacobian, size(), [&](const auto& add) { for_entries(add); });
   if (!std::isfinite(scratch_.jacobian.coeffs().sum()))

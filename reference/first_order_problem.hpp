@@ -1,59 +1,74 @@
 #pragma once
 
 #include "reference/first_order.hpp"
+#include "reference/klu_factor.hpp"
 #include "reference/reduced_newton.hpp"
 #include "reference/sundials.hpp"
 #include "reference/trajectory.hpp"
 
 namespace drape::reference::sundials_tools {
 
+/// Solves systems with I - γ ∂g/∂y of a first-order ODE, or with what stands for it.
+class FirstOrderNewton {
+ public:
+  /// `part`: what is implicit. Counts Jacobians and analyses in the ODE's work under `prefix`.
+  FirstOrderNewton(const FirstOrderOde& ode, Part part, const SolveOptions& options, std::string_view prefix);
+
+  /// For a state; the last Jacobian will do if it is `known`. False if the matrix is singular.
+  bool prepare(double t, const solver::State& y, bool known, double gamma);
+
+  /// z with (I - γ ∂g/∂y) z ≈ r at a state with the derivative dy.
+  void solve(double t, const solver::State& y, const solver::State& dy, double gamma, const solver::State& r, solver::State& z);
+
+ private:
+  void solve_reduced(double t, const solver::State& y, const solver::State& dy, const solver::State& r, solver::State& z);
+
+  const FirstOrderOde& ode_;
+  Part part_;
+  std::optional<ReducedNewton> reduced_;
+  std::optional<KluFactor> klu_;  ///< of all unknowns
+  WideSparseMatrix matrix_;
+  double gamma_ = 0;
+  std::int64_t& jacobians_;
+  solver::Vectors right_;
+};
+
 /// A first-order ODE as CVODE and ARKODE call it: the user data of their callbacks.
 struct FirstOrderProblem {
   const FirstOrderOde& ode;
   Session& session;
-  std::optional<ReducedNewton> reduced = {};
+  std::optional<FirstOrderNewton> newton = {};
 
   template <Part part>
   static int derivative(realtype t, N_Vector y, N_Vector dy, void* self) {
     const auto& problem = *static_cast<FirstOrderProblem*>(self);
-    return problem.session.guarded([&] { problem.ode.derivative(t, values(y), values(dy), part); });
+    return problem.session.guarded([&] { problem.ode.derivative(t, state(y), state(dy), part); });
   }
 
-  template <Part part>
-  static int jacobian(realtype t, N_Vector y, N_Vector, SUNMatrix J, void* self, N_Vector, N_Vector, N_Vector) {
-    const auto& problem = *static_cast<FirstOrderProblem*>(self);
-    return problem.session.guarded([&] { problem.session.copy(problem.ode.jacobian(t, values(y), part), J); });
-  }
-
-  static int prepare(realtype t, N_Vector y, N_Vector, booleantype, booleantype* is_new, realtype gamma, void* self) {
+  static int prepare(realtype t, N_Vector y, N_Vector, booleantype known, booleantype* is_new, realtype gamma, void* self) {
     auto& problem = *static_cast<FirstOrderProblem*>(self);
-    *is_new = SUNTRUE;  // assembling takes a small part of factoring
-    return problem.session.guarded([&] { return problem.reduced->prepare(t, problem.ode.state(t, values(y)), gamma); });
+    *is_new = !known;
+    return problem.session.guarded([&] { return problem.newton->prepare(t, state(y), known, gamma); });
   }
 
-  static int precondition(realtype t, N_Vector y, N_Vector, N_Vector r, N_Vector z, realtype, realtype, int, void* self) {
+  static int precondition(realtype t, N_Vector y, N_Vector dy, N_Vector r, N_Vector z, realtype gamma, realtype, int,
+                          void* self) {
     auto& problem = *static_cast<FirstOrderProblem*>(self);
-    return problem.session.guarded([&] { problem.solve_reduced(t, values(y), values(r), values(z)); });
-  }
-
-  /// z with (I - γ ∂g/∂y) z ≈ r.
-  void solve_reduced(double t, const Eigen::Ref<const Eigen::VectorXd>& y, const Eigen::Ref<const Eigen::VectorXd>& r,
-                     Eigen::Ref<Eigen::VectorXd> z) {
-    const auto n = r.size() / 2;
-    const double gamma = reduced->gamma();
-    const solver::Vectors p = ode.spread(r.head(n)), still = solver::Vectors::Zero(p.rows(), 3);
-    solver::Vectors b = gamma * reduced->derivative(t, ode.state(t, y), {p, still});
-    b += ode.ode().mass.asDiagonal() * ode.spread(r.tail(n));
-    ode.gather(reduced->solve(std::move(b)), z.tail(n));
-    z.head(n) = r.head(n) + gamma * z.tail(n);
+    return problem.session.guarded([&] { problem.newton->solve(t, state(y), state(dy), gamma, state(r), state(z)); });
   }
 };
 
-/// Fills the absolute tolerances of (x, v).
-inline void set_absolute_tolerances(N_Vector atol, double duration, const SolveOptions& options) {
-  const auto n = N_VGetLength(atol) / 2;
-  values(atol).head(n).setConstant(options.rtol * options.size);
-  values(atol).tail(n).setConstant(options.rtol * options.size / duration);
+/// A vector with the start of a first-order ODE.
+inline Owned<N_Vector> start_vector(const FirstOrderOde& ode, Session& session) {
+  return Owned<N_Vector>(require_created(make_state_vector({ode.initial(), {}, ode.size()}, session.context())));
+}
+
+/// The absolute tolerances of (x, v), which other vectors are like.
+inline Owned<N_Vector> absolute_tolerances(const Owned<N_Vector>& like, double duration, const SolveOptions& options) {
+  Owned<N_Vector> atol = clone(like);
+  state(atol.get()).x.setConstant(options.rtol * options.size);
+  state(atol.get()).v.setConstant(options.rtol * options.size / duration * options.tuning.velocity_weight);
+  return atol;
 }
 
 }  // namespace drape::reference::sundials_tools

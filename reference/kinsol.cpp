@@ -1,10 +1,14 @@
 #include "reference/kinsol.hpp"
 
 #include <kinsol/kinsol.h>
+#include <nvector/nvector_serial.h>
+#include <sunlinsol/sunlinsol_klu.h>
+#include <sunmatrix/sunmatrix_sparse.h>
 
 #include <algorithm>
 #include <limits>
 
+#include "reference/coordinates.hpp"
 #include "reference/sundials.hpp"
 
 namespace drape::reference {
@@ -13,6 +17,8 @@ namespace {
 using namespace sundials_tools;
 using solver::SparseMatrix;
 using solver::Vectors;
+
+auto values(N_Vector vector) { return Eigen::Map<Eigen::VectorXd>(N_VGetArrayPointer(vector), N_VGetLength(vector)); }
 
 /// One search. KINSOL keeps the address of this object.
 class Kinsol {
@@ -33,7 +39,7 @@ class Kinsol {
 
   /// What rounding of the positions does to the forces [N]: smaller ones cannot be asked for.
   double round_off() {
-    const WideSparseMatrix J = jacobian(session_.y()).cwiseAbs();
+    const WideSparseMatrix J = jacobian(y_.get()).cwiseAbs();
     const Eigen::VectorXd row_sums = J * Eigen::VectorXd::Ones(J.cols());
     return std::numeric_limits<double>::epsilon() * row_sums.maxCoeff() * guess_.cwiseAbs().maxCoeff();
   }
@@ -41,13 +47,16 @@ class Kinsol {
   void force(N_Vector u, N_Vector f) const;
   WideSparseMatrix jacobian(N_Vector u) const;
 
+  /// Fills a matrix of KINSOL, whose indices it has cleared; has KLU analyse it if its pattern is new.
+  void copy(const WideSparseMatrix& from, SUNMatrix to);
+
   static int force(N_Vector u, N_Vector f, void* self) {
     auto& kinsol = *static_cast<Kinsol*>(self);
     return kinsol.session_.guarded([&] { kinsol.force(u, f); });
   }
   static int jacobian(N_Vector u, N_Vector, SUNMatrix J, void* self, N_Vector, N_Vector) {
     auto& kinsol = *static_cast<Kinsol*>(self);
-    return kinsol.session_.guarded([&] { kinsol.session_.copy(kinsol.jacobian(u), J); });
+    return kinsol.session_.guarded([&] { kinsol.copy(kinsol.jacobian(u), J); });
   }
 
   const solver::SplitOde& ode_;
@@ -56,6 +65,10 @@ class Kinsol {
   Coordinates coordinates_;
   const int strategy_;
   Session session_;
+  Owned<N_Vector> y_;
+  Owned<SUNMatrix> matrix_;
+  Owned<SUNLinearSolver> linear_solver_;
+  WideSparseMatrix pattern_;  ///< what KLU has analysed; only its pattern is used
   Memory memory_;
 };
 
@@ -65,19 +78,23 @@ Kinsol::Kinsol(const solver::SplitOde& ode, const Vectors& guess, const Equilibr
       at_rest_(Vectors::Zero(ode.particles(), 3)),
       coordinates_(ode),
       strategy_(options.line_search ? KIN_LINESEARCH : KIN_NONE),
-      session_("KINSOL", "kinsol", std::ssize(coordinates_.free), *ode.work),
+      session_("KINSOL"),
+      y_(require_created(N_VNew_Serial(std::ssize(coordinates_.free), session_.context()))),
+      matrix_(require_created(SUNSparseMatrix(N_VGetLength(y_.get()), N_VGetLength(y_.get()), N_VGetLength(y_.get()), CSR_MAT,
+                                              session_.context()))),
+      linear_solver_(require_created(SUNLinSol_KLU(y_.get(), matrix_.get(), session_.context()))),
       memory_(require_created(KINCreate(session_.context())), [](void* memory) { KINFree(&memory); }) {
   for (std::size_t r = 0; r < coordinates_.free.size(); ++r)
-    values(session_.y())[Eigen::Index(r)] = guess.data()[coordinates_.free[r]];
+    values(y_.get())[Eigen::Index(r)] = guess.data()[coordinates_.free[r]];
   void* const kinsol = memory_.get();
   require(KINSetErrHandlerFn(kinsol, Session::on_error, &session_));
-  require(KINInit(kinsol, force, session_.y()));
+  require(KINInit(kinsol, force, y_.get()));
   require(KINSetUserData(kinsol, this));
   require(KINSetFuncNormTol(kinsol, std::max(options.force, round_off())));
   require(KINSetScaledStepTol(kinsol, options.step));
   require(KINSetNumMaxIters(kinsol, options.max_iterations));
   require(KINSetMaxSetupCalls(kinsol, 1));  // Newton, not a chord method
-  require(KINSetLinearSolver(kinsol, session_.linear_solver(), session_.matrix()), KINGetLinReturnFlagName);
+  require(KINSetLinearSolver(kinsol, linear_solver_.get(), matrix_.get()), KINGetLinReturnFlagName);
   require(KINSetJacFn(kinsol, jacobian), KINGetLinReturnFlagName);
 }
 
@@ -104,16 +121,31 @@ WideSparseMatrix Kinsol::jacobian(N_Vector u) const {
   return J;
 }
 
+void Kinsol::copy(const WideSparseMatrix& from, SUNMatrix to) {
+  const auto n = from.rows(), entries = from.nonZeros();
+  const bool known = pattern_.nonZeros() == entries &&
+                     std::equal(from.outerIndexPtr(), from.outerIndexPtr() + n + 1, pattern_.outerIndexPtr()) &&
+                     std::equal(from.innerIndexPtr(), from.innerIndexPtr() + entries, pattern_.innerIndexPtr());
+  if (!known) {
+    if (SUNSparseMatrix_Reallocate(to, entries) != 0) throw std::bad_alloc();
+    SUNLinSol_KLUReInit(linear_solver_.get(), to, entries, SUNKLU_REINIT_PARTIAL);
+    pattern_ = from;
+  }
+  std::copy_n(from.outerIndexPtr(), n + 1, SUNSparseMatrix_IndexPointers(to));
+  std::copy_n(from.innerIndexPtr(), entries, SUNSparseMatrix_IndexValues(to));
+  std::copy_n(from.valuePtr(), entries, SUNSparseMatrix_Data(to));
+}
+
 Equilibrium Kinsol::solve() {
-  const auto ones = session_.new_vector();
+  const auto ones = clone(y_);
   values(ones.get()).setOnes();
-  require(KINSol(memory_.get(), session_.y(), strategy_, ones.get(), ones.get()));
+  require(KINSol(memory_.get(), y_.get(), strategy_, ones.get(), ones.get()));
   long iterations = 0;
   require(KINGetNumNonlinSolvIters(memory_.get(), &iterations));
   ode_.work->counter("kinsol/iterations", "Newton iterations of KINSOL") += iterations;
-  const auto f = session_.new_vector();
-  force(session_.y(), f.get());
-  return {positions(session_.y()), values(f.get()).cwiseAbs().maxCoeff(), static_cast<int>(iterations)};
+  const auto f = clone(y_);
+  force(y_.get(), f.get());
+  return {positions(y_.get()), values(f.get()).cwiseAbs().maxCoeff(), static_cast<int>(iterations)};
 }
 
 }  // namespace

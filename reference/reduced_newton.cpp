@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "solver/kernels.hpp"
+
 namespace drape::reference {
 
 using solver::State;
@@ -17,7 +19,8 @@ constexpr double difference = 1e-7;
 
 }  // namespace
 
-ReducedNewton::ReducedNewton(const solver::SplitOde& ode, NewtonSolve::Matrix matrix) : ode_(ode) {
+ReducedNewton::ReducedNewton(const solver::SplitOde& ode, NewtonSolve::Matrix matrix, double kept)
+    : ode_(ode), kept_(kept), dv_(Vectors::Zero(ode.particles(), 3)) {
   if (matrix == NewtonSolve::Matrix::constant)
     constant_.emplace(ode, solver::Options(), nullptr);
   else
@@ -26,37 +29,36 @@ ReducedNewton::ReducedNewton(const solver::SplitOde& ode, NewtonSolve::Matrix ma
 
 bool ReducedNewton::prepare(double t, const State& y, double gamma) {
   gamma_ = gamma;
-  if (constant_) return constant_->prepare(gamma) == solver::Outcome::success;
+  if (constant_) return constant_->prepare(gamma, kept_) == solver::Outcome::success;
   ode_.newton_matrix(t, y.x, y.v, gamma, false, matrix_);
   return factor_->factor(matrix_) == solver::Outcome::success;
 }
 
-Vectors ReducedNewton::derivative(double t, const State& y, const State& direction) const {
-  if (constant_) {
-    Vectors df = ode_.stiffness * direction.x;
-    if (ode_.damping.nonZeros() > 0) df += ode_.damping * direction.v;
-    return df;
-  }
-  Vectors df = Vectors::Zero(ode_.particles(), 3), f(ode_.particles(), 3);
-  const double scale = std::hypot(y.x.norm(), y.v.norm()), size = std::hypot(direction.x.norm(), direction.v.norm());
-  if (!(size > 1e-16 * scale)) return df;
-  const double epsilon = difference * scale / size;
-  ode_.force(t, y.x + epsilon * direction.x, y.v + epsilon * direction.v, df);
-  ode_.force(t, y.x, y.v, f);
-  df -= f;
-  df /= epsilon;
-  return df;
+void ReducedNewton::multiply(const Vectors& dx, const Vectors* dv, Vectors& df) {
+  solver::multiply(ode_.stiffness, dx, df);
+  if (dv == nullptr || ode_.damping.nonZeros() == 0) return;
+  solver::multiply(ode_.damping, *dv, dv_);
+  df += dv_;
 }
 
-Vectors ReducedNewton::solve(Vectors b) {
+double ReducedNewton::move(const State& y, const Vectors& dx, const Vectors* dv) {
+  const double scale = std::hypot(y.x.norm(), y.v.norm()), size = std::hypot(dx.norm(), dv == nullptr ? 0 : dv->norm());
+  if (!(size > 1e-16 * scale)) return 0;
+  const double part = difference * scale / size;
+  moved_.x = y.x + part * dx;
+  moved_.v = y.v;
+  if (dv != nullptr) moved_.v += part * *dv;
+  return part;
+}
+
+const Vectors& ReducedNewton::solve(Vectors& b) {
   solver::filter(ode_.pins, b);
   if (constant_) {
     constant_->respond(b, accuracy);
     return constant_->correction();
   }
-  Vectors dv(b.rows(), 3);
-  factor_->solve(b, dv);
-  return dv;
+  factor_->solve(b, dv_);
+  return dv_;
 }
 
 }  // namespace drape::reference

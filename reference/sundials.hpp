@@ -1,11 +1,7 @@
 #pragma once
 
 #include <cvode/cvode.h>
-#include <nvector/nvector_serial.h>
 #include <sundials/sundials_context.h>
-#include <sunlinsol/sunlinsol_klu.h>
-#include <sunlinsol/sunlinsol_spgmr.h>
-#include <sunmatrix/sunmatrix_sparse.h>
 
 #include <memory>
 #include <stdexcept>
@@ -13,8 +9,9 @@
 #include <string_view>
 #include <type_traits>
 
-#include "reference/coordinates.hpp"
 #include "reference/newton_solves.hpp"
+#include "reference/state_vector.hpp"
+#include "solver/work.hpp"
 
 /// What the solvers of SUNDIALS have in common; for the files of this folder that call them  [Hindmarsh et al. 2005].
 namespace drape::reference::sundials_tools {
@@ -23,6 +20,7 @@ struct Destroy {
   void operator()(N_Vector vector) const { N_VDestroy(vector); }
   void operator()(SUNMatrix matrix) const { SUNMatDestroy(matrix); }
   void operator()(SUNLinearSolver solver) const { SUNLinSolFree(solver); }
+  void operator()(SUNNonlinearSolver solver) const { SUNNonlinSolFree(solver); }
 };
 template <class Handle>
 using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Destroy>;
@@ -36,25 +34,26 @@ auto require_created(Handle created) {
   return created;
 }
 
-inline auto values(N_Vector vector) { return Eigen::Map<Eigen::VectorXd>(N_VGetArrayPointer(vector), N_VGetLength(vector)); }
+inline Owned<N_Vector> clone(const Owned<N_Vector>& vector) { return Owned<N_Vector>(require_created(N_VClone(vector.get()))); }
+
+/// The state in a vector of StateVector.
+inline solver::State& state(N_Vector vector) { return content(vector).state; }
+
+/// GMRES, or what applies the preconditioner once where that is the inverse, or all but.
+Owned<SUNLinearSolver> make_linear_solver(const NewtonSolve& newton, N_Vector y, SUNContext context);
 
 /// The function of a solver that names its return flags; the name is on the heap.
 using FlagName = char* (*)(long);
 
-/// One use of a solver: a vector, a linear solver, and the reason of the first failure. Solvers keep its address.
+/// One use of a solver: its context, and the reason of the first failure. Solvers keep its address.
 class Session {
  public:
-  /// `solver` is for messages, for example "CVODE". Counts the analyses of KLU in `work` under `prefix`/analyses.
-  Session(std::string_view solver, std::string_view prefix, std::int64_t size, solver::Work& work,
-          const NewtonSolve& newton = newton_solves().front());
+  /// `solver` is for messages, for example "CVODE".
+  explicit Session(std::string_view solver) : solver_(solver) {}
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
   SUNContext context() { return context_; }
-  N_Vector y() { return y_.get(); }
-  SUNMatrix matrix() { return matrix_.get(); }  ///< null unless KLU factors one
-  SUNLinearSolver linear_solver() { return linear_solver_.get(); }
-  Owned<N_Vector> new_vector() { return Owned<N_Vector>(require_created(N_VClone(y_.get()))); }
 
   /// Runs a callback: exceptions must not pass through C code, they become its "unrecoverable" and the reason to report. One
   /// that returns false becomes "recoverable": it may be called again after a smaller step.
@@ -74,9 +73,6 @@ class Session {
     return -1;
   }
 
-  /// Fills a matrix of the solver, whose indices it has cleared; has KLU analyse it if its pattern is new.
-  void copy(const WideSparseMatrix& from, SUNMatrix to);
-
   /// Throws ReferenceError for a failure; `reached` is the time so far [s].
   void require(int flag, FlagName flag_name, double reached = 0) const;
 
@@ -84,15 +80,8 @@ class Session {
   static void on_error(int code, const char* module, const char* function, char* message, void* self);
 
  private:
-  std::string solver_;
-  std::int64_t& analyses_;
-  std::string reason_;
-  WideSparseMatrix pattern_;  ///< what KLU has analysed; only its pattern is used
-
-  sundials::Context context_;  // before all that is made in it
-  Owned<N_Vector> y_;
-  Owned<SUNMatrix> matrix_;
-  Owned<SUNLinearSolver> linear_solver_;
+  std::string solver_, reason_;
+  sundials::Context context_;
 };
 
 /// A counter of a solver's own, added to ours.

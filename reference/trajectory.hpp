@@ -6,9 +6,21 @@
 #include <vector>
 
 #include "reference/newton_solves.hpp"
+#include "reference/tableaux.hpp"
 #include "solver/split_ode.hpp"
 
 namespace drape::reference {
+
+/// What users of SUNDIALS set beside the tolerance when they know their problem; 0: as the package has it.
+struct Tuning {
+  double velocity_weight = 1;        ///< times which the absolute tolerance of velocities is looser than SolveOptions says
+  double kept_factor = 1e-12;        ///< the constant matrix is factored again if γ has changed by more than this part
+  double nonlinear = 0;              ///< coefficient of the convergence test of nonlinear systems, over that of the error test
+  int max_iterations = 0;            ///< of a nonlinear system
+  double step = 0;                   ///< [s], constant steps of ARKODE; rtol is the tolerance of its nonlinear systems then
+  bool deduced = false;              ///< whether it infers derivatives of stages instead of evaluating them
+  const Tableau* tableau = nullptr;  ///< its method then
+};
 
 /// How closely a general solver follows the solution. The estimated local error of each step is kept below
 /// rtol (|x| + size) for a position and rtol (|v| + size / (end - t0)) for a velocity, in the root mean square of these
@@ -19,6 +31,7 @@ struct SolveOptions {
   long max_steps = 10'000'000;  ///< between two output times
   int max_order = 5;            ///< of a multistep method; the order of a Runge-Kutta method, 2 to 5, with the split 3 to 5
   const NewtonSolve* newton = &newton_solves().front();
+  Tuning tuning = {};
 };
 
 /// States at given times.

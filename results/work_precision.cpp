@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <set>
 #include <stdexcept>
 
@@ -11,6 +12,13 @@ namespace drape::results {
 namespace {
 
 bool solved(const Measured& candidate) { return std::isfinite(candidate.error) && !candidate.times.empty(); }
+
+double resampled_median(const std::vector<double>& times, std::mt19937& random) {
+  std::uniform_int_distribution<std::size_t> any(0, times.size() - 1);
+  std::vector<double> sample;
+  for (std::size_t k = 0; k < times.size(); ++k) sample.push_back(times[any(random)]);
+  return quantile(sample, 0.5);
+}
 
 double median(const Measured& candidate) { return quartiles(candidate.times).median; }
 
@@ -24,6 +32,17 @@ Quartiles quartiles(const std::vector<double>& times) {
 bool tied(const Measured& a, const Measured& b) {
   const Quartiles p = quartiles(a.times), q = quartiles(b.times);
   return p.lower <= q.upper && q.lower <= p.upper;
+}
+
+Interval ratio_of_medians(const Measured& a, const Measured& b) {
+  constexpr int samples = 2000;
+  std::mt19937 random(1);
+  std::vector<double> ratios;
+  for (int k = 0; k < samples; ++k) {
+    const double above = resampled_median(a.times, random);
+    ratios.push_back(above / resampled_median(b.times, random));
+  }
+  return {quantile(ratios, 0.025), quantile(ratios, 0.975)};
 }
 
 std::optional<std::size_t> quickest(std::span<const Measured> candidates, double error) {

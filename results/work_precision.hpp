@@ -24,6 +24,13 @@ Quartiles quartiles(const std::vector<double>& times);
 /// Whether the difference of two medians is no more than noise: the middle halves of their times overlap.
 bool tied(const Measured& a, const Measured& b);
 
+/// Between these lies the ratio of the median times of a and b with a probability of 95 %, by resampling both (bootstrap,
+/// seeded)  [Efron 1979]. Both have times.
+struct Interval {
+  double lower, upper;
+};
+Interval ratio_of_medians(const Measured& a, const Measured& b);
+
 /// The one with the least median time among those with an error of at most `error`; nothing is interpolated.
 std::optional<std::size_t> quickest(std::span<const Measured> candidates, double error);
 

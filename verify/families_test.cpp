@@ -98,13 +98,19 @@ class FirstOrder : public testing::TestWithParam<std::string> {
  protected:
   const Problem problem = problem_named(GetParam());
   const FirstOrderOde ode{problem.ode, problem.start, start_time};
-  const Eigen::VectorXd y = ode.initial() + Eigen::VectorXd::LinSpaced(ode.size(), -0.1, 0.2);
+  const Eigen::VectorXd y = ode.gather(ode.initial()) + Eigen::VectorXd::LinSpaced(ode.size(), -0.1, 0.2);
   static constexpr double t = start_time + 0.3;
 
+  State state(const Eigen::VectorXd& unknowns) const {
+    State result = ode.initial();
+    ode.scatter(unknowns, result);
+    return result;
+  }
+
   Eigen::VectorXd derivative(const Eigen::VectorXd& at, Part part) const {
-    Eigen::VectorXd dy(ode.size());
-    ode.derivative(t, at, dy, part);
-    return dy;
+    State dy = ode.initial();
+    ode.derivative(t, state(at), dy, part);
+    return ode.gather(dy);
   }
 };
 INSTANTIATE_TEST_SUITE_P(, FirstOrder, testing::ValuesIn(names(problems())), [](const auto& test) { return test.param; });
@@ -116,9 +122,20 @@ TEST_P(FirstOrder, IsTheSumOfItsParts) {
 }
 
 TEST_P(FirstOrder, HasTheConstantJacobianOfItsImplicitPart) {
-  const Eigen::MatrixXd J = ode.jacobian(t, y, Part::linear);
+  const Eigen::MatrixXd J = ode.jacobian(t, state(y), Part::linear);
   const Eigen::VectorXd z = Eigen::VectorXd::LinSpaced(ode.size(), 3, -2);
   EXPECT_LE((derivative(y + z, Part::linear) - derivative(y, Part::linear) - J * z).norm(), 1e-12 * (J * z).norm());
+}
+
+TEST_P(FirstOrder, LeavesPinnedCoordinatesTheirVelocities) {
+  State dy = ode.initial();
+  ode.derivative(t, state(y), dy);
+  for (const solver::Pin& pin : problem.ode.pins)
+    for (int c = 0; c < 3; ++c) {
+      if (!pin.fixed[c]) continue;
+      EXPECT_EQ(dy.x(pin.particle, c), pin.velocity[c]);
+      EXPECT_EQ(dy.v(pin.particle, c), 0);
+    }
 }
 
 TEST(Ida, YieldsTheForcesOfThePins) {

@@ -8,8 +8,10 @@
 
 #include "model/cloth.hpp"
 #include "model/scene_file.hpp"
+#include "reference/arkode.hpp"
 #include "reference/families.hpp"
 #include "reference/reference.hpp"
+#include "verify/small_problems.hpp"
 
 namespace drape::verify::peers_test {
 namespace {
@@ -32,6 +34,7 @@ std::vector<Case> cases() {
   std::vector<Case> all;
   for (const reference::Family& family : reference::families())
     for (const NewtonSolve& newton : reference::newton_solves()) {
+      if (!family.implicit) continue;
       const bool constant = newton.matrix == NewtonSolve::Matrix::constant;
       if (family.name == "arkode-imex" && newton.reduced() && !(constant && !newton.gmres)) continue;
       all.push_back({std::string(family.name), std::string(newton.name)});
@@ -103,6 +106,65 @@ TEST(Peers, TakeMoreStepsWithALowerOrder) {
   };
   for (const char* family : {"cvode-bdf", "ida-bdf"}) EXPECT_GT(steps(family, 2), 1.5 * steps(family, 5)) << family;
   EXPECT_GT(steps("arkode-esdirk", 3), 1.5 * steps("arkode-esdirk", 5));
+}
+
+/// A sheet with the work that a tuned CVODE takes for it, and its error.
+struct Tuned {
+  std::int64_t steps, factorizations;
+  double error;
+};
+
+Tuned tuned(const reference::Tuning& tuning) {
+  const model::Scene scene = sheet("hung-corners");
+  const double size = model::size(scene);
+  const auto solve = [&](const model::Cloth& cloth, double rtol, const reference::Tuning& with) {
+    return reference::family("cvode-bdf")
+        .solve(cloth.ode, cloth.start, 0, std::vector{scene.end},
+               {.rtol = rtol, .size = size, .newton = &reference::newton_solve("constant-gmres"), .tuning = with})
+        .states[0]
+        .x;
+  };
+  const model::Cloth cloth = model::compile(scene), exact = model::compile(scene);
+  const auto x = solve(cloth, 1e-5, tuning), truth = solve(exact, 1e-10, {});
+  return {cloth.ode.work->count("cvode/steps"), cloth.ode.work->count("factorizations"),
+          reference::rms_distance(x, truth) / size};
+}
+
+TEST(Tuning, OfVelocitiesSavesStepsAndCostsAccuracy) {
+  const Tuned plain = tuned({}), loose = tuned({.velocity_weight = 100});
+  EXPECT_LT(loose.steps, 0.8 * static_cast<double>(plain.steps));
+  EXPECT_GT(loose.error, plain.error);
+  EXPECT_LT(loose.error, 1e-2) << "positions have kept their tolerance";
+}
+
+TEST(Tuning, KeepsTheFactorOfTheConstantMatrix) {
+  const Tuned plain = tuned({}), kept = tuned({.kept_factor = 0.3});
+  EXPECT_LT(kept.factorizations, plain.factorizations);
+  EXPECT_LT(kept.error, 1e-3);
+}
+
+class SteppedPeer : public testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(, SteppedPeer, testing::ValuesIn([] {
+                           std::vector<std::string> names;
+                           for (const auto& tableau : reference::tableaux()) names.emplace_back(tableau.name);
+                           return names;
+                         }()),
+                         [](const auto& test) { return small_problems::identifier(test.param); });
+
+TEST_P(SteppedPeer, HasItsOrder) {
+  const reference::Tableau& tableau = reference::tableau(GetParam());
+  const auto problem = small_problems::problem_named("free");
+  const auto error = [&](int steps) {
+    const double duration = 1;
+    const reference::SolveOptions options{.rtol = 1e-12,
+                                          .tuning = {.max_iterations = 60, .step = duration / steps, .tableau = &tableau}};
+    const double end = small_problems::start_time + duration;
+    const auto found =
+        reference::arkode_steps(problem.ode, problem.start, small_problems::start_time, std::vector{end}, options);
+    return small_problems::distance(found.states[0], problem.exact(end));
+  };
+  const int coarse = tableau.order > 4 ? 10 : 40;
+  EXPECT_GT(std::log2(error(coarse) / error(2 * coarse)), tableau.order - 0.4);
 }
 
 }  // namespace

@@ -61,15 +61,23 @@ TEST_P(ReferenceOf, HasVelocitiesNearTheExactOnes) {
 
 TEST_P(ReferenceOf, UsesTheExactJacobian) {
   const reference::FirstOrderOde ode(problem.ode, problem.start, t0);
-  const Eigen::VectorXd y = ode.initial() + Eigen::VectorXd::LinSpaced(ode.size(), -0.1, 0.2);
-  const auto jacobian = ode.jacobian(t0 + 0.3, y);
+  const Eigen::VectorXd y = ode.gather(ode.initial()) + Eigen::VectorXd::LinSpaced(ode.size(), -0.1, 0.2);
+  const auto state = [&](const Eigen::VectorXd& unknowns) {
+    State result = ode.initial();
+    ode.scatter(unknowns, result);
+    return result;
+  };
+  const auto derivative = [&](const Eigen::VectorXd& unknowns) {
+    State dy = ode.initial();
+    ode.derivative(t0 + 0.3, state(unknowns), dy);
+    return ode.gather(dy);
+  };
+  const auto jacobian = ode.jacobian(t0 + 0.3, state(y));
   const double step = 1e-5;
-  Eigen::VectorXd ahead(ode.size()), behind(ode.size());
   for (int column = 0; column < ode.size(); ++column) {
-    ode.derivative(t0 + 0.3, y + step * Eigen::VectorXd::Unit(ode.size(), column), ahead);
-    ode.derivative(t0 + 0.3, y - step * Eigen::VectorXd::Unit(ode.size(), column), behind);
-    const Eigen::VectorXd exact = jacobian * Eigen::VectorXd::Unit(ode.size(), column);
-    EXPECT_LE(((ahead - behind) / (2 * step) - exact).norm(), 1e-6 * jacobian.norm()) << "column " << column;
+    const Eigen::VectorXd unit = Eigen::VectorXd::Unit(ode.size(), column), exact = jacobian * unit;
+    const Eigen::VectorXd change = derivative(y + step * unit) - derivative(y - step * unit);
+    EXPECT_LE((change / (2 * step) - exact).norm(), 1e-6 * jacobian.norm()) << "column " << column;
   }
 }
 

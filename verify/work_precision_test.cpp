@@ -83,6 +83,24 @@ TEST(Tie, IsAGapBelowTheNoise) {
   EXPECT_TRUE(tied(a, a));
 }
 
+TEST(RatioOfMedians, IsWithinItsInterval) {
+  const Measured slow{1, {20, 21, 22, 19, 20, 40, 20}}, quick{1, {10, 10.5, 9.5, 10, 11, 10, 30}};
+  const auto interval = results::ratio_of_medians(slow, quick);
+  EXPECT_LE(interval.lower, 2);
+  EXPECT_GE(interval.upper, 2);
+  EXPECT_GT(interval.lower, 1.5);
+  EXPECT_LT(interval.upper, 2.5) << "outliers have no weight";
+}
+
+TEST(RatioOfMedians, IsAsUncertainAsTheTimes) {
+  const Measured steady{1, {10, 10, 10, 10, 10}}, noisy{1, {5, 15, 10, 20, 8}};
+  EXPECT_EQ(results::ratio_of_medians(steady, steady).lower, 1);
+  EXPECT_EQ(results::ratio_of_medians(steady, steady).upper, 1);
+  const auto interval = results::ratio_of_medians(noisy, steady);
+  EXPECT_LE(interval.lower, 0.8);
+  EXPECT_GE(interval.upper, 1.5);
+}
+
 // --- The study ---------------------------------------------------------------------------------------------------------------
 
 /// The cells of a column as text; empty ones for those without.
@@ -109,12 +127,20 @@ class WorkPrecision : public testing::Test {
 TEST_F(WorkPrecision, NamesWinnersJudgesTheBarsAndDrawsEveryScene) {
   program.run({"study", "work-precision", "--quick", "--out", "study.h5"});
   const auto all = results::read_tables(program.folder() / "study.h5");
-  ASSERT_THAT(all, SizeIs(7));
+  ASSERT_THAT(all, SizeIs(9));
   for (const char* name : {"trials: hung-corners d=5", "trials: peer-edge n=8"}) {
     const auto codes = texts(table(all, name), "code");
-    for (const char* code : {"drape", "explicit", "thesis", "cvode-bdf", "arkode-esdirk", "arkode-imex", "ida-bdf"})
+    for (const char* code :
+         {"drape", "explicit", "thesis", "cvode-bdf", "arkode-esdirk", "arkode-imex", "arkode-steps", "ida-bdf"})
       EXPECT_THAT(codes, testing::Contains(code)) << name;
   }
+  for (const char* name : {"winners", "recommended", "held-out"})
+    EXPECT_THAT(table(all, name).description, HasSubstr("SUNDIALS 6")) << name;
+  EXPECT_THAT(texts(table(all, "trials: hung-corners d=5"), "build"), testing::Each(HasSubstr("compiled with")));
+  const Table& winners = table(all, "winners");
+  for (std::size_t row = 0; row < results::rows(winners); ++row)
+    EXPECT_EQ(results::number_in(results::find_column(winners, "our_families"), row),
+              results::number_in(results::find_column(winners, "sundials_families"), row));
   const auto bars = texts(table(all, "bars"), "verdict");
   EXPECT_THAT(bars, testing::Each(testing::AnyOf(HasSubstr("met"), HasSubstr("NOT met"))));
   EXPECT_THAT(bars, SizeIs(testing::Ge(15)));

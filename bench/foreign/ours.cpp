@@ -59,7 +59,7 @@ Ours try_ours(const TrueMotion& truth, const std::vector<FrameScore>& frames, co
               std::optional<double> cost, int repetitions, Units& units) {
   Problem problem = problem_of(truth, frames);
   const double error = known_error(frames) / problem.length;
-  Effort effort{.repetitions = repetitions};
+  Effort effort{.repetitions = repetitions, .time_of = TimeOf::wall};  // as the other simulator's
   if (cost)
     effort.cap = std::max(effort.cap, well * *cost);
   else
@@ -72,7 +72,7 @@ Ours try_ours(const TrueMotion& truth, const std::vector<FrameScore>& frames, co
   for (const Answers& answers : answers_of(ours, error, longest))  // by a first run each, to know what to time
     if (answers.at_cost != nullptr) problem.asked.push_back(answers.at_cost->measured.error);
   units.show("timing " + problem.name);
-  time_fronts(problem, ours.trials, effort, units);
+  time_fronts(problem, ours.trials, effort, {}, units);
   ours.answers = answers_of(ours, error, longest);
   for (const Trial& trial : ours.trials) take_in(ours.best, trial, error, longest);
   return ours;

@@ -8,7 +8,7 @@
 
 #include "bench/cell.hpp"
 #include "bench/studies/work_precision_energy.hpp"
-#include "reference/families.hpp"
+#include "bench/studies/work_precision_peers.hpp"
 #include "solver/dense_output.hpp"
 
 namespace drape::bench {
@@ -22,13 +22,11 @@ constexpr const char* looped[] = {"implicit-euler", "bdf2", "midpoint"};
 /// What is tried of the implicit methods where not all are.
 constexpr const char* few[] = {"bdf2", "midpoint", "sbdf2", "imex-midpoint"};
 
-bool tries_few(Search search) { return search == Search::quick || search == Search::large; }
+/// Stage and linear solvers other than the program's choice that are tried where much is.
+constexpr const char* other_solvers[] = {"bdf2/anderson", "midpoint/anderson", "bdf3/anderson",   "bdf4/anderson",
+                                         "bdf5/anderson", "bdf2/newton",       "midpoint/newton", "bdf2/mic0"};
 
-std::vector<Vectors> positions_of(std::vector<solver::State> states) {
-  std::vector<Vectors> positions;
-  for (solver::State& state : states) positions.push_back(std::move(state.x));
-  return positions;
-}
+bool tries_few(Search search) { return search == Search::quick || search == Search::large; }
 
 std::vector<Vectors> solve_ours(const Cell& cell, const model::Cloth& cloth, std::span<const double> times) {
   solver::Integrator integrator(cloth.ode, *cell.method, cell.options, cloth.start);
@@ -40,15 +38,6 @@ std::vector<Vectors> solve_ours(const Cell& cell, const model::Cloth& cloth, std
   if (!observer) output.states.push_back(integrator.state());
   return positions_of(std::move(output.states));
 }
-
-std::vector<double> tolerances(int finest) {
-  std::vector<double> all;
-  for (int k = 2; k <= 2 * finest; ++k) all.push_back(std::pow(10.0, -0.5 * k));
-  return all;
-}
-
-/// Into how many parts a tenth of the end is divided at most.
-int finest_parts(Search search) { return tries_few(search) ? 16 : 512; }
 
 Candidate ours(const Cell& cell, double value) {
   return {value, [cell](const model::Cloth& cloth, std::span<const double> times) { return solve_ours(cell, cloth, times); },
@@ -121,21 +110,15 @@ void add_ours(std::vector<Family>& all, const model::Scene& scene, Search search
     if (tries_few(search) && std::ranges::find(few, name) == std::end(few)) continue;
     all.push_back(by_steps(cell(scene, name), "drape", parts));
     all.push_back(by_tolerance(cell(scene, name)));
-    if (search != Search::full) continue;
-    if (method.nonlinear())
-      for (const solver::StageKind& stage : solver::stage_kinds().subspan(1))
-        all.push_back(by_steps(cell(scene, fmt::format("{}/{}", name, stage.name)), "drape", parts));
-    if (std::ranges::find(looped, name) != std::end(looped)) add_loose(all, scene, name, parts);
-    if (name == "bdf2" || name == "sbdf2")
-      for (const solver::LinearSolver& linear : solver::linear_solvers().subspan(1))
-        all.push_back(by_steps(cell(scene, fmt::format("{}/{}", name, linear.name)), "drape", parts));
+    if (search == Search::full && std::ranges::find(looped, name) != std::end(looped)) add_loose(all, scene, name, parts);
   }
+  if (search != Search::full) return;
+  for (const char* name : other_solvers) all.push_back(by_steps(cell(scene, name), "drape", parts));
 }
 
 std::vector<int> loop_digits(Search search) {
   if (tries_few(search)) return {3};
-  if (search == Search::usual) return {2, 4};
-  return {1, 2, 3, 4, 5, 6};
+  return {2, 4};
 }
 
 /// The fixed-point loop with IC(0)   [Etzmuß 2002, 3.4].
@@ -150,46 +133,21 @@ void add_thesis(std::vector<Family>& all, const model::Scene& scene, Search sear
     }
 }
 
-/// A package with one configuration.
-Family peer(const std::string& package, const reference::NewtonSolve& newton, int order, const model::Scene& scene,
-            int finest) {
-  Family family{fmt::format("{}/{} order {}", package, newton.name, order), package, "tolerance", "", {}};
-  for (const double rtol : tolerances(finest)) {
-    const reference::SolveOptions options{.rtol = rtol, .size = model::size(scene), .max_order = order, .newton = &newton};
-    const auto states = [&by = reference::family(package), options](const model::Cloth& cloth, std::span<const double> times) {
-      return by.solve(cloth.ode, cloth.start, 0, times, options).states;
-    };
-    family.candidates.push_back(
-        {rtol,
-         [states](const model::Cloth& cloth, std::span<const double> times) { return positions_of(states(cloth, times)); },
-         [states, scene] { return energy_fault(scene, states); }});
-  }
-  return family;
-}
-
-/// Orders worth a try: of the multistep methods the A-stable one and all, of the Runge-Kutta methods a low and the highest.
-std::vector<int> orders(const std::string& package) {
-  if (package == "arkode-esdirk") return {3, 5};
-  if (package == "arkode-imex") return {3, 5};
-  return {2, 5};
-}
-
-void add_peers(std::vector<Family>& all, const model::Scene& scene, Search search) {
-  if (!scene.obstacles.empty() || search == Search::large) return;  // they have no contacts
-  for (const reference::Family& package : reference::families()) {
-    const std::string name(package.name);
-    for (const reference::NewtonSolve& newton : reference::newton_solves()) {
-      const bool constant = newton.matrix == reference::NewtonSolve::Matrix::constant && !newton.gmres;
-      if (name == "arkode-imex" && newton.reduced() && !constant) continue;  // that one is exact
-      if (search == Search::quick && newton.reduced()) continue;
-      for (const int order : orders(name))
-        if (search == Search::full || order == 5)
-          all.push_back(peer(name, newton, order, scene, search == Search::quick ? 4 : 9));
-    }
-  }
-}
-
 }  // namespace
+
+std::vector<Vectors> positions_of(std::vector<solver::State> states) {
+  std::vector<Vectors> positions;
+  for (solver::State& state : states) positions.push_back(std::move(state.x));
+  return positions;
+}
+
+std::vector<double> tolerances(int finest) {
+  std::vector<double> all;
+  for (int k = 2; k <= 2 * finest; ++k) all.push_back(std::pow(10.0, -0.5 * k));
+  return all;
+}
+
+int finest_parts(Search search) { return tries_few(search) ? 16 : 512; }
 
 std::vector<double> divided_steps(double end, int parts) {
   std::vector<double> steps{end / 5};
@@ -206,11 +164,13 @@ Family ladder(const model::Scene& scene, const std::string& method) {
   return chosen.method->implicit() ? by_steps(chosen, "drape", finest_parts(Search::usual)) : by_fraction(chosen, 10);
 }
 
+bool is_ours(std::string_view code) { return code == "drape" || code == "explicit" || code == "thesis"; }
+
 std::vector<Family> families(const model::Scene& scene, Search search) {
   std::vector<Family> all;
   add_ours(all, scene, search);
   add_thesis(all, scene, search);
-  add_peers(all, scene, search);
+  if (scene.obstacles.empty() && search != Search::large) add_peers(all, scene, search);  // they have no contacts
   return all;
 }
 

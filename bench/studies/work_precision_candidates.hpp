@@ -3,6 +3,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "model/cloth.hpp"
@@ -23,7 +24,7 @@ struct Candidate {
 
 /// Ways that differ in one number only, from coarse to fine.
 struct Family {
-  std::string name;     ///< "bdf2/newton/mic0 by steps", "cvode-bdf/klu order 2"
+  std::string name;     ///< "bdf2/newton/mic0 by steps", "cvode-bdf/constant-gmres order 2, velocities x100"
   std::string code;     ///< whose it is: "drape", "explicit", "thesis", or the package of SUNDIALS
   std::string control;  ///< "step", "tolerance" or "fraction"
   std::string method;   ///< ours with the program's choice of stage and linear solvers: the method; else empty
@@ -33,17 +34,28 @@ struct Family {
 /// How much is tried.
 enum class Search {
   quick,  ///< a few methods and configurations, for tests
-  large,  ///< the same without SUNDIALS' packages, which factor matrices of all coordinates
-  usual,  ///< all methods with automatic stages and linear solvers, SUNDIALS' packages with all linear solvers
-  full,   ///< also all stage and linear solvers, and all orders of SUNDIALS' methods
+  large,  ///< the same without SUNDIALS' packages
+  usual,  ///< all methods with automatic stages and linear solvers, as many configurations of SUNDIALS
+  full,   ///< also other stage and linear solvers, as many configurations of SUNDIALS
 };
 
-/// Everything that is compared on a scene.
+/// Whether a code is ours, and not a package of SUNDIALS.
+bool is_ours(std::string_view code);
+
+/// Everything that is compared on a scene. Apart from `large` ones, ours and SUNDIALS' are equally many.
 std::vector<Family> families(const model::Scene& scene, Search search);
 
 /// One of our methods with the program's choice of stage and linear solvers, if its name has none: by steps, or, where
 /// sub-steps follow the stability limit, by fractions of that. Throws std::invalid_argument as choose_method() does.
 Family ladder(const model::Scene& scene, const std::string& method);
+
+/// From 0.1 on, two a decade, to so many digits.
+std::vector<double> tolerances(int finest);
+
+/// Into how many parts a tenth of the end is divided at most.
+int finest_parts(Search search);
+
+std::vector<solver::Vectors> positions_of(std::vector<solver::State> states);
 
 /// A fifth of the end, and steps that divide a tenth of it into 1 to so many parts, each about √2 times the next.
 std::vector<double> divided_steps(double end, int parts);

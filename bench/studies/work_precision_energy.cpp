@@ -16,8 +16,7 @@ std::string energy_fault(const Cell& cell) {
   return run.outcome == solver::Outcome::unstable ? run.message : "";
 }
 
-std::string energy_fault(const model::Scene& scene, const States& solve) {
-  constexpr int parts = 100;
+std::string energy_fault(const model::Scene& scene, const States& solve, int parts) {
   const model::Cloth cloth = model::compile(scene);
   model::EnergyGuard guard(scene, cloth);
   std::vector<double> times;

@@ -3,10 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <ctime>
 #include <memory>
-#include <set>
 #include <stdexcept>
 
 #include "bench/limits.hpp"
@@ -16,8 +15,6 @@
 
 namespace drape::bench {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 /// Below so many uncertainties of the truth an error says nothing.
 constexpr double too_exact = 1;
@@ -32,7 +29,11 @@ constexpr std::size_t leap = 4;
 /// A first run may have been so much slower than others by chance.
 constexpr double slack = 1.4;
 
-double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+double seconds(TimeOf time_of) {
+  timespec now{};
+  clock_gettime(time_of == TimeOf::wall ? CLOCK_MONOTONIC : CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
 
 double largest_error(const Problem& problem, const std::vector<solver::Vectors>& positions) {
   double largest = 0;
@@ -65,15 +66,15 @@ void note_work(const solver::Work& work, Tried& trial) {
   trial.steps = count(work, {"steps", "cvode/steps", "arkode/steps", "ida/steps"});
 }
 
-Tried attempt(const Problem& problem, const Family& family, std::size_t candidate, double cap) {
+Tried attempt(const Problem& problem, const Family& family, std::size_t candidate, const Effort& effort) {
   check_interruption();  // SUNDIALS' failure of the one before may have been one
   Tried trial{.candidate = candidate};
   model::Cloth cloth = model::compile(problem.scene);
-  watch(cloth.ode, cap);
+  watch(cloth.ode, effort.cap);
   try {
-    const auto begin = Clock::now();
+    const double begin = seconds(effort.time_of);
     const auto positions = family.candidates[candidate].solve(cloth, problem.times);
-    const double milliseconds = 1e3 * seconds_since(begin);
+    const double milliseconds = 1e3 * (seconds(effort.time_of) - begin);
     trial.measured = {largest_error(problem, positions), {milliseconds}};
     if (!std::isfinite(trial.measured.error)) throw std::runtime_error("not finite");
   } catch (const std::exception& error) {
@@ -92,19 +93,20 @@ bool outdone(const results::Measured& trial, const std::vector<results::Measured
 }
 
 /// `rivals`: other trials of the same code.
-std::vector<Tried> try_family(const Problem& problem, const Family& family, double cap, std::vector<results::Measured> rivals) {
+std::vector<Tried> try_family(const Problem& problem, const Family& family, const Effort& effort,
+                              std::vector<results::Measured> rivals) {
   std::vector<Tried> trials;
   int times_outdone = 0;
-  double before = INFINITY;  // seconds
+  double before = INFINITY;
   bool succeeded = false;
   for (std::size_t k = 0; k < family.candidates.size();) {
-    const auto begin = Clock::now();
-    const Tried& trial = trials.emplace_back(attempt(problem, family, k, cap));
-    const double seconds = seconds_since(begin);
-    const bool too_long = seconds > 0.7 * cap;
+    const double begin = seconds(effort.time_of);
+    const Tried& trial = trials.emplace_back(attempt(problem, family, k, effort));
+    const double taken = seconds(effort.time_of) - begin;
+    const bool too_long = taken > 0.7 * effort.cap;
     succeeded |= trial.outcome == "success";
-    times_outdone = seconds > before && outdone(trial.measured, rivals) ? times_outdone + 1 : 0;
-    before = seconds;
+    times_outdone = taken > before && outdone(trial.measured, rivals) ? times_outdone + 1 : 0;
+    before = taken;
     rivals.push_back(trial.measured);
     const bool exact = trial.measured.error < std::max(too_exact * problem.uncertainty, problem.enough);
     if ((too_long && succeeded) || exact || times_outdone > 1) break;
@@ -140,7 +142,7 @@ std::vector<Trial> try_all(const Problem& problem, const std::vector<Family>& fa
   std::vector<Trial> trials;
   for (const Family& family : families) {
     units.show(fmt::format("{}: {}", problem.name, family.name));
-    const auto tried = units(family.name, [&] { return try_family(problem, family, effort.cap, rivals_of(family, trials)); });
+    const auto tried = units(family.name, [&] { return try_family(problem, family, effort, rivals_of(family, trials)); });
     for (const Tried& t : tried)
       trials.push_back(
           {&family, &family.candidates.at(t.candidate), t.outcome, t.measured, false, t.forces, t.factorisations, t.steps});
@@ -158,21 +160,26 @@ std::vector<Contender> contenders(const std::vector<Trial>& trials) {
   };
   for (std::size_t k = 0; k < trials.size(); ++k) {
     const Family& family = *trials[k].family;
-    if (family.code == "drape" || family.code == "explicit" || family.code == "thesis") join("ours", k);
+    join(is_ours(family.code) ? "ours" : "sundials", k);
     if (family.code == "drape" || family.code == "thesis") join("implicit", k);
     if (family.code != "drape") join(family.code, k);
     if (!family.method.empty()) join("defaults", k);
     if (!family.method.empty()) join(fmt::format("default {} by {}", family.method, family.control), k);
+    join(family.name, k);
   }
   return all;
 }
 
 namespace {
 
-/// The trials near the front of any contender.
-std::set<std::size_t> near_fronts(const Problem& problem, const std::vector<Trial>& trials) {
+/// The trials near the front of any contender; of the families only those that are named.
+std::set<std::size_t> near_fronts(const Problem& problem, const std::vector<Trial>& trials,
+                                  const std::set<std::string>& named) {
+  std::set<std::string> families;
+  for (const Trial& trial : trials) families.insert(trial.family->name);
   std::set<std::size_t> chosen;
   for (const Contender& contender : contenders(trials)) {
+    if (families.contains(contender.name) && !named.contains(contender.name)) continue;
     std::vector<results::Measured> measured;
     for (const std::size_t k : contender.members) measured.push_back(trials[k].measured);
     for (const std::size_t k : results::near_quickest(measured, asked(problem), slack)) chosen.insert(contender.members[k]);
@@ -181,11 +188,11 @@ std::set<std::size_t> near_fronts(const Problem& problem, const std::vector<Tria
 }
 
 /// Fails trials near a front whose energy cannot be, until there are none.
-void judge_energies(const Problem& problem, std::vector<Trial>& trials, Units& units) {
+void judge_energies(const Problem& problem, std::vector<Trial>& trials, const std::set<std::string>& named, Units& units) {
   std::set<std::size_t> judged;
   for (bool failed = true; failed;) {
     failed = false;
-    for (const std::size_t k : near_fronts(problem, trials)) {
+    for (const std::size_t k : near_fronts(problem, trials, named)) {
       Trial& trial = trials[k];
       if (!judged.insert(k).second || !trial.candidate->energy_fault) continue;
       const std::string name = fmt::format("energy of {} {}", trial.family->name, trial.candidate->value);
@@ -200,9 +207,10 @@ void judge_energies(const Problem& problem, std::vector<Trial>& trials, Units& u
 
 }  // namespace
 
-void time_fronts(const Problem& problem, std::vector<Trial>& trials, const Effort& effort, Units& units) {
-  judge_energies(problem, trials, units);
-  const std::set<std::size_t> chosen = near_fronts(problem, trials);
+void time_fronts(const Problem& problem, std::vector<Trial>& trials, const Effort& effort, const std::set<std::string>& named,
+                 Units& units) {
+  judge_energies(problem, trials, named, units);
+  const std::set<std::size_t> chosen = near_fronts(problem, trials, named);
   std::vector<Prepare> runs;
   for (const std::size_t k : chosen)
     runs.emplace_back([&problem, &solve = trials[k].candidate->solve] {
@@ -210,7 +218,10 @@ void time_fronts(const Problem& problem, std::vector<Trial>& trials, const Effor
         solve(*cloth, problem.times);
       };
     });
-  const auto times = units("times", [&] { return time_runs(runs, effort.repetitions, [] {}); });
+  const auto times = units("times", [&] {
+    return time_runs(
+        runs, effort.repetitions, [] {}, effort.time_of);
+  });
   for (std::size_t place = 0; const std::size_t k : chosen) {
     trials[k].measured.times = times[place++];
     trials[k].timed = true;

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <set>
 #include <string>
 #include <vector>
 
 #include "bench/studies/work_precision_candidates.hpp"
+#include "bench/timing.hpp"
 #include "bench/units.hpp"
 #include "results/work_precision.hpp"
 
@@ -24,6 +26,7 @@ struct Problem {
   std::vector<solver::Vectors> truth = {};
   double uncertainty = 0;          ///< of the truth, over `length`
   double growth = 0;               ///< of a small perturbation of the start; 0 if not known
+  double motion = 0;               ///< largest distance of the truth from the start, as an error would be; 0 if not known
   double enough = 0;               ///< smaller errors are not sought
   std::vector<double> asked = {};  ///< errors at which somebody asks for the quickest, beside the usual ones
 };
@@ -44,10 +47,11 @@ struct Trial {
   std::int64_t forces = 0, factorisations = 0, steps = 0;
 };
 
-/// How long a study may take.
+/// How long a study may take, and what times are.
 struct Effort {
-  double cap = 1;       ///< wall time of a run before it is given up [s]
-  int repetitions = 5;  ///< of those near a front
+  double cap = 1;       ///< time of a run before it is given up [s]
+  int repetitions = 7;  ///< of those near a front
+  TimeOf time_of = TimeOf::process;
 };
 
 /// Runs every candidate once, from coarse to fine until it takes too long or is more exact than the truth.
@@ -60,11 +64,13 @@ struct Contender {
 };
 
 /// "ours": all that the program offers; of that "implicit", "explicit", "thesis", "defaults" (automatic stages and linear
-/// solvers) and of these each method, "default bdf2 by steps"; and each package of SUNDIALS.
+/// solvers) and of these each method, "default bdf2 by steps"; "sundials": all of SUNDIALS, and each of its packages; and every
+/// family, by its name.
 std::vector<Contender> contenders(const std::vector<Trial>& trials);
 
-/// Times what is near the front of any contender, all interleaved.
-void time_fronts(const Problem& problem, std::vector<Trial>& trials, const Effort& effort, Units& units);
+/// Times what is near the front of any contender, all interleaved; of the families only those that are named.
+void time_fronts(const Problem& problem, std::vector<Trial>& trials, const Effort& effort, const std::set<std::string>& named,
+                 Units& units);
 
 /// The trials of a contender as they were measured repeatedly; the others count as failed.
 std::vector<results::Measured> timed(const Contender& contender, const std::vector<Trial>& trials);

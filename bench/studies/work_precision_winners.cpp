@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "reference/families.hpp"
+#include "bench/studies/work_precision_peers.hpp"
 
 namespace drape::bench {
 namespace {
@@ -38,16 +38,10 @@ Winner Winners::of(const std::string& contender, double error) const {
   return {&trial, results::quartiles(trial.measured.times).median};
 }
 
-Winner Winners::of_peers(double error) const {
-  Winner best;
-  for (const std::string& package : packages())
-    if (const Winner winner = of(package, error); winner && !(best && best.time <= winner.time)) best = winner;
-  return best;
-}
-
 std::vector<std::string> packages() {
   std::vector<std::string> names;
-  for (const reference::Family& family : reference::families()) names.emplace_back(family.name);
+  for (const PeerSetup& setup : peer_setups(Search::full))
+    if (std::ranges::find(names, setup.package) == names.end()) names.push_back(setup.package);
   return names;
 }
 

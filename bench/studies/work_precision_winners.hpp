@@ -27,9 +27,6 @@ class Winners {
 
   Winner of(const std::string& contender, double error) const;
 
-  /// Of all packages of SUNDIALS.
-  Winner of_peers(double error) const;
-
  private:
   const SceneTrials& scene_;
   std::vector<Contender> contenders_;

@@ -1,0 +1,125 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "bench/errors.hpp"
+#include "bench/studies.hpp"
+#include "bench/studies/work_precision_peers.hpp"
+#include "bench/timing.hpp"
+#include "model/scene_file.hpp"
+#include "reference/reference.hpp"
+#include "reference/sundials_build.hpp"
+#include "results/table_builder.hpp"
+#include "results/work_precision.hpp"
+
+namespace drape::bench {
+namespace {
+
+/// A setup of SUNDIALS with one value, and what an independent driver measured of it on the same forces with SUNDIALS built
+/// with our flags: the largest error at 0.7, 0.9 and 1 of the end, and the CPU time [ms].
+struct Row {
+  const char* damping;
+  PeerSetup setup;
+  double value, their_error, their_ms;
+};
+
+PeerSetup midpoint(double stage_tolerance) { return {"arkode-steps", "constant", 0, 100, 0.3, 0, "midpoint", stage_tolerance}; }
+PeerSetup gmres(double velocity_weight) { return {"cvode-bdf", "constant-gmres", 5, velocity_weight, 0.3}; }
+
+std::vector<Row> rows(bool quick) {
+  std::vector<Row> all{{"50", midpoint(1e-3, true), 0.1, 9.1e-3, 1.01}, {"50", midpoint(1e-3), 0.05, 5.5e-4, 1.52},
+                       {"50", midpoint(1e-2), 0.025, 8.5e-5, 2.16},     {"50", midpoint(1e-2), 1. / 60, 2.8e-6, 2.87},
+                       {"50", midpoint(1e-2), 0.01, 9.5e-7, 4.44},      {"50", midpoint(1e-3), 0.003125, 8.9e-8, 13.0},
+                       {"5", gmres(1000), 1e-5, 9.6e-5, 15.2},          {"5", gmres(1000), 1e-6, 8.1e-6, 18.4},
+                       {"0.5", gmres(100), 1e-4, 5.0e-3, 22.6},         {"0.5", gmres(1000), std::pow(10, -5.5), 8.2e-5, 45.7}};
+  if (quick) all.resize(2);
+  return all;
+}
+
+/// A scene with the truth at all tenths of its end.
+struct Case {
+  model::Scene scene;
+  double size;
+  std::vector<double> times;
+  std::vector<solver::Vectors> truth;
+
+  /// The largest error from one of the tenths on, over the size of the scene.
+  double error(const std::vector<solver::Vectors>& positions, std::initializer_list<std::size_t> tenths) const {
+    double largest = 0;
+    for (const std::size_t k : tenths)
+      largest = std::max(largest, reference::rms_distance(positions.at(k - 1), truth.at(k - 1)) / size);
+    return largest;
+  }
+};
+
+Case make_case(const std::string& damping, bool quick) {
+  std::vector<model::Override> overrides{{"material.damping", damping}};
+  if (quick) overrides.insert(overrides.end(), {{"grid.n", "6"}, {"end.time", "0.2"}});
+  Case result{model::load_scene("hung-corners", overrides), 0, {}, {}};
+  result.size = model::size(result.scene);
+  for (int k = 1; k <= 10; ++k) result.times.push_back(result.scene.end * k / 10);
+  References references(1e-6);
+  for (const solver::State& y : references(result.scene, model::compile(result.scene)).trajectory.states)
+    result.truth.push_back(y.x);
+  return result;
+}
+
+std::vector<solver::Vectors> solve(const Row& row, const Case& on) {
+  return solve_by_peer(row.setup, row.value, on.size, model::compile(on.scene), on.times);
+}
+
+results::Measured measure(const Row& row, const Case& on, Units& units) {
+  constexpr int repetitions = 15;
+  const std::vector<Prepare> runs{[&] {
+    return [&, cloth = std::make_shared<model::Cloth>(model::compile(on.scene))] {
+      solve_by_peer(row.setup, row.value, on.size, *cloth, on.times);
+    };
+  }};
+  return {0, units(fmt::format("{} {} {}", row.damping, row.setup.name(), row.value), [&] {
+            return time_runs(
+                runs, repetitions, [] {}, TimeOf::process);
+          })[0]};
+}
+
+void add_row(results::TableBuilder& table, const Row& row, const Case& on, Units& units) {
+  const auto positions = solve(row, on);
+  const auto q = results::quartiles(measure(row, on, units).times);
+  table.row();
+  table.text("damping", "d", "linear damping [N s/m] of hung-corners", row.damping);
+  table.text("setup", "setup", "of SUNDIALS", row.setup.name());
+  table.number("value", "value", "1", "step [s] or tolerance", row.value);
+  table.number("error", "error", "1", "largest at 0.7, 0.9 and 1 of the end, over the scene's size",
+               on.error(positions, {7, 9, 10}));
+  table.number("theirs", "driver's", "1", "the same by an independent driver", row.their_error);
+  table.number("over_motion", "over motion", "1", "largest error at all tenths",
+               on.error(positions, {1, 2, 3, 4, 5, 6, 7, 8, 9, 10}));
+  table.number("time", "CPU", "ms", "median CPU time", q.median);
+  table.number("lower", "", "ms", "lower quartile", q.lower);
+  table.number("upper", "", "ms", "upper quartile", q.upper);
+  table.number("their_time", "driver's", "ms", "the driver's, the minimum of three, with SUNDIALS built with our flags",
+               row.their_ms);
+}
+
+results::Table reproduce(bool quick, Units& units) {
+  results::TableBuilder table("peers",
+                              fmt::format("SUNDIALS as an independent driver has set it up; {}", reference::sundials_build()));
+  std::string damping;
+  std::optional<Case> on;
+  for (const Row& row : rows(quick)) {
+    units.show(fmt::format("d = {}, {}: {:g}", row.damping, row.setup.name(), row.value));
+    if (row.damping != damping) on = make_case(damping = row.damping, quick);
+    add_row(table, row, *on, units);
+    units.advance();
+  }
+  return table.finish();
+}
+
+}  // namespace
+
+std::vector<TableJob> peers(bool quick) {
+  return {{static_cast<int>(rows(quick).size()), [quick](Units& units) { return reproduce(quick, units); }}};
+}
+
+}  // namespace drape::bench
