@@ -17,12 +17,11 @@ constexpr double unknown = std::numeric_limits<double>::infinity();
 constexpr double aim = 0.5;          ///< part of the tolerance that the error should be
 constexpr double crudest = 0.1;      ///< tolerance of the local error of the first pilot, at most,
 constexpr double head_start = 1e3;   ///< and over the tolerance
-constexpr double refinement = 10;    ///< of the error, from pilot to pilot
 constexpr double converging = 2.5;   ///< least factor by which their distances fall
 constexpr double most_ahead = 10;    ///< error of the last pilot over that of the run
 constexpr double negligible = 0.05;  ///< distance over the tolerance that need not fall so much,
 constexpr double steady = 0.5;       ///< but hardly rise
-constexpr int most_pilots = 14;
+constexpr int most_pilots = 20;
 constexpr int many_steps = 200;  ///< fewer are nothing to remark on
 
 struct Pilot {
@@ -65,7 +64,7 @@ class Planner {
 
   GlobalControl plan() {
     while (!enough()) {
-      const double scale = pilots_.empty() ? 1 : pilots_.back().scale * std::pow(refinement, -1.0 / order());
+      const double scale = pilots_.empty() ? 1 : pilots_.back().scale * std::pow(refinement(), -1.0 / order());
       if (std::ssize(pilots_) == most_pilots || expected_steps(scale) > control_.most_steps) return too_costly(scale);
       fly(scale);
     }
@@ -76,6 +75,9 @@ class Planner {
 
  private:
   int order() const { return integrator_.method().order; }
+  /// Factor by which the error should fall from pilot to pilot; no more than by steps of a quarter.
+  double refinement() const { return std::min(10.0, std::pow(4.0, order())); }
+
   double target() const { return aim * control_.tolerance; }
   double tolerance(double scale) const { return coarsest_ * std::pow(scale, order() + 1); }
   double largest_step(double scale) const { return h_ * std::min(1.0, scale); }
@@ -113,7 +115,7 @@ class Planner {
   }
 
   /// Factor by which errors fall from pilot to pilot.
-  double rate() const { return std::clamp(fall(), std::pow(refinement, 0.8), std::pow(refinement, 1.1)); }
+  double rate() const { return std::clamp(fall(), std::pow(refinement(), 0.8), std::pow(refinement(), 1.1)); }
 
   double last_error() const { return last_distance() / (rate() - 1); }
 
@@ -126,7 +128,7 @@ class Planner {
   double wanted_scale() const {
     std::size_t k = pilots_.size();
     while (k > 0 && error(k - 1) < target()) --k;
-    if (k == 0) return between(0, std::max(target() / std::max(error(0), 1e-300), 1e-2), refinement);
+    if (k == 0) return between(0, std::max(target() / std::max(error(0), 1e-300), 1e-2), refinement());
     const double excess = error(k - 1) / target();
     if (k == pilots_.size()) return between(k - 1, 1 / excess, rate());
     if (!std::isfinite(excess)) return pilots_[k].scale;
@@ -136,7 +138,7 @@ class Planner {
   /// From pilot k on, so that the error changes by a factor where one pilot more divides it by `fall`.
   double between(std::size_t k, double factor, double fall) const {
     const double pilots = std::clamp(std::log(factor) / std::log(fall), -8.0, 2.0);
-    return pilots_[k].scale * std::pow(refinement, pilots / order());
+    return pilots_[k].scale * std::pow(refinement(), pilots / order());
   }
 
   double expected_steps(double scale) const {
@@ -149,13 +151,13 @@ class Planner {
                 text(expected_steps(scale)) + " as far as pilot runs tell"};
   }
 
-  /// Where ten times the accuracy takes hardly more steps, it is not accuracy that they serve.
+  /// Where more accuracy takes hardly more steps, it is not accuracy that they serve.
   std::string remark() const {
     const Pilot &last = pilots_.back(), &before = pilots_[pilots_.size() - 2];
     const double expected = std::sqrt(before.scale / last.scale);
     if (last.steps < many_steps || last.steps > expected * before.steps) return "";
-    return "stability limits the step, not the tolerance: " + std::to_string(last.steps) +
-           " steps where ten times the error takes " + std::to_string(before.steps);
+    return "stability or ringing limits the steps, not the tolerance: " + std::to_string(last.steps) +
+           " steps to a tight tolerance, to a loose one " + std::to_string(before.steps);
   }
 
   static std::string text(double value) {

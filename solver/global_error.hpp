@@ -16,8 +16,9 @@ struct GlobalControl {
 
 /// Control of the local error leaves open how errors add up: the global one goes with a power p/(p + 1) of the tolerance, times
 /// the conditioning of the scene and whatever an estimate misjudges. So they are measured: pilot runs from the integrator's
-/// state to t_end, each ten times as accurate as the one before, go on until their distances fall as they should and are near
-/// the tolerance; what is to be controlled follows between them or just beyond   [Cao, Petzold 2004, who measure by adjoints].
+/// state to t_end, each up to ten times as accurate as the one before, go on until their distances fall as they should and are
+/// near the tolerance; what is to be controlled follows between them or just beyond   [Cao, Petzold 2004, who measure by
+/// adjoints].
 ///
 /// The error is the largest at all tenths of the run, in the root mean square of positions over the length. h: the largest step
 /// [s]. The pilots' steps are counted as "pilot_steps" instead of "steps"; their other work is work of the run.

@@ -131,7 +131,7 @@ TEST(Tolerance, SaysSoWhereStabilityLimitsTheSteps) {
   control.most_steps = 20'000;
   const Run run = sheet.run("bdf5", control);
   EXPECT_EQ(run.result.outcome, Outcome::success);
-  EXPECT_THAT(run.result.message, HasSubstr("stability limits the step"));
+  EXPECT_THAT(run.result.message, HasSubstr("stability or ringing limits the steps"));
 }
 
 TEST(Tolerance, OfAPulledSheetIsReached) {
