@@ -23,7 +23,7 @@ using solver::SmoothOutput;
 using solver::StepReport;
 using testing::HasSubstr;
 
-struct Run {
+struct Motion {
   RunResult result;
   std::vector<Vectors> positions;  ///< at the tenths
 };
@@ -52,7 +52,7 @@ class Sheet {
     return {.tolerance = tolerance, .length = length(), .duration = scene_.end, .global = global, .most_steps = 3000};
   }
 
-  Run run(const std::string& method, const ErrorControl& control) const {
+  Motion run(const std::string& method, const ErrorControl& control) const {
     Options options;
     options.error_control = control;
     Integrator integrator(cloth.ode, solver::method(method), options, cloth.start);
@@ -63,7 +63,7 @@ class Sheet {
   }
 
   /// Largest distance at the tenths, over the size.
-  double distance(const Run& a, const Run& b) const {
+  double distance(const Motion& a, const Motion& b) const {
     double largest = 0;
     for (std::size_t k = 0; k < times_.size(); ++k) largest = std::max(largest, (a.positions[k] - b.positions[k]).norm());
     return largest / (length() * std::sqrt(cloth.ode.particles()));
@@ -91,11 +91,11 @@ INSTANTIATE_TEST_SUITE_P(, ToleranceOf,
 TEST_P(ToleranceOf, IsThatOfTheError) {
   const Method& method = solver::method(std::get<0>(GetParam()));
   const Sheet sheet(setting_named(std::get<1>(GetParam())));
-  const Run truth = sheet.run("esdirk4", sheet.control(1e-9, false));
+  const Motion truth = sheet.run("esdirk4", sheet.control(1e-9, false));
   ASSERT_EQ(truth.result.outcome, Outcome::success);
   const bool cheap = method.order > 1 && method.stages != Method::Stages::linear;
   for (const double tolerance : {1e-3, 1e-4, 1e-5}) {
-    const Run ours = sheet.run(std::string(method.name), sheet.control(tolerance, true));
+    const Motion ours = sheet.run(std::string(method.name), sheet.control(tolerance, true));
     if (ours.result.outcome != Outcome::success) {
       EXPECT_FALSE(cheap) << ours.result.message;
       EXPECT_THAT(ours.result.message, HasSubstr("takes more than")) << tolerance;
@@ -116,7 +116,7 @@ TEST(Tolerance, OfAGlobalErrorCostsOtherRunsNothing) {
 
 TEST(Tolerance, KeepsTheStepsOfPilotsApart) {
   const Sheet sheet(settings[0]);
-  const Run run = sheet.run("bdf3", sheet.control(1e-3, true));
+  const Motion run = sheet.run("bdf3", sheet.control(1e-3, true));
   const solver::Work& work = *sheet.cloth.ode.work;
   EXPECT_EQ(work.count("steps"), run.result.steps);
   EXPECT_EQ(work.count("rejected_steps"), run.result.rejected_steps);
@@ -129,16 +129,16 @@ TEST(Tolerance, SaysSoWhereStabilityLimitsTheSteps) {
   const Sheet sheet({"", "hung-edge", {{"grid.n", "10"}, {"material.damping", "0.5"}}});
   ErrorControl control = sheet.control(1e-5, true);
   control.most_steps = 20'000;
-  const Run run = sheet.run("bdf5", control);
+  const Motion run = sheet.run("bdf5", control);
   EXPECT_EQ(run.result.outcome, Outcome::success);
   EXPECT_THAT(run.result.message, HasSubstr("stability or ringing limits the steps"));
 }
 
 TEST(Tolerance, OfAPulledSheetIsReached) {
   const Sheet sheet({"", "pulled", {{"end.time", "0.05"}}});
-  const Run truth = sheet.run("esdirk4", sheet.control(1e-9, false));
+  const Motion truth = sheet.run("esdirk4", sheet.control(1e-9, false));
   for (const char* method : {"bdf2", "midpoint"}) {
-    const Run run = sheet.run(method, sheet.control(1e-6, true));
+    const Motion run = sheet.run(method, sheet.control(1e-6, true));
     ASSERT_EQ(run.result.outcome, Outcome::success) << method << ": " << run.result.message;
     EXPECT_LE(sheet.distance(run, truth), 1e-5) << method;
   }
