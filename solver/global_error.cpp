@@ -131,7 +131,7 @@ class Planner {
     if (k == 0) return between(0, std::max(target() / std::max(error(0), 1e-300), 1e-2), refinement());
     const double excess = error(k - 1) / target();
     if (k == pilots_.size()) return between(k - 1, 1 / excess, rate());
-    if (!std::isfinite(excess)) return pilots_[k].scale;
+    if (!std::isfinite(excess) || !remark().empty()) return pilots_[k].scale;
     return between(k - 1, 1 / excess, std::clamp(error(k - 1) / error(k), 2.0, 1e3));
   }
 
@@ -151,13 +151,17 @@ class Planner {
                 text(expected_steps(scale)) + " as far as pilot runs tell"};
   }
 
-  /// Where more accuracy takes hardly more steps, it is not accuracy that they serve.
+  /// Where the number of steps does not go with their scale, it is not accuracy that they serve, and between pilots nothing is
+  /// certain.
   std::string remark() const {
-    const Pilot &last = pilots_.back(), &before = pilots_[pilots_.size() - 2];
-    const double expected = std::sqrt(before.scale / last.scale);
-    if (last.steps < many_steps || last.steps > expected * before.steps) return "";
-    return "stability or ringing limits the steps, not the tolerance: " + std::to_string(last.steps) +
-           " steps to a tight tolerance, to a loose one " + std::to_string(before.steps);
+    for (std::size_t k = 1; k < pilots_.size(); ++k) {
+      const double finer = pilots_[k - 1].scale / pilots_[k].scale;
+      const double more = static_cast<double>(pilots_[k].steps) / std::max(1, pilots_[k - 1].steps);
+      if (pilots_[k].steps < many_steps || (more >= std::sqrt(finer) && more <= 2 * finer)) continue;
+      return "stability or ringing limits the steps, not the tolerance alone: " + std::to_string(pilots_[k - 1].steps) +
+             ", and " + std::to_string(pilots_[k].steps) + " with steps meant to be " + text(finer) + " times finer";
+    }
+    return "";
   }
 
   static std::string text(double value) {

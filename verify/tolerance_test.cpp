@@ -104,7 +104,10 @@ TEST_P(ToleranceOf, IsThatOfTheError) {
     }
     const double ratio = sheet.distance(ours, truth) / tolerance;
     EXPECT_LE(ratio, 10) << tolerance;
-    if (ours.result.steps > 20) EXPECT_GE(ratio, 0.1) << tolerance;  // else its largest steps are accurate enough
+    const bool largest_steps = ours.result.steps <= 20;  // they are accurate enough
+    if (!largest_steps && ours.result.message.empty()) {
+      EXPECT_GE(ratio, 0.1) << tolerance;
+    }
   }
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 
 #include "bench/errors.hpp"
 #include "bench/studies.hpp"
@@ -84,7 +85,11 @@ class Measurement {
       if (!output) return (void)output.emplace(reference_.trajectory.times, step.t, step.y);
       output->see(step.t, step.y);
     });
-    Controlled result{.scene = scene_.name, .set = set(), .method = std::string(method.name), .tolerance = tolerance};
+    Controlled result;
+    result.scene = scene_.name;
+    result.set = set();
+    result.method = method.name;
+    result.tolerance = tolerance;
     result.uncertainty = std::ranges::max(reference_.error) / model::size(scene_);
     result.outcome = run.outcome;
     result.note = run.message;
