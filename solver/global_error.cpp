@@ -70,7 +70,7 @@ class Planner {
     }
     const double scale = wanted_scale();
     if (expected_steps(scale) > control_.most_steps) return too_costly(scale);
-    return {tolerance(scale), largest_step(scale), true, remark()};
+    return {tolerance(scale), largest_step(scale), true, std::max(50, static_cast<int>(expected_steps(scale))), remark()};
   }
 
  private:
@@ -146,7 +146,7 @@ class Planner {
   }
 
   GlobalControl too_costly(double scale) const {
-    return {0, 0, false,
+    return {0, 0, false, 0,
             "an error of " + text(control_.tolerance) + " takes more than " + text(control_.most_steps) + " steps, about " +
                 text(expected_steps(scale)) + " as far as pilot runs tell"};
   }

@@ -11,6 +11,7 @@ struct GlobalControl {
   double tolerance = 0;     ///< of the local error
   double largest_step = 0;  ///< [s]
   bool feasible = true;     ///< whether it takes no more steps than the options allow
+  int expected_steps = 0;   ///< as the pilots' numbers suggest, at least 50
   std::string remark;       ///< why not, or what limits its steps but the tolerance; else empty
 };
 

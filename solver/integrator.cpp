@@ -223,7 +223,8 @@ class StepSizes {
 
   void accepted(double size, int updates, double error) {
     if (error_.enabled()) {
-      const double factor = pi_factor(error);
+      const double factor = std::min(pi_factor(error), cut_ ? 1.0 : 2.0);  // what was just refused is not tried again at once
+      cut_ = false;
       before_ = std::max(error, 1e-3);
       if (factor < 1 || factor > worthwhile) h_ = std::min(first_, factor * size);
     } else if (control_.enabled()) {
@@ -237,6 +238,7 @@ class StepSizes {
   bool rejected(double size, Outcome outcome, double error) {
     const double smallest = outcome == Outcome::inaccurate ? smallest_accurate_step : smallest_step;
     if (!may_cut_ || size <= smallest * first_) return false;
+    cut_ = true;
     if (outcome == Outcome::inaccurate)
       h_ = size * std::clamp(safety * std::pow(error, -1.0 / (order_ + 1)), 0.2, 0.9);
     else
@@ -258,7 +260,7 @@ class StepSizes {
   const ErrorControl& error_;
   double first_, h_, before_ = 1;
   int order_;
-  bool may_cut_ = false;
+  bool may_cut_ = false, cut_ = false;
 };
 
 RunResult advance(Integrator& integrator, double t_end, double h, const Observer& observer) {
@@ -294,7 +296,11 @@ RunResult integrate(Integrator& integrator, double t_end, double h, const Observ
   if (!plan.feasible) return {Outcome::inaccurate, plan.remark, integrator.time(), 0, 0};
   integrator.limit_error(plan.tolerance);
   RunResult run = advance(integrator, t_end, plan.largest_step, observer);
+  constexpr double tolerated = 4;
+  const int tried = run.steps + run.rejected_steps;
   if (run.message.empty()) run.message = plan.remark;
+  if (run.message.empty() && tried > tolerated * plan.expected_steps)
+    run.message = std::to_string(tried) + " steps where pilot runs suggested " + std::to_string(plan.expected_steps);
   return run;
 }
 
