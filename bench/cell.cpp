@@ -40,7 +40,9 @@ std::vector<results::Parameter> parameters(const Cell& cell, int particles) {
     all.push_back({"max_updates", double(o.max_updates), "1", "updates a stage before it counts as failed"});
   }
   if (o.error_control.enabled())
-    all.push_back({"tolerance", o.error_control.tolerance, "1", "of the local error, over the size"});
+    all.push_back({"tolerance", o.error_control.tolerance, "1",
+                   o.error_control.global ? "of the largest error at the tenths of the run, over the size"
+                                          : "of the local error, over the size"});
   if (o.control.enabled()) {
     all.push_back({"control_min_updates", double(o.control.min_updates), "1", "the step grows after fewer updates"});
     all.push_back({"control_max_updates", double(o.control.max_updates), "1", "the step shrinks after more updates"});

@@ -30,6 +30,7 @@ std::span<const Study> studies() {
        nullptr, scaling},
       {"stability", "what becomes of every method over stiffness and damping, its largest usable step, and stress cases",
        nullptr, stability, "plot_stability.py"},
+      {"tolerance", "error over tolerance of every method on the scenes without obstacles, 1e-2 to 1e-7", nullptr, tolerance},
       {"work-precision",
        "time against error of all methods and solvers, and of SUNDIALS at its best: who wins, and by what ratio", nullptr,
        work_precision, "plot_work_precision.py", work_precision_of},

@@ -50,6 +50,7 @@ std::vector<TableJob> figure_3_3(bool quick);
 std::vector<TableJob> figure_4_3(bool quick);
 std::vector<TableJob> scaling(bool quick);
 std::vector<TableJob> stability(bool quick);
+std::vector<TableJob> tolerance(bool quick);
 std::vector<TableJob> work_precision(bool quick);
 std::vector<TableJob> work_precision_of(const model::Scene& scene, bool quick);
 

@@ -140,8 +140,9 @@ void compare_accuracy(const Pair& pair, const CompareOptions& options, Findings&
 void compare_work(const Pair& pair, Findings& findings) {
   ++findings.cells;
   std::set<std::string> names;
-  for (const RunRecord* run : {pair.a, pair.b})
-    for (const WorkCount& work : run->work) names.insert(work.name);
+  for (const WorkCount& work : pair.a->work)
+    if (std::ranges::count(pair.b->work, work.name, &WorkCount::name) > 0)
+      names.insert(work.name);  // else one has not counted it
   for (const std::string& name : names) {
     const std::int64_t a = work_count(*pair.a, name), b = work_count(*pair.b, name);
     if (a == b) continue;

@@ -57,6 +57,13 @@ std::string shown_in_motion(Run run, double MotionErrorRecord::*value, double un
   return error < least ? fmt::format("< {:.1g}", least) : fmt::format("{:.4g}", error);
 }
 
+/// The method, and how little of the run was its own where most was not.
+std::string shown_method(Run run) {
+  const std::int64_t starting = work_count(run, "starting_steps");
+  if (2 * starting <= std::ssize(run.steps)) return run.method;
+  return fmt::format("{} (starting: {} of {} steps)", run.method, starting, run.steps.size());
+}
+
 /// A statistic with its uncertainty, for runs whose positions are not comparable.
 std::string shown_statistic(Run run, double ErrorRecord::*value, double ErrorRecord::*spread) {
   if (!run.error || comparable(*run.error)) return {};
@@ -72,11 +79,12 @@ std::string shown_area(Run run) {
 
 constexpr RunColumn columns[] = {
     {"scene", "scene", "", [](Run run) -> Cell { return run.scene; }},
-    {"method", "method", "", [](Run run) -> Cell { return run.method; }},
+    {"method", "method", "", [](Run run) -> Cell { return run.method; }, shown_method},
     {"step", "step", "s", [](Run run) -> Cell { return run.step; }},
     {"outcome", "", "", [](Run run) -> Cell { return run.outcome; }},
     {"message", "", "", [](Run run) -> Cell { return run.message; }},
     {"steps", "steps", "1", [](Run run) -> Cell { return std::ssize(run.steps); }},
+    {"starting_steps", "", "1", [](Run run) -> Cell { return work_count(run, "starting_steps"); }},
     {"updates", "updates", "1", [](Run run) -> Cell { return work_count(run, "updates"); }},
     {"cg_iterations", "CG", "1", [](Run run) -> Cell { return work_count(run, "cg_iterations"); }},
     {"wall_ms_min", "wall min", "ms", [](Run run) { return time_quantile(run, 0); }},

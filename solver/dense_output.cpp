@@ -22,4 +22,28 @@ void DenseOutput::see(double t, const State& y) {
   before_ = y;
 }
 
+void SmoothOutput::see(double t, const State& y) {
+  const double same = 1e-9 * (t - last_.back().t);
+  if (last_.size() == 3) last_.erase(last_.begin());
+  last_.push_back({t, y});
+  while (positions.size() < times_.size() && times_[positions.size()] <= t + same)
+    positions.push_back(positions_at(times_[positions.size()]));
+}
+
+/// By divided differences, every end being a double node   [Hairer, Nørsett, Wanner 1993, II.1]
+Vectors SmoothOutput::positions_at(double t) const {
+  const auto node = [&](std::size_t k) { return last_[k / 2].t; };
+  std::vector<Vectors> divided;
+  for (std::size_t k = 0; k < 2 * last_.size(); ++k) divided.push_back(last_[k / 2].y.x);
+  for (std::size_t j = 1; j < divided.size(); ++j)
+    for (std::size_t k = divided.size(); k-- > j;)
+      if (k / 2 == (k - j) / 2)
+        divided[k] = last_[k / 2].y.v;
+      else
+        divided[k] = (divided[k] - divided[k - 1]) / (node(k) - node(k - j));
+  Vectors x = divided.back();
+  for (std::size_t k = divided.size() - 1; k-- > 0;) x = x * (t - node(k)) + divided[k];
+  return x;
+}
+
 }  // namespace drape::solver

@@ -30,4 +30,28 @@ class DenseOutput {
   State before_;
 };
 
+/// Positions at given times of a run that meets no obstacle: the quintic with the positions and velocities of three steps'
+/// ends, so that a run of high order loses nothing by it. Its largest error is O(h⁶), in the first step O(h⁴).
+class SmoothOutput {
+ public:
+  /// `times` [s]: ascending, none before t0; they must outlive this object.
+  SmoothOutput(std::span<const double> times, double t0, const State& y0) : times_(times), last_{{t0, y0}} {}
+
+  /// The end of the next step.
+  void see(double t, const State& y);
+
+  /// At all times that were reached.
+  std::vector<Vectors> positions;
+
+ private:
+  struct End {
+    double t;
+    State y;
+  };
+  Vectors positions_at(double t) const;
+
+  std::span<const double> times_;
+  std::vector<End> last_;  ///< the newest at the back
+};
+
 }  // namespace drape::solver

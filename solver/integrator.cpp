@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "solver/global_error.hpp"
 #include "solver/linear_work.hpp"
 
 namespace drape::solver {
@@ -14,6 +15,10 @@ constexpr double same_step = 1e-9;  ///< relative difference of steps that is ro
 
 /// Below this part of the first step a run counts as stuck.
 constexpr double smallest_step = 1e-6;
+
+/// The same where steps are cut for their accuracy: a pin that jerks is resolved by steps as short as its neighbours' motion,
+/// however long the others may be.
+constexpr double smallest_accurate_step = 1e-12;
 
 /// Part of the kinetic energy that an impact must stop to be a hard one.
 constexpr double hard_impact = 1e-2;
@@ -57,8 +62,10 @@ Integrator::Integrator(const SplitOde& ode, const Method& method, const Options&
             .substeps = ode.work->counter("substeps", "explicit sub-steps inside the stability limit"),
             .limits = ode.work->counter("stability_limits", "estimates of that limit, some tens of forces each"),
             .result = {}},
+      tolerance_(options.error_control.tolerance),
       steps_(ode.work->counter("steps", "accepted steps")),
-      rejected_(ode.work->counter("rejected_steps", "steps that failed and were not passed on")) {
+      rejected_(ode.work->counter("rejected_steps", "steps that failed and were not passed on")),
+      starting_(ode.work->counter("starting_steps", "accepted steps by the method that starts this one")) {
   if (ode.contacts && !method.meets_obstacles)
     throw std::invalid_argument("method '" + std::string(method.name) +
                                 "': expected a method of one stage in a scene with obstacles");
@@ -84,6 +91,7 @@ StageResult Integrator::step(double h) {
   step_.next.has_f = false;
   step_.result = {};
   step_.embedded = false;
+  step_.starting = false;
   step_.split_gamma = 0;
   begin_contacts(h);
   method_.step(step_);
@@ -101,6 +109,7 @@ StageResult Integrator::step(double h) {
     return result;
   }
   ++steps_;
+  starting_ += step_.starting ? 1 : 0;
   h_before_ = hard ? 0 : h;
   step_.after_impact = hard;
   finish_contacts();
@@ -160,7 +169,7 @@ double Integrator::estimate_error(double h) {
     }
   }
   const double x = error.x.norm() / control.length, v = error.v.norm() * control.duration / control.length;
-  return std::hypot(x, v) / (control.tolerance * std::sqrt(2 * 3 * step_.ode.particles()));
+  return std::hypot(x, v) / (tolerance_ * std::sqrt(2 * 3 * step_.ode.particles()));
 }
 
 double Integrator::first_step() const {
@@ -171,7 +180,7 @@ double Integrator::first_step() const {
   filter(ode.pins, a);
   const double rms = (ode.mass.cwiseInverse().asDiagonal() * a).norm() / std::sqrt(ode.particles());
   const double time = rms > 0 ? std::sqrt(control.length / rms) : control.duration;
-  return 0.1 * std::pow(control.tolerance, 1.0 / (method_.order + 1)) * std::min(time, control.duration);
+  return 0.1 * std::pow(tolerance_, 1.0 / (method_.order + 1)) * std::min(time, control.duration);
 }
 
 /// Where the extrapolation is worse than no change at all, the motion is not smooth: history begins anew.
@@ -215,7 +224,8 @@ class StepSizes {
 
   void accepted(double size, int updates, double error) {
     if (error_.enabled()) {
-      const double factor = pi_factor(error);
+      const double factor = std::min(pi_factor(error), cut_ ? 1.0 : 2.0);  // what was just refused is not tried again at once
+      cut_ = false;
       before_ = std::max(error, 1e-3);
       if (factor < 1 || factor > worthwhile) h_ = std::min(first_, factor * size);
     } else if (control_.enabled()) {
@@ -227,7 +237,9 @@ class StepSizes {
 
   /// Cuts the step; false if it is too small already.
   bool rejected(double size, Outcome outcome, double error) {
-    if (!may_cut_ || size <= smallest_step * first_) return false;
+    const double smallest = outcome == Outcome::inaccurate ? smallest_accurate_step : smallest_step;
+    if (!may_cut_ || size <= smallest * first_) return false;
+    cut_ = true;
     if (outcome == Outcome::inaccurate)
       h_ = size * std::clamp(safety * std::pow(error, -1.0 / (order_ + 1)), 0.2, 0.9);
     else
@@ -249,13 +261,10 @@ class StepSizes {
   const ErrorControl& error_;
   double first_, h_, before_ = 1;
   int order_;
-  bool may_cut_ = false;
+  bool may_cut_ = false, cut_ = false;
 };
 
-}  // namespace
-
-RunResult integrate(Integrator& integrator, double t_end, double h, const Observer& observer) {
-  if (!(h > 0) || !std::isfinite(h)) throw std::invalid_argument("the step must be a positive number of seconds");
+RunResult advance(Integrator& integrator, double t_end, double h, const Observer& observer) {
   StepSizes sizes(integrator, h);
   RunResult run;
   run.last_good_time = integrator.time();
@@ -276,6 +285,23 @@ RunResult integrate(Integrator& integrator, double t_end, double h, const Observ
     run.message = describe(result.outcome, result, integrator.time(), size);
     return run;
   }
+  return run;
+}
+
+}  // namespace
+
+RunResult integrate(Integrator& integrator, double t_end, double h, const Observer& observer) {
+  if (!(h > 0) || !std::isfinite(h)) throw std::invalid_argument("the step must be a positive number of seconds");
+  if (!integrator.options().error_control.global) return advance(integrator, t_end, h, observer);
+  const GlobalControl plan = plan_global_control(integrator, t_end, h);
+  if (!plan.feasible) return {Outcome::inaccurate, plan.remark, integrator.time(), 0, 0};
+  integrator.limit_error(plan.tolerance);
+  RunResult run = advance(integrator, t_end, plan.largest_step, observer);
+  constexpr double tolerated = 4;
+  const int tried = run.steps + run.rejected_steps;
+  if (run.message.empty()) run.message = plan.remark;
+  if (run.message.empty() && tried > tolerated * plan.expected_steps)
+    run.message = std::to_string(tried) + " steps where pilot runs suggested " + std::to_string(plan.expected_steps);
   return run;
 }
 

@@ -38,6 +38,10 @@ class Integrator {
   double time() const { return step_.t; }
   const State& state() const { return step_.now.y; }
   const Options& options() const { return options_; }
+  const SplitOde& ode() const { return step_.ode; }
+
+  /// Another tolerance of the local error than that of the options.
+  void limit_error(double tolerance) { tolerance_ = tolerance; }
 
   /// What obstacles did in the last step.
   ContactReport contacts() const;
@@ -59,9 +63,10 @@ class Integrator {
   std::optional<StageSolver> stage_;
   Step step_;
   double h_before_ = 0;
+  double tolerance_;
   double error_ = 0;
   double lost_time_ = 0;  ///< what rounding has added to the time [s]
-  std::int64_t &steps_, &rejected_;
+  std::int64_t &steps_, &rejected_, &starting_;
 };
 
 /// An accepted step as an observer sees it.
@@ -78,14 +83,15 @@ using Observer = std::function<void(const StepReport&)>;
 /// How a run ended.
 struct RunResult {
   Outcome outcome = Outcome::success;
-  std::string message;        ///< why it did not reach its end; empty if it did
+  std::string message;        ///< why it did not reach its end, or what limited its steps; else empty
   double last_good_time = 0;  ///< [s]
   int steps = 0;
   int rejected_steps = 0;
 };
 
 /// Runs to t_end with steps of h, the last one clipped. With step control a failing step is cut and tried again, and h
-/// follows the number of updates; without, the run ends where a step fails. Throws std::invalid_argument unless h > 0.
+/// follows the number of updates; without, the run ends where a step fails. With control of the global error pilot runs come
+/// first. Throws std::invalid_argument unless h > 0.
 RunResult integrate(Integrator& integrator, double t_end, double h, const Observer& observer = {});
 
 }  // namespace drape::solver

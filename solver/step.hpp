@@ -33,6 +33,7 @@ struct Step {
   Point next;                 ///< at t + h: the result
 
   History history = History(0);   ///< states up to t, for first guesses and estimates of errors
+  bool starting = false;          ///< whether another method takes the step, for lack of a history
   double error_constant = 0;      ///< c of the last stage
   State error = {};               ///< of the step, if the method is embedded in another
   bool embedded = false;          ///< whether it is

@@ -11,6 +11,7 @@
 #include "results/order_fit.hpp"
 #include "results/run_file.hpp"
 #include "results/table_builder.hpp"
+#include "solver/methods.hpp"
 #include "verify/bench_integrators.hpp"
 #include "verify/temporary_folder.hpp"
 
@@ -221,6 +222,18 @@ TEST_F(ProgramStudies, OrdersAreAsDeclared) {
                                             "2 as declared", "2 as declared", "2 as declared", "3 as declared", testing::_,
                                             "3 as declared", "4 as declared", testing::_))
       << "the reference ends the fourth order early; BDF(5) is not stable for what swings";
+}
+
+TEST_F(ProgramStudies, ErrorsAreNearTheirTolerances) {
+  const auto all = tables("tolerance");
+  ASSERT_THAT(all, SizeIs(3));
+  const auto known = AnyOf("within 10", HasSubstr("under by"), "cost explodes");
+  for (const char* name : {"tolerance-hung-edge", "tolerance-chain"}) {
+    const auto found = verdicts(*std::ranges::find(all, name, &Table::name));
+    EXPECT_THAT(found, AllOf(SizeIs(2 * solver::methods().size()), Each(known))) << name << ": one for each row";
+    EXPECT_THAT(found, Contains("within 10").Times(testing::Ge(8))) << name;
+  }
+  EXPECT_THAT(verdicts(*std::ranges::find(all, "tolerance-summary", &Table::name)), Each("proportional"));
 }
 
 TEST_F(ProgramStudies, EquilibriaConvergeAsDeclared) {

@@ -60,7 +60,7 @@ Group run_group(const RunArguments& a) {
   check_steps(a, scene.end);
   Cell cell{scene, fmt::format("{}", fmt::join(a.choice.sets, " ")), nullptr, 0, a.options};
   cell.options.control = step_control(a.control);
-  cell.options.error_control = {a.tolerance, model::size(scene), scene.end};
+  cell.options.error_control = {a.tolerance, model::size(scene), scene.end, scene.obstacles.empty()};
   Group group;
   for (const std::string& name : a.methods) {
     cell.options.stage = a.options.stage;
@@ -114,7 +114,10 @@ void add_solver_options(CLI::App& command, RunArguments& a) {
       ->capture_default_str();
   CLI::Option* tolerance =
       command
-          .add_option("--tolerance", a.tolerance, "of the local error over the scene's size: steps of --step at most follow it")
+          .add_option(
+              "--tolerance", a.tolerance,
+              "of the error of positions over the scene's size, as pilot runs measure it, steps being --step at most; with "
+              "obstacles of the local error")
           ->type_name("X")
           ->check(between(1e-15, 1.0));
   command.add_option("--stage-accuracy", a.options.stage_accuracy, "error left in a stage over the error of the time step")

@@ -67,7 +67,7 @@ Case make_case(const std::string& damping, bool quick) {
 }
 
 std::vector<solver::Vectors> solve(const Row& row, const Case& on) {
-  return solve_by_peer(row.setup, row.value, on.size, model::compile(on.scene), on.times);
+  return positions_of(solve_by_peer(row.setup, row.value, on.size, model::compile(on.scene), on.times));
 }
 
 results::Measured measure(const Row& row, const Case& on, Units& units) {

@@ -82,6 +82,11 @@ Tried attempt(const Problem& problem, const Family& family, std::size_t candidat
     trial.measured = {std::nan(""), {}};
   }
   note_work(*cloth.ode.work, trial);
+  const std::int64_t starting = count(*cloth.ode.work, {"starting_steps"});
+  if (trial.outcome == "success" && 2 * starting > trial.steps) {
+    trial.outcome = fmt::format("{} of {} steps are another method's, which starts it", starting, trial.steps);
+    trial.measured = {std::nan(""), {}};
+  }
   return trial;
 }
 

@@ -7,7 +7,8 @@ namespace {
 
 /// The first steps of BDF(k) are of order 4, so that they do not spoil its own.
 void bdf(Step& s, int k) {
-  if (s.history.size() < k) return s.after_impact ? implicit_euler(s) : esdirk4(s);
+  s.starting = s.history.size() < k;
+  if (s.starting) return s.after_impact ? implicit_euler(s) : esdirk4(s);
   const double t1 = s.t + s.h;
   // dy/dt(t1) ≈ α y1 − Σ α_j y_j of the polynomial through y1 and the last k states
   double alpha = 0;

@@ -6,7 +6,8 @@ namespace drape::solver {
 // A = M − (c3 h)² K − c3 h D,   f̂ = (1 + w) f_expl(x0, v0) − w f_expl(x₋₁, v₋₁)   [Etzmuß 2002, (3.29)–(3.31)]
 // The thesis prints f̂ = 2 f0 − f₋₁, which is right for w = 1 only.
 void sbdf2(Step& s) {
-  if (s.w == 0) return s.after_impact ? imex_euler(s) : imex_midpoint(s);  // a first step that damps, or one of second order
+  s.starting = s.w == 0;
+  if (s.starting) return s.after_impact ? imex_euler(s) : imex_midpoint(s);  // a first step that damps, or one of second order
   const auto [c1, c2, c3] = bdf2_coefficients(s.w);
   s.ax = c1 * s.y0().x - c2 * s.ym1().x;
   s.av = c1 * s.y0().v - c2 * s.ym1().v;
