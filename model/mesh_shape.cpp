@@ -32,14 +32,17 @@ using Hierarchy = Eigen::KdBVH<double, 3, int>;
 /// What a mesh's file names, as its materials, is opened only if it ends.
 class RegularFiles : public Assimp::DefaultIOSystem {
  public:
-  Assimp::IOStream* Open(const char* file, const char* mode) override {  // NOLINT(readability-identifier-naming): for Assimp
+  bool Exists(const char* file) const override {  // NOLINT(readability-identifier-naming): for Assimp, which would open it
     constexpr std::uintmax_t most_bytes = 256 << 20;
     try {
       solver::require_input_file(file, most_bytes);
-      return DefaultIOSystem::Open(file, mode);
+      return true;
     } catch (const solver::UnreadableFile&) {
-      return nullptr;
+      return false;
     }
+  }
+  Assimp::IOStream* Open(const char* file, const char* mode) override {  // NOLINT(readability-identifier-naming)
+    return Exists(file) ? DefaultIOSystem::Open(file, mode) : nullptr;
   }
 };
 

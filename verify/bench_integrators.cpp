@@ -38,7 +38,7 @@ std::map<std::string, std::string> BenchIntegrators::files() const {
   std::map<std::string, std::string> all;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder())) {
     const std::string name = entry.path().lexically_relative(folder());
-    if (entry.is_directory()) {
+    if (std::filesystem::is_directory(entry.symlink_status())) {
       all[name + '/'];
       continue;
     }
