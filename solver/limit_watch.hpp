@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "solver/state.hpp"
 
 namespace drape::solver {
@@ -42,6 +44,35 @@ class LimitWatch {
   Vectors differences_;
   double first_ = 0, second_ = 0;
   int place_ = 0, rest_ = 1000;
+};
+
+/// Notices when neighbours have moved apart, which makes sheets stiffer, before modes leave the limit.
+class StretchWatch {
+ public:
+  /// From now on lengths are compared with those of x; neighbours are coupled by K.
+  void begin(const SparseMatrix& K, const Vectors& x) {
+    squares_.clear();
+    visit(K, x, [&](double square) { squares_.push_back(square); });
+  }
+
+  /// Whether any length has grown by a tenth.
+  bool stretched(const SparseMatrix& K, const Vectors& x) const {
+    bool any = false;
+    visit(K, x, [&, k = std::size_t{0}](double square) mutable { any |= square > much * much * squares_[k++]; });
+    return any;
+  }
+
+ private:
+  static constexpr double much = 1.1;
+
+  template <class Look>
+  static void visit(const SparseMatrix& K, const Vectors& x, Look look) {
+    for (int i = 0; i < K.outerSize(); ++i)
+      for (SparseMatrix::InnerIterator entry(K, i); entry; ++entry)
+        if (entry.col() > i) look((x.row(entry.col()) - x.row(i)).squaredNorm());
+  }
+
+  std::vector<double> squares_;
 };
 
 }  // namespace drape::solver

@@ -45,8 +45,9 @@ struct Step {
 
   ImpactResponse* impacts = nullptr;  ///< for explicit methods; null if there are no obstacles
   double explicit_limit = 0;          ///< largest stable sub-step of `verlet` [s], 0 until it is known
-  LimitWatch limit_watch = {};        ///< tells when it has to be estimated anew
-  std::int64_t &substeps, &limits;    ///< work counters
+  LimitWatch limit_watch = {};        ///< tells when it has to be estimated anew, as does
+  StretchWatch stretch_watch = {};
+  std::int64_t &substeps, &limits;  ///< work counters
 
   StageResult result;
 

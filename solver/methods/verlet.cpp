@@ -12,19 +12,25 @@ constexpr double most_substeps = 1e8;
 
 double limit_at(Step& s, double t, const State& y) {
   ++s.limits;
+  s.stretch_watch.begin(s.ode.stiffness, y.x);
   return verlet_limit(spectrum(s.ode, t, y));
 }
 
-/// Whether the limit at the present sub-step is narrower than the one that is used; after an alarm.
-bool narrowed(Step& s, double t, const Vectors& v) {
+/// After a sub-step to time t with the force f: whether the limit is narrower by now than the one that is used. It is
+/// estimated only if something has stretched, or modes alternate and grow.
+bool narrowed(Step& s, double t, const Vectors& f) {
+  constexpr int stretch_period = 8;
   constexpr double worthwhile = 0.98;
-  const double limit = limit_at(s, t, {s.y1().x, v});
-  if (!(limit < worthwhile * s.explicit_limit)) {
-    s.limit_watch.rest();
-    return false;
+  const bool alarmed = s.limit_watch.alarmed(f, s.ax);
+  const bool looks = ++s.substeps % stretch_period == 0;
+  if (!alarmed && !(looks && s.stretch_watch.stretched(s.ode.stiffness, s.y1().x))) return false;
+  const double limit = limit_at(s, t, {s.y1().x, s.av});
+  if (limit < worthwhile * s.explicit_limit) {
+    s.explicit_limit = limit;
+    return true;
   }
-  s.explicit_limit = limit;
-  return true;
+  if (alarmed) s.limit_watch.rest();
+  return false;
 }
 
 /// The state is kept at (x1, v at the middle of the sub-step), so that all that happens between two evaluations of the force
@@ -48,8 +54,7 @@ bool sub_steps(Step& s, double tau, double count) {
   for (double k = 1; k <= count; ++k) {
     advance(k == 1 ? 0.5 * tau : tau);
     s.ode.force(s.t + k * tau, s.y1().x, s.av, s.next.f);
-    ++s.substeps;
-    if (s.limit_watch.alarmed(s.next.f, s.ax) && narrowed(s, s.t + k * tau, s.av)) return false;
+    if (narrowed(s, s.t + k * tau, s.next.f)) return false;
   }
   s.y1().v.array() += (0.5 * tau) * s.ax.array() * s.next.f.array();
   return true;
@@ -68,8 +73,7 @@ bool sub_steps_with_impacts(Step& s, double tau, double count) {
     y.v += (0.5 * tau) * a;        // the half of a0
     s.av = y.v + (0.5 * tau) * a;  // the velocity that a1 is evaluated with
     s.ode.force(s.t + k * tau, y.x, s.av, a);
-    ++s.substeps;
-    if (s.limit_watch.alarmed(a, s.ax) && narrowed(s, s.t + k * tau, s.av)) return false;
+    if (narrowed(s, s.t + k * tau, a)) return false;
     a.array() *= s.ax.array();
     y.v += (0.5 * tau) * a;
     s.impacts->stop(tau, false, y.v, a);
@@ -101,8 +105,8 @@ bool whole_step(Step& s, double substeps) {
 //   x1 = x0 + τ v0 + τ²/2 a0,   a1 = a(t1, x1, v0 + τ a0),   v1 = v0 + τ/2 (a0 + a1)
 // which is velocity Verlet where forces do not depend on velocities and of second order where they do, with one
 // evaluation a sub-step   [Verlet 1967; Groot, Warren 1997, λ = 1].
-// The limit is that of the initial state until modes alternate and grow: then it is estimated anew, and where it has become
-// narrower the step begins again.
+// The limit is that of the initial state until neighbours have moved apart by a tenth, or modes alternate and grow: then it is
+// estimated anew, and where it has become narrower the step begins again.
 void verlet(Step& s) {
   if (s.explicit_limit == 0) s.explicit_limit = limit_at(s, s.t, s.y0());
   for (bool done = false; !done;) {
