@@ -89,12 +89,12 @@ Reference reference(const Equations& equations, const State& y0, double t0, std:
   const Family &bdf = family("cvode-bdf"), &runge_kutta = family("arkode-esdirk"), &residual = family("ida-bdf");
   try {
     return reference_by(bdf, runge_kutta, equations, y0, t0, times, options);
-  } catch (const ReferenceError& first) {
+  } catch (const ReferenceError&) {
     for (const Family* left : {&bdf, &runge_kutta}) try {
         return reference_by(*left, residual, equations, y0, t0, times, options);
       } catch (const ReferenceError&) {  // the first reason is the one to report
       }
-    throw first;
+    throw;
   }
 }
 
