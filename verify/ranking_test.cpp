@@ -62,7 +62,7 @@ TEST(Ranking, IsTheGeometricMeanAndTheRangeOverTheScenesThatAreReached) {
   EXPECT_EQ(coarse.least, 1.5) << "the coarser of its trials is quicker";
   EXPECT_EQ(some.scenes, 2);
   EXPECT_EQ(some.reached, 1);
-  EXPECT_EQ(some.mean, 3);
+  EXPECT_DOUBLE_EQ(some.mean, 3);
   EXPECT_EQ(none.scenes, 2);
   EXPECT_EQ(none.reached, 0);
   EXPECT_TRUE(std::isnan(none.mean) && std::isnan(none.least) && std::isnan(none.largest));
@@ -72,11 +72,11 @@ TEST(Ranking, CountsOnlyOursTimedRepeatedlyWhereTheReferenceResolvesTheError) {
   const std::vector<Trial> list{
       {"cvode-bdf", "", 1e-4, 0.1}, {"drape", "", 1e-4, 0.5, 1}, {"drape", "", 1e-4, 1}, {"drape", "a", 1e-4, 3}};
   const Table all = results::ranking(std::vector{trials("one", list), Table{"winners", "", {}}});
-  EXPECT_EQ(row_of(all, "a", 3).mean, 3);
+  EXPECT_DOUBLE_EQ(row_of(all, "a", 3).mean, 3);
   EXPECT_EQ(row_of(all, "a", 3).scenes, 1);
   EXPECT_TRUE(std::isnan(row_of(all, "a", 5).scenes)) << "nothing of ours reaches it";
   const Table uncertain = results::ranking(std::vector{trials("one", list, 1e-4)});
-  EXPECT_EQ(row_of(uncertain, "a", 3).mean, 3);
+  EXPECT_DOUBLE_EQ(row_of(uncertain, "a", 3).mean, 3);
   EXPECT_TRUE(std::isnan(row_of(uncertain, "a", 4).scenes));
 }
 
