@@ -49,7 +49,7 @@ Eigen::VectorXd advance(const solver::Method& method, const solver::SplitOde& od
                         solver::StageSolver* stage, const Eigen::VectorXd& u) {
   const Eigen::Index n = method.two_step ? 2 : u.size();
   const solver::Vectors none = solver::Vectors::Zero(1, 3);
-  std::int64_t substeps = 0;
+  std::int64_t substeps = 0, limits = 0;
   solver::Step step{.ode = ode,
                     .options = options,
                     .stage = stage,
@@ -63,6 +63,7 @@ Eigen::VectorXd advance(const solver::Method& method, const solver::SplitOde& od
                     .f_hat = none,
                     .explicit_limit = h,
                     .substeps = substeps,
+                    .limits = limits,
                     .result = {}};
   method.step(step);
   if (step.result.outcome != solver::Outcome::success)
