@@ -38,7 +38,7 @@ TEST(VerletLimit, FollowsASheetThatIsPulledAskew) {
   ASSERT_EQ(integrate(fine, 0.5, 0.001).outcome, Outcome::success);
   EXPECT_LE((integrator.state().x - fine.state().x).rowwise().norm().maxCoeff(), 1e-2);
   EXPECT_GT(cloth.ode.work->count("stability_limits"), 1);
-  EXPECT_LT(cloth.ode.work->count("stability_limits"), 12);
+  EXPECT_LT(cloth.ode.work->count("stability_limits"), 100);
 }
 
 TEST(VerletLimit, IsEstimatedOnceWhereItHolds) {

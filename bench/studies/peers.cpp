@@ -25,7 +25,9 @@ struct Row {
   double value, their_error, their_ms;
 };
 
-PeerSetup midpoint(double stage_tolerance) { return {"arkode-steps", "constant", 0, 100, 0.3, 0, "midpoint", stage_tolerance}; }
+PeerSetup midpoint(double stage_tolerance, bool deduced = false) {
+  return {"arkode-steps", "constant", 0, 100, 0.3, 0, "midpoint", stage_tolerance, deduced};
+}
 PeerSetup gmres(double velocity_weight) { return {"cvode-bdf", "constant-gmres", 5, velocity_weight, 0.3}; }
 
 std::vector<Row> rows(bool quick) {
