@@ -1,7 +1,22 @@
 # Shared by bench/run, verify/run and .ci/run, which source it: installs what is missing and builds what is out of date.
-# All that it says goes to standard error: standard output belongs to the program that is run afterwards.
+# What it says goes to standard error, since standard output belongs to the program that is run afterwards; what its tools say goes
+# to logs in build/.
 set -euo pipefail
 root=$(dirname "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")")
+
+# log_of <name>: an empty log.
+log_of() {
+  mkdir -p "$root/build"
+  : >"$root/build/$1.log"
+  echo "$root/build/$1.log"
+}
+
+# failed_by <what> <log>: says so with the part of the log that shows why. Returns 1.
+failed_by() {
+  echo "$1 failed; the end of $2:" >&2
+  if grep -q '^FAILED:' "$2"; then sed -n '/^FAILED:/,$p' "$2" | head -n 150; else tail -n 40 "$2"; fi >&2
+  return 1
+}
 
 # install_packages <command>...: installs the packages in .ci/packages that these commands need and that are not there.
 install_packages() {
@@ -12,7 +27,9 @@ install_packages() {
   mapfile -t missing < <(LC_ALL=C comm -23 <(echo "$wanted") <(echo "$installed"))
   [[ ${#missing[@]} -gt 0 ]] || return 0
 
-  echo "installing: ${missing[*]}" >&2
+  local log
+  log=$(log_of install)
+  echo "installing ${#missing[@]} packages and what they need; log: $log" >&2
   if [[ $EUID -ne 0 ]]; then
     as_root=(sudo -n)
     if ! "${as_root[@]}" true; then
@@ -20,20 +37,36 @@ install_packages() {
       return 1
     fi
   fi
-  "${as_root[@]}" apt-get update -qq >&2
-  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -qq --no-install-recommends -o Dpkg::Use-Pty=0 \
-    -o DPkg::Lock::Timeout=300 "${missing[@]}" </dev/null >&2
+  {
+    echo "installing: ${missing[*]}"
+    "${as_root[@]}" apt-get update -qq &&
+      "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -qq --no-install-recommends -o Dpkg::Use-Pty=0 \
+        -o DPkg::Lock::Timeout=300 "${missing[@]}" </dev/null
+  } >"$log" 2>&1 || failed_by "installing" "$log"
+}
+
+# show_progress <log>: keeps what ninja says in a log, and shows how far it is: in one line on a terminal, else only that it builds.
+show_progress() {
+  awk -v log_file="$1" -v terminal="$([[ -t 2 ]] && echo 1 || true)" '
+    { print >> log_file; fflush(log_file) }
+    /^\[[0-9]+\/[0-9]+\] (Building|Linking)/ {
+      if (terminal) printf "\r\033[Kbuilding %s; log: %s", $1, log_file
+      else if (!said) print "building; log: " log_file
+      said = 1
+      fflush()
+    }
+    END { if (terminal && said) printf "\r\033[K" }' >&2
 }
 
 # build <preset> [cmake --build option]...: configures if that was never done or the presets changed, and builds. Silent if there
 # is nothing to do.
 build() {
-  local directory=$root/build/$1
+  local directory=$root/build/$1 log
+  log=$(log_of "$1")
   if [[ ! $directory/build.ninja -nt $root/CMakePresets.json ]]; then
-    (cd "$root" && cmake --preset "$1") >&2 || return
+    (cd "$root" && cmake --preset "$1") >"$log" 2>&1 || failed_by "configuring" "$log" || return
   fi
-  cmake --build "$directory" --parallel "$(nproc)" "${@:2}" |
-    sed -u '/Re-checking globbed directories/d; /Looking up the git commit/d; /no work to do/d' >&2
+  cmake --build "$directory" --parallel "$(nproc)" "${@:2}" 2>&1 | show_progress "$log" || failed_by "building" "$log"
 }
 
 # run_tests <preset> [GoogleTest option]...: in four parts, as many at a time as there are cores; not by ctest, which would start the

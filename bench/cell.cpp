@@ -12,6 +12,7 @@
 
 #include "bench/contact_record.hpp"
 #include "bench/trajectory_record.hpp"
+#include "model/at_rest.hpp"
 #include "model/energy_guard.hpp"
 #include "model/scene_file.hpp"
 #include "solver/printable.hpp"
@@ -29,7 +30,7 @@ std::vector<results::Parameter> parameters(const Cell& cell, int particles) {
     all.push_back(
         {"threads", double(solver::threads_for(particles)), "1", "that the linear algebra of a sheet of this size may use"});
     all.push_back({"max_cg_iterations", double(o.max_cg_iterations), "1", "iterations a solve before it counts as failed"});
-  } else {
+  } else if (cell.method->sub_steps) {
     all.push_back({"verlet_fraction", o.verlet_fraction, "1", "sub-step over its stability limit"});
   }
   if (cell.method->nonlinear()) {
@@ -62,7 +63,7 @@ std::string_view stage_solver(const Cell& cell) {
 
 std::string expected(const solver::Method& method) {
   using Stages = solver::Method::Stages;
-  if (method.stages == Stages::none) return fmt::format("{}, it solves no linear systems", method.name);
+  if (method.stages == Stages::none) return fmt::format("{}, it leaves no solver to choose", method.name);
   if (method.stages == Stages::linear) return fmt::format("{}/LINEAR_SOLVER, its stages are linear", method.name);
   return fmt::format("{}/STAGE_SOLVER/LINEAR_SOLVER", method.name);
 }
@@ -87,6 +88,20 @@ results::RunRecord describe(const Cell& cell) {
   run.numerical_stiffness = model::numerical_stiffness(cell.scene, cell.step);
   run.stiffness_to_damping = model::stiffness_to_damping(cell.scene, cell.step);
   return run;
+}
+
+/// solver::integrate under the guard. An exception that the method throws is how its run ends.
+solver::RunResult integrate(solver::Integrator& integrator, model::EnergyGuard& guard, const Cell& cell,
+                            const solver::Observer& see) {
+  try {
+    return model::integrate(integrator, guard, cell.scene.end, cell.step, see);
+  } catch (const OutOfTime&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    return {.outcome = solver::Outcome::failed, .message = error.what(), .last_good_time = integrator.time()};
+  }
 }
 
 /// Takes a run as far as its limits allow.
@@ -158,9 +173,10 @@ results::RunRecord record(const Cell& cell, const solver::Observer& look, std::o
       if (frames) frames->see(step.t, step.y);
       if (look) look(step);
     };
-    const solver::RunResult result = integrate(*integrator, guard, cell.scene.end, cell.step, see);
+    const solver::RunResult result = integrate(*integrator, guard, cell, see);
     run.outcome = to_string(result.outcome);
     run.message = result.message;
+    if (run.message.empty() && model::is_at_rest(cell.scene)) run.message = model::at_rest_remark;
     run.last_good_time = result.last_good_time;
   });
   if (contact) run.contact = contact->result();

@@ -1,10 +1,12 @@
 #include "bench/choices.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 
 #include "bench/studies.hpp"
+#include "bench/terminal.hpp"
 #include "model/scene_file.hpp"
 #include "solver/methods.hpp"
 
@@ -44,8 +46,10 @@ Choices study_choices() { return from_table(studies()); }
 std::string paragraph(std::string_view title, const Choices& choices) {
   const auto length = [](const Choice& choice) { return choice.name.size(); };
   const std::size_t width = length(std::ranges::max(choices, {}, length));
+  const int indent = static_cast<int>(width) + 4, columns = columns_of(STDOUT_FILENO);
   std::string text = fmt::format("{}:\n", title);
-  for (const Choice& choice : choices) text += fmt::format("  {:<{}}  {}\n", choice.name, width, choice.description);
+  for (const Choice& choice : choices)
+    text += fmt::format("  {:<{}}  {}\n", choice.name, width, wrapped(choice.description, columns - indent, indent));
   return text;
 }
 

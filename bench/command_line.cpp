@@ -10,6 +10,7 @@
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
+#include <memory>
 #include <new>
 #include <stdexcept>
 #include <string_view>
@@ -18,6 +19,7 @@
 #include "bench/argument_checks.hpp"
 #include "bench/available_memory.hpp"
 #include "bench/commands/commands.hpp"
+#include "bench/help.hpp"
 #include "bench/interruption.hpp"
 #include "model/scene_file.hpp"
 #include "results/atomic_file.hpp"
@@ -39,6 +41,12 @@ void open_standard_streams() {
 /// Throws std::system_error unless all that was printed went out.
 void flush_output() {
   if (std::fflush(stdout) != 0) throw std::system_error(errno, std::generic_category(), "standard output");
+}
+
+/// The program as it was called: by its path, or by a script that stands for it.
+std::string called_as(const char* path) {
+  const std::string name = std::filesystem::path(path).filename();
+  return name == "run" ? path : "bench_integrators";
 }
 
 /// One line, in which what is quoted neither acts on the terminal nor fills it.
@@ -78,26 +86,35 @@ std::string farewell(const Interrupted& interrupted) {
 int run_command_line(int argc, const char* const* argv) {
   std::string command_line = "bench_integrators";
   for (int k = 1; k < argc; ++k) command_line += " " + shell_word(argv[k]);
-  CLI::App app(
-      "Runs time integrators of cloth side by side with a reference and records accuracy, work and time.\n"
-      "Without arguments: the main job, three studies and a report of them.",
-      "bench_integrators");
+  const std::string name = argc > 0 ? called_as(argv[0]) : "bench_integrators";
+  const auto complain = [&](const std::string& message, int exit_code = bad_input) {
+    fmt::print(stderr, "{}: {}\n", name, message);
+    return exit_code;
+  };
+  CLI::App app(help_text("Runs time integrators of cloth side by side with a reference and records accuracy, work and time.\n"
+                         "Without arguments: the main job, three studies and a report of them."),
+               name);
   app.require_subcommand(0, 1);
+  app.formatter(std::make_shared<HelpFormat>());
+  app.set_version_flag("--version", version_text, "show the version");
   add_list(app);
   add_run(app, command_line);
   add_study(app, command_line);
   int exit_code = 0;
   add_inspect(app, exit_code);
   add_compare(app, exit_code);
+  add_check(app, command_line, exit_code);
   add_report(app);
   add_export(app);
   add_score(app, command_line);
   app.footer(
-      "Examples:\n"
-      "  bench_integrators run --scene hung-edge --method bdf2,sbdf2 --step 0.01,0.005 --set material.damping=0.5\n"
-      "  bench_integrators study hung-sheets --out hung-sheets.h5 --format csv\n"
-      "  bench_integrators compare before.h5 after.h5\n"
-      "  bench_integrators run --help\n");  // after the subcommands, which would inherit it
+      fmt::format("Examples:\n"
+                  "  {0} run --scene hung-edge --method bdf2,sbdf2 --step 0.01,0.005\n"
+                  "  {0} check bdf2/newton\n"
+                  "  {0} study hung-sheets --out hung-sheets.h5 --format csv\n"
+                  "  {0} compare before.h5 after.h5\n"
+                  "  {0} run --help\n",
+                  name));  // after the subcommands, which would inherit it
   note_interruptions();
   try {
     open_standard_streams();

@@ -1,8 +1,9 @@
 #include "bench/contact_record.hpp"
-#include "solver/largest.hpp"
 
 #include <algorithm>
 #include <limits>
+
+#include "solver/largest.hpp"
 
 namespace drape::bench {
 

@@ -1,7 +1,6 @@
 #include "bench/progress.hpp"
 
 #include <fmt/format.h>
-#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -9,19 +8,10 @@
 #include <cstdio>
 #include <utility>
 
+#include "bench/terminal.hpp"
 #include "solver/printable.hpp"
 
 namespace drape::bench {
-namespace {
-
-/// Columns of the terminal, 80 if it does not say.
-int columns() {
-  winsize size{};
-  return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
-}
-
-}  // namespace
-
 Progress::Progress(int total) : terminal_(isatty(STDERR_FILENO) == 1), total_(total) {}
 
 Progress::~Progress() {
@@ -66,7 +56,7 @@ void Progress::draw() const {
   }
   const std::string line =
       fmt::format("[{:=<{}}{:{}}] {}/{}  {}  {}", "", filled, "", width - filled, done_, total_, left, activity_);
-  fmt::print(stderr, "\r\033[K{:.{}}", line, columns() - 1);  // a line that wraps could not be drawn over
+  fmt::print(stderr, "\r\033[K{:.{}}", line, columns_of(STDERR_FILENO) - 1);  // a line that wraps could not be drawn over
   std::fflush(stderr);
 }
 

@@ -12,8 +12,12 @@ std::span<const Study> studies() {
       {"convergence",
        "figure 2.11: equilibria against exact solutions, 5 to 160 particles a side, forces consistent and as printed", nullptr,
        convergence},
-      {"orders", "the order of every method in time, in a window that the program finds", nullptr, orders},
-      {"modes", "amplification of linear modes by the running code: stability limits, artificial inertia and damping", nullptr,
+      {"orders", "the order of every method in time, in a window that the program finds", nullptr, nullptr, {}, orders},
+      {"modes",
+       "amplification of linear modes by the running code: stability limits, artificial inertia and damping",
+       nullptr,
+       nullptr,
+       {},
        modes},
       {"references", "CVODE, ARKODE and IDA on the hung sheets: how far they agree, and at what cost", nullptr, references},
       {"peers", "SUNDIALS set up by an independent driver: its errors and CPU times reproduced", nullptr, peers},
@@ -29,13 +33,24 @@ std::span<const Study> studies() {
       {"scaling", "time of a step and of a CG iteration from 20 x 20 to a million particles, beside the machine's bandwidth",
        nullptr, scaling},
       {"stability", "what becomes of every method over stiffness and damping, its largest usable step, and stress cases",
-       nullptr, stability, "plot_stability.py"},
-      {"tolerance", "error over tolerance of every method on the scenes without obstacles, 1e-2 to 1e-7", nullptr, tolerance},
+       nullptr, nullptr, "plot_stability.py", stability},
+      {"tolerance",
+       "error over tolerance of every method on the scenes without obstacles, 1e-2 to 1e-7",
+       nullptr,
+       nullptr,
+       {},
+       tolerance},
       {"work-precision",
        "time against error of all methods and solvers, and of SUNDIALS at its best: who wins, and by what ratio", nullptr,
-       work_precision, "plot_work_precision.py", work_precision_of},
+       nullptr, "plot_work_precision.py", work_precision, work_precision_of},
   };
   return table;
+}
+
+Methods all_or(Methods methods) {
+  if (methods.empty())
+    for (const solver::Method& method : solver::methods()) methods.push_back(&method);
+  return methods;
 }
 
 const Study& study(std::string_view name) { return solver::find_named(studies(), "study", name); }

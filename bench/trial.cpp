@@ -77,6 +77,8 @@ Attempt attempt(const Specimen& specimen, const Conditions& conditions) {
   } catch (const Exhausted&) {
     trial.finished = false;
     trial.run.last_good_time = integrator.time();
+  } catch (const std::exception& error) {
+    trial.run = {.outcome = solver::Outcome::failed, .message = error.what(), .last_good_time = integrator.time()};
   }
   trial.cpu_ms = 1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
   trial.end = integrator.state();

@@ -149,6 +149,7 @@ Scene parse_scene(std::string_view toml, std::string_view origin, std::span<cons
     const auto changed = origins.find(node->first);
     key.read(Value(*node->second, node->first, changed == origins.end() ? file : changed->second), scene);
   }
+  if (!found.contains("name")) scene.name = file.ends_with(".toml") ? std::filesystem::path(file).stem().string() : "";
   if (scene.name.empty()) throw SceneError(fmt::format("{}: name: expected a name for the scene", origin));
   check_together(scene, file);
   return scene;

@@ -29,7 +29,8 @@ Override parse_override(std::string_view text);
 /// Reads scene text. `origin` names it in messages. Throws SceneError.
 Scene parse_scene(std::string_view toml, std::string_view origin, std::span<const Override> overrides = {});
 
-/// A built-in scene by name, or a file whose name ends in .toml. Throws SceneError.
+/// A built-in scene by name, or a file whose name ends in .toml; without a key `name` it is called as the file is. Throws
+/// SceneError.
 Scene load_scene(const std::string& name_or_file, std::span<const Override> overrides = {});
 
 /// The complete scene as TOML, defaults included: parse_scene gives the same scene back.

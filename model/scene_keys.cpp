@@ -117,7 +117,8 @@ void read_relaxation(const Value& value, Scene& scene) {
 }
 
 constexpr SceneKey all_keys[] = {
-    {"name", "what tables and files call the scene", read_name, [](const Scene& s) { return in_quotes(s.name); }},
+    {"name", "what tables and files call the scene [the file's name without .toml]", read_name,
+     [](const Scene& s) { return in_quotes(s.name); }},
     {"description", "one sentence", [](const Value& v, Scene& s) { s.description = v.text(); },
      [](const Scene& s) { return in_quotes(s.description); }},
 

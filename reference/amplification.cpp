@@ -18,9 +18,11 @@ namespace {
 constexpr double h = 0.125, mass = 0.7;
 
 /// Whether the fixed-point loop comes down to round-off in some 10⁵ updates. Where W > ν the error changes its sign with every
-/// update, and close to −1 the right-hand side vanishes to which tolerances are relative.
-bool loop_converges(std::string_view method, const Mode& mode) {
-  return loop_contraction(method, mode) <= (mode.W > mode.nu ? 0.9 : 0.9995);
+/// update, and close to −1 the right-hand side vanishes to which tolerances are relative. Not known without a theory of the
+/// method.
+bool loop_converges(const solver::Method& method, const Mode& mode) {
+  if (!method.nonlinear()) return true;
+  return has_theory(method.name) && loop_contraction(method.name, mode) <= (mode.W > mode.nu ? 0.9 : 0.9995);
 }
 
 solver::Options exact_options() {
@@ -32,22 +34,40 @@ solver::Options exact_options() {
   return options;
 }
 
-/// (x, h v, h² a), the last if there is one, in the first coordinate. The second is displaced, or tolerances would be relative
-/// to nothing where u is but a velocity in the past.
+/// What a method takes from step to step, as a vector: of each of its last states, the newest first, x, h v and h² times the
+/// rows that it keeps in `Point::f`, all in the first coordinate.
+struct Memory {
+  Eigen::Index states, kept;
+
+  Eigen::Index entries() const { return 2 + kept; }
+  Eigen::Index size() const { return states * entries(); }
+};
+
+/// The second coordinate is displaced, or tolerances would be relative to nothing where u is but a velocity in the past.
 solver::Point point(const Eigen::Ref<const Eigen::VectorXd>& u) {
-  solver::Point p{{solver::Vectors::Zero(1, 3), solver::Vectors::Zero(1, 3)}, solver::Vectors::Zero(1, 3)};
+  const Eigen::Index kept = u.size() - 2;
+  solver::Point p{{solver::Vectors::Zero(1, 3), solver::Vectors::Zero(1, 3)},
+                  solver::Vectors::Zero(std::max<Eigen::Index>(kept, 1), 3)};
   p.y.x(0) = u[0];
   p.y.x(1) = 1;
   p.y.v(0) = u[1] / h;
-  p.has_f = u.size() == 3;
-  if (p.has_f) p.f(0) = u[2] / (h * h);
+  p.has_f = kept > 0;
+  if (p.has_f) p.f.col(0) = u.tail(kept) / (h * h);
   return p;
 }
 
-/// What one step makes of the vector u that amplification_matrix() describes.
-Eigen::VectorXd advance(const solver::Method& method, const solver::SplitOde& ode, const solver::Options& options,
-                        solver::StageSolver* stage, const Eigen::VectorXd& u) {
-  const Eigen::Index n = method.two_step ? 2 : u.size();
+/// The states, the newest at time 0.
+solver::History history(const solver::Method& method, const Memory& memory, const Eigen::VectorXd& u) {
+  solver::History states(method.past_states);
+  for (Eigen::Index k = memory.states; k-- > 0 && method.past_states > 0;)
+    states.push(-static_cast<double>(k) * h, point(u.segment(k * memory.entries(), memory.entries())).y);
+  return states;
+}
+
+/// One step on the mode: the point at which it ends.
+solver::Point advance(const solver::Method& method, const solver::SplitOde& ode, const solver::Options& options,
+                      solver::StageSolver* stage, const Memory& memory, const Eigen::VectorXd& u) {
+  const Eigen::Index n = memory.entries();
   const solver::Vectors none = solver::Vectors::Zero(1, 3);
   std::int64_t substeps = 0, limits = 0;
   solver::Step step{.ode = ode,
@@ -55,9 +75,10 @@ Eigen::VectorXd advance(const solver::Method& method, const solver::SplitOde& od
                     .stage = stage,
                     .h = h,
                     .w = method.two_step ? 1.0 : 0.0,
-                    .before = point(u.tail(n)),
+                    .before = point(u.segment(memory.states > 1 ? n : 0, n)),
                     .now = point(u.head(n)),
-                    .next = point(Eigen::VectorXd::Zero(n)),
+                    .next = point(Eigen::VectorXd::Zero(2)),
+                    .history = history(method, memory, u),
                     .ax = none,
                     .av = none,
                     .f_hat = none,
@@ -69,10 +90,15 @@ Eigen::VectorXd advance(const solver::Method& method, const solver::SplitOde& od
   if (step.result.outcome != solver::Outcome::success)
     throw std::runtime_error("a step of " + std::string(method.name) +
                              " on a linear mode failed: " + std::string(to_string(step.result.outcome)));
-  Eigen::VectorXd u1(u.size());
-  u1.head(2) << step.next.y.x(0), h * step.next.y.v(0);
-  if (n == 3) u1[2] = h * h * step.next.f(0);
-  if (method.two_step) u1.tail(2) = u.head(2);
+  return step.next;
+}
+
+/// The same as a vector, which the memory before it follows.
+Eigen::VectorXd remembered(const solver::Point& end, const Memory& memory, const Eigen::VectorXd& u) {
+  Eigen::VectorXd u1(memory.size());
+  u1.head(2) << end.y.x(0), h * end.y.v(0);
+  u1.segment(2, memory.kept) = h * h * end.f.col(0).head(memory.kept);
+  u1.tail(memory.size() - memory.entries()) = u.head(memory.size() - memory.entries());
   return u1;
 }
 
@@ -94,20 +120,33 @@ solver::SplitOde mode_ode(const LinearMode& mode) {
   ode.explicit_force = [mode](double, const solver::Vectors& x, const solver::Vectors&, solver::Vectors& f) {
     f = mass * (mode.kappa - mode.omega_squared) * x;
   };
+  ode.jacobian = [mode](double, const solver::Vectors&, const solver::Vectors&, solver::SparseMatrix& df_dx,
+                        solver::SparseMatrix& df_dv) {
+    df_dx = (-mass * mode.omega_squared * Eigen::Matrix3d::Identity()).sparseView();
+    df_dv = (-mass * mode.damping * Eigen::Matrix3d::Identity()).sparseView();
+  };
   return ode;
 }
 
 Eigen::MatrixXd amplification_matrix(const solver::Method& method, const Mode& mode) {
   LinearMode linear{mode.nu / (h * h), mode.W / (h * h), mode.s / h};
-  if (!loop_converges(method.name, mode)) linear.kappa = linear.omega_squared;
+  if (!loop_converges(method, mode)) linear.kappa = linear.omega_squared;
   const solver::SplitOde ode = mode_ode(linear);
   const solver::Options options = exact_options();
   std::optional<solver::StageSolver> stage;
   if (method.implicit()) stage.emplace(ode, options);
+  const auto end = [&](const Memory& memory, const Eigen::VectorXd& u) {
+    return advance(method, ode, options, stage ? &*stage : nullptr, memory, u);
+  };
 
-  const int n = method.two_step ? 4 : method.implicit() ? 2 : 3;
-  Eigen::MatrixXd G(n, n);
-  for (int j = 0; j < n; ++j) G.col(j) = advance(method, ode, options, stage ? &*stage : nullptr, Eigen::VectorXd::Unit(n, j));
+  Memory memory{std::max(method.two_step ? 2 : 1, method.past_states), 0};
+  if (const solver::Point first = end(memory, Eigen::VectorXd::Unit(memory.size(), 0)); first.has_f)
+    memory.kept = first.f.rows();
+  Eigen::MatrixXd G(memory.size(), memory.size());
+  for (Eigen::Index j = 0; j < memory.size(); ++j) {
+    const auto u = Eigen::VectorXd::Unit(memory.size(), j);
+    G.col(j) = remembered(end(memory, u), memory, u);
+  }
   return G;
 }
 
@@ -115,7 +154,8 @@ std::vector<std::complex<double>> amplification_factors(const solver::Method& me
   const Eigen::MatrixXd G = amplification_matrix(method, mode);
   // Velocities in units of ω, so that the entries are less unequal: the factors are the same with fewer roundings.
   const double omega = std::sqrt(1 + mode.W);
-  const auto unit = [&](Eigen::Index i) { return i % 2 == 1 ? omega : 1; };
+  const Eigen::Index entries = G.rows() / std::max(method.two_step ? 2 : 1, method.past_states);
+  const auto unit = [&](Eigen::Index i) { return i % entries == 1 ? omega : 1; };
   const Eigen::MatrixXd scaled =
       Eigen::MatrixXd::NullaryExpr(G.rows(), G.cols(), [&](auto i, auto j) { return G(i, j) * unit(j) / unit(i); });
   const Eigen::VectorXcd eigenvalues = solver::eigenvalues(scaled);

@@ -24,12 +24,13 @@ solver::SplitOde mode_ode(const LinearMode& mode);
 
 // --- From the running code ------------------------------------------------------------------------------------------------
 
-/// The matrix by which one step of the method multiplies (x, h v); of two-step methods in companion form, with equal steps,
-/// (x0, h v0, x₋₁, h v₋₁); of `verlet`, which keeps an acceleration, (x, h v, h² a) with a single sub-step, stable or not.
+/// The matrix by which one step of the method multiplies (x, h v); of methods that need k states in companion form, with equal
+/// steps, (x0, h v0, x₋₁, h v₋₁, …); of methods that keep accelerations (x, h v, h² a), of `verlet` with a single sub-step,
+/// stable or not.
 ///
 /// Its columns are what the step function makes of unit vectors, with tolerances at round-off. Where the fixed-point loop would
-/// take more than some 10⁵ updates or diverge, the mode's κ is replaced by ω²: the loop's limit does not depend on the split.
-/// Throws std::runtime_error if a step fails.
+/// take more than some 10⁵ updates or diverge, or may do so, the mode's κ is replaced by ω²: the loop's limit does not depend
+/// on the split. Throws std::runtime_error if a step fails.
 Eigen::MatrixXd amplification_matrix(const solver::Method& method, const Mode& mode);
 
 /// Its eigenvalues, the largest modulus first.
@@ -54,7 +55,11 @@ ModeBehaviour measured_behaviour(const solver::Method& method, const Mode& mode)
 /// As it moves in truth.
 ModeBehaviour exact_behaviour(const Mode& mode);
 
-// --- In theory. All throw std::invalid_argument for a method they do not know ------------------------------------------------
+// --- In theory: those that take the name of a method throw std::invalid_argument if there is no theory of it
+// ------------------
+
+/// Whether there is one: for the methods of the thesis and `verlet`.
+bool has_theory(std::string_view method);
 
 /// Characteristic polynomial of the amplification matrix, coefficients from the constant to the leading one, which is 1.
 Eigen::VectorXd characteristic_polynomial(std::string_view method, const Mode& mode);

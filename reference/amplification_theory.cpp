@@ -98,6 +98,8 @@ ModeBehaviour oscillator(double inertia, double damping, double W) {
 
 ModeBehaviour exact_behaviour(const Mode& mode) { return oscillator(1, mode.s, mode.W); }
 
+bool has_theory(std::string_view method) { return std::ranges::find(theories, method, &Theory::name) != std::end(theories); }
+
 Eigen::VectorXd characteristic_polynomial(std::string_view method, const Mode& mode) {
   const Eigen::VectorXd c = theory(method).characteristic(mode).c;
   Eigen::Index degree = c.size() - 1;

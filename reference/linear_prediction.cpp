@@ -41,27 +41,39 @@ double largest_root(const Eigen::VectorXd& polynomial) {
   return solver::eigenvalues(companion).cwiseAbs().maxCoeff();
 }
 
-double radius(const solver::Method& method, const Mode& mode) {
-  if (method.name.starts_with("bdf") && method.order > 2) return largest_root(bdf_polynomial(method.order, mode));
-  const bool divides = !method.implicit(), stable = method.order > 2 || method.name == "tr-bdf2";
-  if (divides || stable) return 1;
-  return largest_root(characteristic_polynomial(method.name, mode));
+/// One-step methods that are A-stable by construction.
+constexpr std::string_view a_stable[] = {"tr-bdf2", "esdirk3", "esdirk4"};
+
+constexpr std::string_view higher_bdf[] = {"bdf3", "bdf4", "bdf5"};
+
+template <std::size_t n>
+bool is_one_of(const std::string_view (&names)[n], std::string_view name) {
+  return std::ranges::find(names, name) != std::end(names);
 }
 
-bool has_loop(const solver::Method& method) {
-  return method.name == "implicit-euler" || method.name == "bdf2" || method.name == "midpoint";
+bool never_grows(const solver::Method& method) { return method.sub_steps || is_one_of(a_stable, method.name); }
+
+bool is_known(const solver::Method& method) {
+  return never_grows(method) || is_one_of(higher_bdf, method.name) || has_theory(method.name);
+}
+
+double radius(const solver::Method& method, const Mode& mode) {
+  if (never_grows(method)) return 1;
+  if (is_one_of(higher_bdf, method.name)) return largest_root(bdf_polynomial(method.order, mode));
+  return largest_root(characteristic_polynomial(method.name, mode));
 }
 
 }  // namespace
 
-LinearPrediction predict(const solver::Method& method, double stiffness, double stiffness_to_damping) {
+std::optional<LinearPrediction> predict(const solver::Method& method, double stiffness, double stiffness_to_damping) {
+  if (!is_known(method)) return std::nullopt;
   LinearPrediction prediction{0, 0};
   double nu = 8 * stiffness;
   for (int k = 0; k < octaves; ++k, nu /= 2)
     for (const double part : parts) {
       const Mode mode{nu, part * nu, nu / stiffness_to_damping};
       prediction.radius = solver::larger(prediction.radius, radius(method, mode));
-      if (has_loop(method)) prediction.loop = solver::larger(prediction.loop, loop_contraction(method.name, mode));
+      if (has_theory(method.name)) prediction.loop = solver::larger(prediction.loop, loop_contraction(method.name, mode));
     }
   return prediction;
 }

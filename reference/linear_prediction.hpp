@@ -1,6 +1,6 @@
 #pragma once
 
-#include <string_view>
+#include <optional>
 
 #include "reference/amplification.hpp"
 
@@ -17,7 +17,8 @@ struct LinearPrediction {
 /// transversally.
 ///
 /// From the characteristic polynomials of amplification.hpp, that of BDF(k) for k = 3, 4, 5. One-step methods that are A-stable
-/// by construction have no growing modes, nor has `verlet`, which divides its steps: their radius is given as 1.
-LinearPrediction predict(const solver::Method& method, double stiffness, double stiffness_to_damping);
+/// by construction have no growing modes, nor have methods that divide their steps: their radius is given as 1. Nothing for a
+/// method that theory does not know.
+std::optional<LinearPrediction> predict(const solver::Method& method, double stiffness, double stiffness_to_damping);
 
 }  // namespace drape::reference

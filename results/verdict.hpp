@@ -46,6 +46,7 @@ constexpr Verdict judge(solver::Outcome outcome, bool finished, const UncertainE
     case solver::Outcome::not_finite: return Verdict::unstable;
     case solver::Outcome::not_converged:
     case solver::Outcome::breakdown:
+    case solver::Outcome::failed:
     case solver::Outcome::inaccurate: return Verdict::not_converged;
   }
   if (measured.error + measured.uncertainty <= bound) return Verdict::accurate;

@@ -4,6 +4,21 @@
 
 namespace drape::solver {
 
+// Each in its file under solver/methods/.
+void imex_euler(Step& s);
+void implicit_euler(Step& s);
+void sbdf2(Step& s);
+void bdf2(Step& s);
+void midpoint(Step& s);
+void imex_midpoint(Step& s);
+void verlet(Step& s);
+void tr_bdf2(Step& s);
+void esdirk3(Step& s);
+void esdirk4(Step& s);
+void bdf3(Step& s);
+void bdf4(Step& s);
+void bdf5(Step& s);
+
 std::span<const Method> methods() {
   using Stages = Method::Stages;
   static constexpr Method table[] = {
@@ -13,7 +28,8 @@ std::span<const Method> methods() {
       {"bdf2", "BDF(2) (3.35)", 2, true, false, Stages::nonlinear, bdf2},
       {"midpoint", "implicit midpoint rule (3.26)", 2, false, false, Stages::nonlinear, midpoint},
       {"imex-midpoint", "IMEX midpoint rule, ARS(1,2,2) (3.4.1)", 2, false, true, Stages::linear, imex_midpoint},
-      {"verlet", "velocity Verlet, explicit, sub-stepped inside its stability limit", 2, false, true, Stages::none, verlet},
+      {"verlet", "velocity Verlet, explicit, sub-stepped inside its stability limit", 2, false, true, Stages::none, verlet, 0,
+       true, true},
       {"tr-bdf2", "TR-BDF2, one step of two stages, L-stable", 2, false, true, Stages::nonlinear, tr_bdf2, 0, false},
       {"esdirk3", "ESDIRK3(2)4L[2]SA, L-stable", 3, false, true, Stages::nonlinear, esdirk3, 0, false},
       {"esdirk4", "ESDIRK4(3)6L[2]SA, L-stable", 4, false, true, Stages::nonlinear, esdirk4, 0, false},

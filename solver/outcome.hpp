@@ -12,6 +12,7 @@ enum class Outcome {
   not_finite,     ///< a NaN or an infinity appeared
   inaccurate,     ///< the estimated error is above its tolerance
   unstable,       ///< the energy is far above all that the scene can have
+  failed,         ///< the method threw an exception
 };
 
 /// The outcome as it is written in tables and files, for example "not converged".
@@ -23,6 +24,7 @@ constexpr std::string_view to_string(Outcome outcome) {
     case Outcome::not_finite: return "not finite";
     case Outcome::inaccurate: return "inaccurate";
     case Outcome::unstable: return "unstable";
+    case Outcome::failed: return "failed";
   }
   return "unknown";
 }

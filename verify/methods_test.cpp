@@ -8,6 +8,7 @@
 #include <map>
 #include <numeric>
 
+#include "solver/methods/starts.hpp"
 #include "verify/small_problems.hpp"
 
 namespace drape::verify::methods_test {

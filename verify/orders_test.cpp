@@ -5,6 +5,7 @@
 
 #include <tuple>
 
+#include "solver/methods/starts.hpp"
 #include "verify/convergence.hpp"
 #include "verify/small_problems.hpp"
 
@@ -166,7 +167,7 @@ TEST(OrderCheck, RejectsWhatTheThesisPrintsForVariableSteps) {
 TEST(OrderCheck, RejectsCoefficientsThatIgnoreTheRatioOfSteps) {
   const Method constant = with_step("bdf2", [](Step& s) {
     if (s.w != 0) s.w = 1;
-    bdf2(s);
+    solver::method("bdf2").step(s);
   });
   EXPECT_TRUE(has_order(with_equal_steps(free_particles(), constant), 2));
   EXPECT_FALSE(has_order(with_a_clipped_last_step(free_particles(), constant), 2));

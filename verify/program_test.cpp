@@ -2,9 +2,15 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
 #include <set>
 
+#include "solver/methods.hpp"
 #include "verify/bench_integrators.hpp"
 
 namespace drape::verify::program_test {
@@ -24,12 +30,20 @@ using testing::StartsWith;
 
 const Words of_the_thesis{"imex-euler", "implicit-euler", "sbdf2", "bdf2", "midpoint", "imex-midpoint", "verlet"};
 const Words others{"tr-bdf2", "esdirk3", "esdirk4", "bdf3", "bdf4", "bdf5"};
-const Words methods = of_the_thesis + others;
+
+/// All that the table has: those, and whatever was added.
+Words all_methods() {
+  Words names;
+  for (const solver::Method& method : solver::methods()) names.emplace_back(method.name);
+  return names;
+}
+const Words methods = all_methods();
 
 // --- Names ---------------------------------------------------------------------------------------------------------------
 
 TEST(ProgramList, HasTheNamesThatOtherProgramsRelyOn) {
   const BenchIntegrators program;
+  EXPECT_THAT(methods, IsSupersetOf(of_the_thesis + others));
   EXPECT_EQ(program.output({"list", "methods"}), joined(methods, "\n") + "\n");
   EXPECT_THAT(lines(program.output({"list", "scenes"})),
               AllOf(IsSupersetOf({"hung-edge", "hung-corners"}), Each(MatchesRegex("[a-z_-]+"))));
@@ -88,6 +102,67 @@ TEST(ProgramHelp, OfTheOthersSaysWhatTheyTake) {
   expect_all_in(program.output({"list", "--help"}), {"list [OPTIONS] [KIND]", "scenes, methods or studies"});
 }
 
+/// All that reads like help, wherever it is printed.
+std::map<std::string, std::string> helps(const BenchIntegrators& program) {
+  std::map<std::string, std::string> texts{{"list", program.output({"list"})}, {"", program.output({"--help"})}};
+  for (const std::string command : {"list", "run", "study", "inspect", "compare", "check", "report", "export", "score"})
+    texts[command + " --help"] = program.output({command, "--help"});
+  return texts;
+}
+
+std::size_t columns(const std::string& line) {
+  return static_cast<std::size_t>(std::ranges::count_if(line, [](char c) { return (c & 0xC0) != 0x80; }));
+}
+
+TEST(ProgramHelp, FitsATerminalOf80Columns) {
+  for (const auto& [command, text] : helps(BenchIntegrators()))
+    for (const std::string& line : lines(text)) EXPECT_LE(columns(line), 80u) << command << ": " << line;
+}
+
+TEST(ProgramVersion, IsTheProjectsWithItsCommit) {
+  EXPECT_THAT(BenchIntegrators().output({"--version"}), MatchesRegex("drape [0-9.]+ \\(([0-9a-f]+(-dirty)?|unknown)\\)\n"));
+}
+
+std::string with_name(std::string text, const std::string& name) {
+  const std::string usual = "bench_integrators";
+  for (auto at = text.find(usual); at != std::string::npos; at = text.find(usual, at)) text.replace(at, usual.size(), name);
+  return text;
+}
+
+std::string source_file(const std::string& path) {
+  std::ifstream file(std::filesystem::path(DRAPE_SOURCE_DIR) / path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+TEST(BenchRun, HasTheHelpOfTheProgramBeforeItIsBuilt) {
+  const BenchIntegrators program;
+  EXPECT_EQ(source_file("bench/help.txt"), with_name(program.output({"--help"}), "bench/run"))
+      << "bench/run --help >bench/help.txt";
+  EXPECT_EQ(source_file("bench/list.txt"), program.output({"list"})) << "bench/run list >bench/list.txt";
+}
+
+TEST(BenchRun, AnswersBeforeAnythingIsInstalledOrBuilt) {
+  const BenchIntegrators program;
+  const std::filesystem::path tree = program.folder() / "tree";
+  for (const std::string file : {".ci/prepare.sh", "bench/run", "bench/help.txt", "bench/list.txt", "CMakeLists.txt"}) {
+    std::filesystem::create_directories((tree / file).parent_path());
+    std::filesystem::copy_file(std::filesystem::path(DRAPE_SOURCE_DIR) / file, tree / file);
+  }
+  const auto said = [&](const Words& arguments) {
+    Command command = program.command(Words{(tree / "bench/run").string()} + arguments);
+    command.program = "/bin/bash";
+    const ProgramResult result = run_program(command);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return result.out;
+  };
+  EXPECT_EQ(said({"--help"}), source_file("bench/help.txt"));
+  EXPECT_EQ(said({"list"}), source_file("bench/list.txt"));
+  for (const std::string kind : {"scenes", "methods", "studies"})
+    EXPECT_EQ(said({"list", kind}), program.output({"list", kind}));
+  EXPECT_THAT(said({"--version"}), StartsWith("drape "));
+  EXPECT_FALSE(std::filesystem::exists(tree / "build"));
+}
+
 // --- Progress ------------------------------------------------------------------------------------------------------------
 
 const std::string erase_line = "\r\033[K";
@@ -115,13 +190,27 @@ TEST(Program, WithoutArgumentsDoesTheMainJob) {
     EXPECT_THAT(name, testing::AnyOf(EndsWith("/"), EndsWith(".journal"))) << "half-written";
 }
 
+// --- A scene in which nothing moves ----------------------------------------------------------------------------------------
+
+TEST(ProgramRun, SaysWhereNothingMoves) {
+  const BenchIntegrators program;
+  program.write("still.toml", "grid.n = 4\nend.time = 0.1\n");
+  const Words command{"run", "--scene", "still.toml", "--method", "bdf2", "--step", "0.05", "--no-reference"};
+  const ProgramResult result = program.run(command + Words{"--out", "still.h5"});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_THAT(lines(result.err), testing::ElementsAre(AllOf(HasSubstr("still"), HasSubstr("nothing moves"))));
+  EXPECT_THAT(program.output({"inspect", "still.h5", "--run", "0"}), HasSubstr("nothing moves"));
+  const ProgramResult falling = program.run(command + Words{"--set", "forces.gravity=[0, 0, -9.81]"});
+  EXPECT_EQ(falling.err, "");
+}
+
 // --- Studies -------------------------------------------------------------------------------------------------------------
 
 TEST(ProgramStudy, HungSheetsComparesAllMethodsOnFourSheets) {
   const BenchIntegrators program;
   const Words command{"study", "hung-sheets", "--quick", "--repeat", "1", "--out", "a.h5", "--format", "csv"};
   const std::vector<Row> rows = parse_csv(program.output(command));
-  EXPECT_THAT(rows, SizeIs(76));
+  EXPECT_THAT(rows, SizeIs(4 * (6 + methods.size())));
   std::set<std::string> runs, expected;
   for (const Row& row : rows) {
     runs.insert(row.at("scene") + " " + row.at("set") + " " + row.at("method"));
@@ -137,6 +226,49 @@ TEST(ProgramStudy, HungSheetsComparesAllMethodsOnFourSheets) {
   }
   EXPECT_EQ(runs, expected);
   EXPECT_THAT(program.files(), SizeIs(1));
+}
+
+TEST(ProgramStudy, TakesTheMethodsThatAreNamed) {
+  const BenchIntegrators program;
+  const Words sheets{"study", "hung-sheets", "--quick", "--repeat", "1", "--format", "csv", "--method", "bdf2,sbdf2"};
+  const std::vector<Row> rows = parse_csv(program.output(sheets));
+  EXPECT_THAT(rows, SizeIs(4 * 4));
+  for (const Row& row : rows) EXPECT_THAT(row.at("method"), testing::AnyOf(StartsWith("bdf2"), StartsWith("sbdf2")));
+
+  const Words modes{"study", "modes", "--quick", "--out", "modes.h5", "--method", "esdirk3"};
+  program.output(modes);
+  for (const Row& row : parse_csv(program.output({"inspect", "modes.h5", "--table", "artificial", "--csv"})))
+    EXPECT_EQ(row.at("method"), "esdirk3");
+  EXPECT_THAT(program.output({"inspect", "modes.h5"}), HasSubstr("--method esdirk3"));
+  EXPECT_EQ(program.run(modes + Words{"--resume"}).exit_code, 0);
+  EXPECT_THAT(program.run({"study", "modes", "--quick", "--out", "modes.h5", "--resume", "--method", "esdirk4"}).err,
+              HasSubstr("something else"));
+  EXPECT_THAT(program.run({"study", "modes", "--quick", "--method", "esdirk9"}).err, HasSubstr("unknown method 'esdirk9'"));
+  EXPECT_THAT(program.run({"study", "table-3.1", "--quick", "--method", "bdf2"}).err, HasSubstr("has methods of its own"));
+}
+
+TEST(ProgramInspect, FindsTablesByTheBeginningOfTheirNames) {
+  const BenchIntegrators program;
+  program.output({"study", "modes", "--quick", "--out", "modes.h5", "--method", "bdf2"});
+  const std::string whole = program.output({"inspect", "modes.h5", "--table", "amplification"});
+  EXPECT_EQ(program.output({"inspect", "modes.h5", "--table", "amp"}), whole);
+  EXPECT_THAT(program.run({"inspect", "modes.h5", "--table", "a"}).err,
+              AllOf(HasSubstr("amplification, artificial, stability"), HasSubstr("not 'a'")));
+  EXPECT_THAT(program.run({"inspect", "modes.h5", "--table", "runs"}).err, HasSubstr("not 'runs'"));
+  program.output({"run", "--scene", "hung-edge", "--set", "grid.n=4", "--method", "all", "--step", "0.01", "--until", "0.02",
+                  "--no-reference", "--out", "runs.h5"});
+  EXPECT_THAT(parse_csv(program.output({"inspect", "runs.h5", "--table", "runs", "--csv"})), SizeIs(methods.size()));
+}
+
+TEST(ProgramCheck, IsOneScreenWithTheOrderAsDeclared) {
+  const BenchIntegrators program;
+  const Words said = lines(program.output({"check", "sbdf2", "--out", "check.h5"}));
+  EXPECT_LE(said.size(), 24u);
+  for (const std::string& line : said) EXPECT_LE(columns(line), 80u) << line;
+  for (const std::string part : {"2 as declared", "stability ", "energy ", "cost ", "bdf2", "verlet"})
+    EXPECT_THAT(joined(said, "\n"), HasSubstr(part));
+  EXPECT_THAT(lines(program.output({"inspect", "check.h5", "--csv"})), Contains(StartsWith("check-order")));
+  EXPECT_EQ(program.run({"check", "bdf2/newto"}).exit_code, 2);
 }
 
 }  // namespace

@@ -185,6 +185,11 @@ TEST(SceneFile, SaysTheSameAfterWriting) { expect_complete(parsed(to_toml(parsed
 
 TEST(SceneFile, MayLeaveOutAllButTheName) { EXPECT_EQ(to_toml(parsed("name = 'x'")), to_toml(named("x"))); }
 
+TEST(SceneFile, WithoutANameIsCalledAsItsFile) {
+  EXPECT_EQ(model::parse_scene("grid.n = 3", "some/where/my cotton.toml").name, "my cotton");
+  EXPECT_EQ(model::parse_scene("name = 'x'", "some/where/cotton.toml").name, "x");
+}
+
 TEST(SceneFile, IsTheSameAfterWritingAndReadingAgain) {
   std::vector<Scene> scenes{parsed(complete), named("x")};
   for (const auto& builtin : model::builtin_scenes()) scenes.push_back(model::load_scene(std::string(builtin.name)));

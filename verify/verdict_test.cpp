@@ -30,6 +30,7 @@ TEST(VerdictOnARun, OfARunThatFailedIsItsReasonWhateverItsError) {
   EXPECT_EQ(judge(Outcome::not_converged, true, small, 1e-2), Verdict::not_converged);
   EXPECT_EQ(judge(Outcome::breakdown, true, small, 1e-2), Verdict::not_converged);
   EXPECT_EQ(judge(Outcome::inaccurate, true, small, 1e-2), Verdict::not_converged);
+  EXPECT_EQ(judge(Outcome::failed, true, small, 1e-2), Verdict::not_converged);
   EXPECT_EQ(judge(Outcome::success, false, small, 1e-2), Verdict::not_finished);
 }
 

@@ -16,6 +16,7 @@ void add_score(CLI::App& app, const std::string& command_line);
 /// These set the program's exit code.
 void add_inspect(CLI::App& app, int& exit_code);
 void add_compare(CLI::App& app, int& exit_code);
+void add_check(CLI::App& app, const std::string& command_line, int& exit_code);
 
 /// What the program does without a subcommand.
 void do_main_job();

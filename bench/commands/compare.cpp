@@ -6,6 +6,7 @@
 
 #include "bench/commands/commands.hpp"
 #include "bench/commands/output.hpp"
+#include "bench/help.hpp"
 #include "results/run_file.hpp"
 #include "solver/printable.hpp"
 
@@ -43,8 +44,8 @@ void add_compare(CLI::App& app, int& exit_code) {
   command.add_flag("--quiet-machine", a->options.quiet,
                    "judge what all cells' times share, too: the machine was as quick for B as for A");
   command.footer(
-      "Cells are matched by scene, method, parameters, step and end; tables by name. Exit code: 0 the same or better, 1 a\n"
-      "regression, 2 not comparable.");
+      help_text("Cells are matched by scene, method, parameters, step and end; tables by name. Exit code: 0 the same or "
+                "better, 1 a regression, 2 not comparable."));
   command.callback([=, &exit_code] { exit_code = compare_files(*a); });
 }
 

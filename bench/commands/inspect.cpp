@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -43,12 +44,23 @@ std::vector<results::Table> one_run(const std::string& file, int run) {
   return results::in_full(runs[static_cast<std::size_t>(run)]);
 }
 
+/// Its runs, if it has any, and all its tables.
+std::vector<results::Table> all_tables(const std::string& file) {
+  std::vector<results::Table> all = results::read_tables(file);
+  const std::vector<results::RunRecord> runs = results::read_runs(file);
+  if (!runs.empty()) all.insert(all.begin(), results::to_table(std::span(runs)));
+  return all;
+}
+
+/// By its name, or by the first letters of it that no other has.
 results::Table one_table(const std::string& file, const std::string& name) {
+  std::vector<results::Table> all = all_tables(file);
+  const auto exact = std::ranges::find(all, name, &results::Table::name);
+  if (exact != all.end()) return std::move(*exact);
+  const auto begins = [&](const results::Table& table) { return table.name.starts_with(name); };
+  if (std::ranges::count_if(all, begins) == 1) return std::move(*std::ranges::find_if(all, begins));
   std::vector<std::string> names;
-  for (results::Table& table : results::read_tables(file)) {
-    if (table.name == name) return std::move(table);
-    names.push_back(table.name);
-  }
+  for (const results::Table& table : all) names.push_back(table.name);
   throw std::invalid_argument(fmt::format(
       "--table: expected a table of {} ({}), not '{}'", file,
       names.empty() ? "it has none" : solver::quoted(fmt::format("{}", fmt::join(names, ", "))), solver::quoted(name)));
@@ -79,8 +91,10 @@ void add_inspect(CLI::App& app, int& exit_code) {
   command.add_option("FILE", a->file, "HDF5 file of results")->required()->type_name("");
   CLI::Option* run =
       command.add_option("--run", a->run, "one run in full, by its number")->type_name("NNN")->check(between(0, 1000000));
-  CLI::Option* table =
-      command.add_option("--table", a->table, "one table, by its name")->type_name("NAME")->check(not_empty())->excludes(run);
+  CLI::Option* table = command.add_option("--table", a->table, "one table, by its name or how that begins; runs: all runs")
+                           ->type_name("NAME")
+                           ->check(not_empty())
+                           ->excludes(run);
   CLI::Option* csv = command.add_flag_callback(
       "--csv", [=] { a->format = "csv"; }, "as comma-separated values");
   command

@@ -53,11 +53,7 @@ void add_agreement(CLI::App& command, double& agreement) {
       ->capture_default_str();
 }
 
-void add_table_options(CLI::App& command, Output& output) {
-  command.add_option("--repeat", output.sweep.repetitions, "timed repetitions of every run, interleaved")
-      ->type_name("R")
-      ->check(between(1, 1000))
-      ->capture_default_str();
+void add_record_options(CLI::App& command, Output& output) {
   command
       .add_option("--out", output.sweep.out,
                   "HDF5 file to record in; must not exist, but for --resume [results/runs/<time>-<job>-<process>.h5]")
@@ -72,6 +68,14 @@ void add_table_options(CLI::App& command, Output& output) {
       ->type_name("table|csv|json")
       ->check(CLI::IsMember({"table", "csv", "json"}).description(""))
       ->capture_default_str();
+}
+
+void add_table_options(CLI::App& command, Output& output) {
+  command.add_option("--repeat", output.sweep.repetitions, "timed repetitions of every run, interleaved")
+      ->type_name("R")
+      ->check(between(1, 1000))
+      ->capture_default_str();
+  add_record_options(command, output);
   add_agreement(command, output.sweep.agreement);
 }
 

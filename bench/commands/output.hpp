@@ -19,6 +19,9 @@ struct Output {
 /// The option --agreement.
 void add_agreement(CLI::App& command, double& agreement);
 
+/// The options --out, --resume and --format.
+void add_record_options(CLI::App& command, Output& output);
+
 /// Of what is made of tables only.
 void add_table_options(CLI::App& command, Output& output);
 

@@ -53,6 +53,15 @@ solver::StepControl step_control(const std::vector<int>& bounds) {
 
 std::string for_obstacles() { return names_of(solver::methods(), std::mem_fn(&solver::Method::meets_obstacles)); }
 
+/// "all" is every method that the scene is for, with the chosen stage and linear solvers.
+std::vector<std::string> named_methods(const std::vector<std::string>& names, const model::Scene& scene) {
+  if (names != std::vector<std::string>{"all"}) return names;
+  std::vector<std::string> all;
+  for (const solver::Method& method : solver::methods())
+    if (scene.obstacles.empty() || method.meets_obstacles) all.emplace_back(method.name);
+  return all;
+}
+
 /// All methods with all steps.
 Group run_group(const RunArguments& a) {
   model::Scene scene = a.choice.load();
@@ -62,7 +71,7 @@ Group run_group(const RunArguments& a) {
   cell.options.control = step_control(a.control);
   cell.options.error_control = {a.tolerance, model::size(scene), scene.end, scene.obstacles.empty()};
   Group group;
-  for (const std::string& name : a.methods) {
+  for (const std::string& name : named_methods(a.methods, scene)) {
     cell.options.stage = a.options.stage;
     cell.options.linear_solver = a.options.linear_solver;
     choose_method(cell, name);
@@ -158,7 +167,7 @@ void add_run(CLI::App& app, const std::string& command_line) {
   command.add_option("--scene", a->choice.scene, "built-in scene or TOML file")->required()->type_name("NAME|FILE.toml");
   command
       .add_option("--method", a->methods,
-                  "methods, with /STAGE_SOLVER and /LINEAR_SOLVER if not the first: bdf2,sbdf2/ic0,bdf2/newton")
+                  "methods, with /STAGE_SOLVER and /LINEAR_SOLVER if not the first: bdf2,sbdf2/ic0,bdf2/newton; or all")
       ->required()
       ->type_name("A,B")
       ->delimiter(',')

@@ -1,7 +1,13 @@
 #include "bench/commands/scene_choice.hpp"
 
+#include <fmt/format.h>
+
+#include <cstdio>
+
 #include "bench/available_memory.hpp"
+#include "model/at_rest.hpp"
 #include "model/scene_file.hpp"
+#include "solver/printable.hpp"
 
 namespace drape::bench {
 
@@ -10,6 +16,8 @@ model::Scene SceneChoice::load() const {
   for (const std::string& text : sets) overrides.push_back(model::parse_override(text));
   model::Scene loaded = model::load_scene(scene, overrides);
   require_memory(loaded);
+  if (model::is_at_rest(loaded))
+    fmt::print(stderr, "note: in the scene {} {}\n", solver::printable(loaded.name), model::at_rest_remark);
   return loaded;
 }
 

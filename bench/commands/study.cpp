@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 
 #include "bench/argument_checks.hpp"
@@ -25,6 +27,8 @@ std::string of_any_scene() {
   return names_of(studies(), [](const Study& study) { return study.of_scene != nullptr; });
 }
 
+std::string of_any_methods() { return names_of(studies(), std::mem_fn(&Study::takes_methods)); }
+
 std::string of_runs() {
   return names_of(studies(), [](const Study& study) { return study.groups != nullptr; });
 }
@@ -34,6 +38,27 @@ void check_scene(const Study& chosen, const SceneChoice& choice) {
     throw std::invalid_argument(
         fmt::format("--scene: the study {} has scenes of its own; it is for {}", chosen.name, of_any_scene()));
   if (choice.scene.empty() && !choice.sets.empty()) throw std::invalid_argument("--set: expected --scene beside it");
+}
+
+/// Those that were named, each once, in the order of their names on the command line.
+Methods methods_of(const Study& chosen, const std::vector<std::string>& names) {
+  if (!names.empty() && !chosen.takes_methods())
+    throw std::invalid_argument(
+        fmt::format("--method: the study {} has methods of its own; it is for {}", chosen.name, of_any_methods()));
+  Methods methods;
+  for (const std::string& name : names)
+    if (const solver::Method* method = &solver::method(name); std::ranges::find(methods, method) == methods.end())
+      methods.push_back(method);
+  return methods;
+}
+
+/// The runs of some methods.
+std::vector<Group> runs_of(std::vector<Group> groups, const Methods& methods) {
+  if (methods.empty()) return groups;
+  for (Group& group : groups)
+    std::erase_if(group, [&](const Cell& cell) { return std::ranges::find(methods, cell.method) == methods.end(); });
+  std::erase_if(groups, [](const Group& group) { return group.empty(); });
+  return groups;
 }
 
 /// Limits and motions are for runs.
@@ -47,7 +72,8 @@ void check_options_of_tables(const Study& chosen, const SweepOptions& options) {
 
 /// Of the tables that a study makes.
 std::string identity(const StudyArguments& a, const std::optional<model::Scene>& scene) {
-  return hash_of(fmt::format("{}{}\n{}", a.name, a.quick ? " quick" : "", scene ? model::to_toml(*scene) : ""));
+  return hash_of(fmt::format("{}{}{}{}\n{}", a.name, a.quick ? " quick" : "", a.methods.empty() ? "" : " by ",
+                             fmt::join(a.methods, ","), scene ? model::to_toml(*scene) : ""));
 }
 
 }  // namespace
@@ -55,11 +81,14 @@ std::string identity(const StudyArguments& a, const std::optional<model::Scene>&
 std::filesystem::path run_study(const StudyArguments& a) {
   const Study& chosen = study(a.name);
   check_scene(chosen, a.choice);
-  if (chosen.groups) return sweep_and_print(chosen.groups(a.quick), a.output, a.name);
+  const Methods methods = methods_of(chosen, a.methods);
+  if (chosen.groups) return sweep_and_print(runs_of(chosen.groups(a.quick), methods), a.output, a.name);
   check_options_of_tables(chosen, a.output.sweep);
   std::optional<model::Scene> scene;
   if (!a.choice.scene.empty()) scene = a.choice.load();
-  const std::vector<TableJob> jobs = scene ? chosen.of_scene(*scene, a.quick) : chosen.tables(a.quick);
+  const std::vector<TableJob> jobs = scene               ? chosen.of_scene(*scene, a.quick, methods)
+                                     : chosen.of_methods ? chosen.of_methods(a.quick, methods)
+                                                         : chosen.tables(a.quick);
   SweepOptions options = a.output.sweep;
   options.out = out_file(a.output, a.name);
   print_tables(compute(jobs, identity(a, scene), options), a.output.format);
@@ -81,6 +110,10 @@ void add_study(CLI::App& app, const std::string& command_line) {
                   fmt::format("a scene, by name or TOML file, instead of the study's own ({})", of_any_scene()))
       ->type_name("SCENE")
       ->check(not_empty());
+  command.add_option("--method", a->methods, fmt::format("only these methods ({})", of_any_methods()))
+      ->type_name("A,B")
+      ->delimiter(',')
+      ->allow_extra_args(false);
   add_overrides(command, a->choice);
   add_output_options(command, a->output);
   command.footer(paragraph("Studies", study_choices()));

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "bench/commands/output.hpp"
 #include "bench/commands/scene_choice.hpp"
@@ -12,6 +13,7 @@ namespace drape::bench {
 struct StudyArguments {
   std::string name;
   bool quick = false;
+  std::vector<std::string> methods = {};  ///< by name; empty: the study's own
   SceneChoice choice;
   Output output;
 };

@@ -40,10 +40,10 @@ void add_verdict(results::TableBuilder& table, const Judged& judged, bool shown)
   table.text("reason", title("reason"), "why it did not succeed", judged.trial.reason());
 }
 
-std::vector<TableJob> stability(bool quick) {
-  std::vector<TableJob> jobs = stability_atlas(quick);
-  jobs.push_back(largest_steps(quick));
-  jobs.push_back(stress_cases(quick));
+std::vector<TableJob> stability(bool quick, const Methods& methods) {
+  std::vector<TableJob> jobs = stability_atlas(quick, methods);
+  jobs.push_back(largest_steps(quick, methods));
+  jobs.push_back(stress_cases(quick, methods));
   return jobs;
 }
 

@@ -28,8 +28,18 @@ Specimen hung_by_corners(int n, double k, double d);
 /// The columns of a verdict in the current row.
 void add_verdict(results::TableBuilder& table, const Judged& judged, bool shown);
 
-std::vector<TableJob> stability_atlas(bool quick);
-TableJob largest_steps(bool quick);
-TableJob stress_cases(bool quick);
+/// The largest of equal steps to the horizon, by bisection [s]; 0: none.
+struct LargestSteps {
+  double accurate, stable;
+};
+LargestSteps largest_steps(const Specimen& specimen, const Yardstick& yardstick, const solver::Method& method,
+                           const solver::Options& options);
+
+/// Their columns in the current row.
+void add_largest(results::TableBuilder& table, const LargestSteps& largest);
+
+std::vector<TableJob> stability_atlas(bool quick, const Methods& methods);
+TableJob largest_steps(bool quick, const Methods& methods);
+TableJob stress_cases(bool quick, const Methods& methods);
 
 }  // namespace drape::bench

@@ -6,6 +6,8 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <optional>
+#include <tuple>
 
 #include "bench/studies/stability.hpp"
 #include "reference/linear_prediction.hpp"
@@ -66,17 +68,17 @@ bool tries(const Sheet& sheet, const Row& row) { return !sheet.spot_check || is_
 
 /// What a run may cost. A sub-step of an explicit method is far cheaper than an update of an implicit one.
 std::int64_t budget(const Method& method) {
-  if (!method.implicit()) return 100'000;
+  if (method.sub_steps) return 100'000;
   return is_bar_method(method.name) ? 20'000 : 4'000;
 }
 
 /// All methods, and the thesis' loop where a method has one.
-std::vector<Row> rows() {
+std::vector<Row> rows(const Methods& methods) {
   std::vector<Row> all;
-  for (const Method& method : solver::methods()) all.push_back({std::string(method.name), &method, {}, budget(method)});
-  for (const char* name : bar_methods)
-    all.push_back(
-        {fmt::format("{}/fixed-point", name), &solver::method(name), solver::thesis_options(), budget(solver::method(name))});
+  for (const Method* method : methods) all.push_back({std::string(method->name), method, {}, budget(*method)});
+  for (const Method* method : methods)
+    if (is_bar_method(method->name))
+      all.push_back({fmt::format("{}/fixed-point", method->name), method, solver::thesis_options(), budget(*method)});
   return all;
 }
 
@@ -93,8 +95,10 @@ struct AtlasCell {
   const Sheet* sheet;
   const Row* row;
   double stiffness, ratio;
-  Expected expected;
+  std::optional<Expected> expected;  ///< nothing where there is no theory
   Judged judged;
+
+  bool is_as_predicted() const { return expected && expected->good() == judged.stable(); }
 };
 
 /// The atlas as the jobs share it.
@@ -106,24 +110,27 @@ struct Atlas {
 
 class Predictions {
  public:
-  Expected operator()(const Row& row, const Sheet& sheet, double stiffness, double ratio) {
+  std::optional<Expected> operator()(const Row& row, const Sheet& sheet, double stiffness, double ratio) {
     const auto key = std::tuple(row.method, stiffness, ratio);
     auto known = known_.find(key);
     if (known == known_.end()) known = known_.emplace(key, reference::predict(*row.method, stiffness, ratio)).first;
-    const reference::LinearPrediction& linear = known->second;
+    if (!known->second) return std::nullopt;
+    const reference::LinearPrediction& linear = *known->second;
     const double growth = std::pow(linear.radius, std::round(horizon / sheet.step));
     const bool thesis_loop = !row.options.stage->accelerated && row.method->nonlinear();
     const double loop = thesis_loop ? linear.loop : 0;
-    return {growth, loop, growth < visible_growth, std::pow(loop, row.options.max_updates) < row.options.loop_tolerance};
+    return Expected{growth, loop, growth < visible_growth,
+                    std::pow(loop, row.options.max_updates) < row.options.loop_tolerance};
   }
 
  private:
-  std::map<std::tuple<const Method*, double, double>, reference::LinearPrediction> known_;
+  std::map<std::tuple<const Method*, double, double>, std::optional<reference::LinearPrediction>> known_;
 };
 
-std::string_view describe(const Expected& expected) {
-  if (!expected.stable) return "unstable";
-  return expected.converges ? "stable" : "loop too slow";
+std::string_view describe(const std::optional<Expected>& expected) {
+  if (!expected) return "no theory known";
+  if (!expected->stable) return "unstable";
+  return expected->converges ? "stable" : "loop too slow";
 }
 
 void add_cell(results::TableBuilder& table, const AtlasCell& cell, bool shown) {
@@ -136,8 +143,10 @@ void add_cell(results::TableBuilder& table, const AtlasCell& cell, bool shown) {
   table.number("to_damping", title("h k/d"), "1", "infinite without damping", cell.ratio);
   table.text("predicted", title("predicted"), "by the amplification of linear modes and the contraction of the thesis' loop",
              std::string(describe(cell.expected)));
-  table.number("growth", "", "1", "of the fastest growing linear mode in the run", cell.expected.growth);
-  table.number("loop", "", "1", "contraction of the thesis' loop, 0 if there is none", cell.expected.loop);
+  if (cell.expected) {
+    table.number("growth", "", "1", "of the fastest growing linear mode in the run", cell.expected->growth);
+    table.number("loop", "", "1", "contraction of the thesis' loop, 0 if there is none", cell.expected->loop);
+  }
   add_verdict(table, cell.judged, shown);
 }
 
@@ -184,12 +193,13 @@ results::Table count_verdicts(const Atlas& atlas) {
     for (const Row& row : atlas.rows) {
       if (!tries(sheet, row)) continue;
       std::array<int, results::verdicts> counts{};
-      int total = 0, as_predicted = 0;
+      int total = 0, predicted = 0, as_predicted = 0;
       for (const AtlasCell& cell : atlas.cells) {
         if (cell.sheet != &sheet || cell.row != &row) continue;
         ++total;
         ++counts[static_cast<std::size_t>(cell.judged.verdict)];
-        if (cell.expected.good() == cell.judged.stable()) ++as_predicted;
+        predicted += cell.expected.has_value();
+        as_predicted += cell.is_as_predicted();
       }
       table.row();
       table.count("n", "n", "particles a side", sheet.n);
@@ -200,8 +210,9 @@ results::Table count_verdicts(const Atlas& atlas) {
         table.count(columns[k], title.c_str(), "runs", counts[static_cast<std::size_t>(k)]);
       }
       table.count("total", "of", "runs", total);
-      table.count("as_predicted", "as predicted", "runs that are stable and converge just where linear theory says so",
-                  as_predicted);
+      if (predicted > 0)
+        table.count("as_predicted", "as predicted", "runs that are stable and converge just where linear theory says so",
+                    as_predicted);
     }
   return table.finish();
 }
@@ -211,10 +222,11 @@ results::Table count_verdicts(const Atlas& atlas) {
 /// by φ², and linear theory knows nothing of turning.
 results::Table check_bar(const Atlas& atlas) {
   results::TableBuilder table("stability-bar", "Runs that are predicted stable and do converge, with the default solvers");
-  for (const char* name : bar_methods) {
+  for (const Row& row : atlas.rows) {
+    if (!is_bar_method(row.name)) continue;
     int stable = 0, converge = 0, rise = 0;
     for (const AtlasCell& cell : atlas.cells) {
-      if (cell.row->name != name || !cell.expected.good()) continue;
+      if (cell.row != &row || !cell.expected->good()) continue;
       ++stable;
       const Attempt& attempt = cell.judged.trial;
       const bool rises = attempt.finished && attempt.run.outcome == solver::Outcome::unstable;
@@ -222,7 +234,7 @@ results::Table check_bar(const Atlas& atlas) {
       if (rises || attempt.succeeded()) ++converge;
     }
     table.row();
-    table.text("method", "method", "time integrator", name);
+    table.text("method", "method", "time integrator", row.name);
     table.count("stable", "predicted stable", "runs", stable);
     table.count("converge", "converge", "of these: the equations of every step were solved", converge);
     table.count("rise", "energy rises", "of these: the solution of the method's equations gains energy", rise);
@@ -237,14 +249,14 @@ results::Table list_surprises(const Atlas& atlas) {
                               "Runs of the atlas that are stable and converge where linear theory does not expect it, or not "
                               "where it does");
   for (const AtlasCell& cell : atlas.cells)
-    if (cell.expected.good() != cell.judged.stable()) add_cell(table, cell, true);
+    if (cell.expected && !cell.is_as_predicted()) add_cell(table, cell, true);
   return table.finish();
 }
 
 }  // namespace
 
-std::vector<TableJob> stability_atlas(bool quick) {
-  const auto atlas = std::make_shared<Atlas>(Atlas{sheets(quick), rows(), {}});
+std::vector<TableJob> stability_atlas(bool quick, const Methods& methods) {
+  const auto atlas = std::make_shared<Atlas>(Atlas{sheets(quick), rows(all_or(methods)), {}});
   int cells = 0;
   for (const Sheet& sheet : atlas->sheets) cells += static_cast<int>(sheet.stiffnesses.size() * sheet.ratios.size());
   std::vector<TableJob> jobs{{cells, [=](Units& units) { return explore(*atlas, units); }}};

@@ -2,6 +2,7 @@
 
 #include <limits>
 #include <map>
+#include <utility>
 
 #include "bench/studies/stability.hpp"
 
@@ -21,8 +22,8 @@ struct Softness {
 /// Finds the fewest equal steps to the horizon with which a method does well.
 class FewestSteps {
  public:
-  FewestSteps(const Specimen& specimen, const Yardstick& yardstick, const solver::Method& method)
-      : specimen_(specimen), yardstick_(yardstick), method_(method) {}
+  FewestSteps(const Specimen& specimen, const Yardstick& yardstick, Conditions conditions)
+      : specimen_(specimen), yardstick_(yardstick), conditions_(std::move(conditions)) {}
 
   /// Where doubling the number first does well, bisected between there and the number before; 0 if none does.
   template <class Good>
@@ -42,51 +43,54 @@ class FewestSteps {
  private:
   const Judged& operator()(int steps) {
     auto known = known_.find(steps);
-    if (known == known_.end())
-      known = known_
-                  .emplace(
-                      steps,
-                      judged(attempt(specimen_, {&method_, {}, horizon / steps, horizon, method_.implicit() ? 4'000 : 100'000}),
-                             yardstick_))
-                  .first;
+    if (known == known_.end()) {
+      conditions_.step = horizon / steps;
+      known = known_.emplace(steps, judged(attempt(specimen_, conditions_), yardstick_)).first;
+    }
     return known->second;
   }
 
   const Specimen& specimen_;
   const Yardstick& yardstick_;
-  const solver::Method& method_;
+  Conditions conditions_;
   std::map<int, Judged> known_;
 };
 
 /// A step that the solver had to cut is not the one that was asked for.
 bool uncut(const Judged& run) { return run.trial.run.rejected_steps == 0; }
 
-void add_step(results::TableBuilder& table, const char* name, const char* title, const char* description, int steps) {
-  if (steps > 0) table.number(name, title, "s", description, horizon / steps);
-}
-
 /// All methods on one sheet.
-void add_largest_steps(results::TableBuilder& table, int n, const Softness& softness) {
+void add_largest_steps(results::TableBuilder& table, int n, const Softness& softness, const Methods& methods) {
   const auto [k, d] = softness;
   const Specimen specimen = hung_by_corners(n, k, d);
   const Yardstick yardstick(specimen, horizon);
-  for (const solver::Method& method : solver::methods()) {
-    FewestSteps search(specimen, yardstick, method);
+  for (const solver::Method* method : methods) {
+    const LargestSteps largest = largest_steps(specimen, yardstick, *method, {});
     table.row();
     table.number("tension", "k", "N/m", "tension modulus", k);
     table.number("damping", "d", "N s/m", "damping, linear", d);
-    table.text("method", "method", "time integrator", std::string(method.name));
-    add_step(table, "accurate", "accurate", "largest step that is accurate",
-             search.fewest([](const Judged& run) { return uncut(run) && run.verdict == Verdict::accurate; }));
-    add_step(table, "stable", "stable", "largest step that is stable, right or wrong",
-             search.fewest([](const Judged& run) { return uncut(run) && run.stable(); }));
+    table.text("method", "method", "time integrator", std::string(method->name));
+    add_largest(table, largest);
     table.number("uncertainty", "±", "1", "how far the two reference methods differ", yardstick.uncertainty());
   }
 }
 
 }  // namespace
 
-TableJob largest_steps(bool quick) {
+LargestSteps largest_steps(const Specimen& specimen, const Yardstick& yardstick, const solver::Method& method,
+                           const solver::Options& options) {
+  FewestSteps search(specimen, yardstick, {&method, options, 0, horizon, method.sub_steps ? 100'000 : 4'000});
+  const auto step = [](int steps) { return steps > 0 ? horizon / steps : 0; };
+  const int accurate = search.fewest([](const Judged& run) { return uncut(run) && run.verdict == Verdict::accurate; });
+  return {step(accurate), step(search.fewest([](const Judged& run) { return uncut(run) && run.stable(); }))};
+}
+
+void add_largest(results::TableBuilder& table, const LargestSteps& largest) {
+  if (largest.accurate > 0) table.number("accurate", "accurate", "s", "largest step that is accurate", largest.accurate);
+  if (largest.stable > 0) table.number("stable", "stable", "s", "largest step that is stable, right or wrong", largest.stable);
+}
+
+TableJob largest_steps(bool quick, const Methods& methods) {
   const std::vector<Softness> sheets =
       quick ? std::vector<Softness>{{1e4, 50}} : std::vector<Softness>{{1e4, 50}, {1e4, 5}, {1e4, 0.5}, {1e6, 5}};
   return {static_cast<int>(sheets.size()), [=](Units& units) {
@@ -96,8 +100,9 @@ TableJob largest_steps(bool quick) {
                             horizon / most_parts, horizon));
             for (const Softness& sheet : sheets) {
               units.show(fmt::format("largest steps, k = {}, d = {}", sheet.k, sheet.d));
-              units.rows(table, fmt::format("{} {}", sheet.k, sheet.d),
-                         [&](results::TableBuilder& rows) { add_largest_steps(rows, quick ? 6 : particles, sheet); });
+              units.rows(table, fmt::format("{} {}", sheet.k, sheet.d), [&](results::TableBuilder& rows) {
+                add_largest_steps(rows, quick ? 6 : particles, sheet, all_or(methods));
+              });
               units.advance();
             }
             return table.finish();

@@ -143,14 +143,15 @@ void add_row(results::TableBuilder& table, const Controlled& run) {
   table.text("verdict", "verdict", "whether the error is within ten times of the tolerance, to both sides", run.verdict);
 }
 
-results::Table tolerances_on(const Setting& setting, All& all, Units& units) {
+results::Table tolerances_on(const Setting& setting, const Methods& methods, All& all, Units& units) {
   const model::Scene scene = model::load_scene(setting.scene, setting.overrides);
   results::TableBuilder table("tolerance-" + setting.name, "Error over tolerance on " + scene.name);
   units.show("reference of " + scene.name);
   References references(SweepOptions().agreement);
   const Measurement measure(setting, scene, references(scene, model::compile(scene)));
   units.advance();
-  for (const Method& method : solver::methods()) {
+  for (const Method* const chosen : methods) {
+    const Method& method = *chosen;
     for (int digits = 2; digits <= setting.digits; ++digits) {
       units.show(fmt::format("{} on {}, 1e-{}", method.name, scene.name, digits));
       const double tolerance = std::pow(10.0, -digits);
@@ -163,9 +164,10 @@ results::Table tolerances_on(const Setting& setting, All& all, Units& units) {
 }
 
 /// How many cells of a method have become what.
-results::Table summary(const All& all) {
+results::Table summary(const All& all, const Methods& methods) {
   results::TableBuilder table("tolerance-summary", "Error over tolerance, all scenes and tolerances");
-  for (const Method& method : solver::methods()) {
+  for (const Method* const chosen : methods) {
+    const Method& method = *chosen;
     All runs;
     std::ranges::copy_if(all, std::back_inserter(runs), [&](const Controlled& run) { return run.method == method.name; });
     const auto count = [&](std::string_view verdict) {
@@ -196,13 +198,14 @@ results::Table summary(const All& all) {
 
 }  // namespace
 
-std::vector<TableJob> tolerance(bool quick) {
+std::vector<TableJob> tolerance(bool quick, const Methods& chosen) {
   const auto all = std::make_shared<All>();
-  const int methods = static_cast<int>(solver::methods().size());
+  const Methods methods = all_or(chosen);
   std::vector<TableJob> jobs;
   for (const Setting& setting : settings(quick))
-    jobs.push_back({1 + methods, [=](Units& units) { return tolerances_on(setting, *all, units); }});
-  jobs.push_back({0, [=](Units&) { return summary(*all); }});
+    jobs.push_back(
+        {1 + static_cast<int>(methods.size()), [=](Units& units) { return tolerances_on(setting, methods, *all, units); }});
+  jobs.push_back({0, [=](Units&) { return summary(*all, methods); }});
   return jobs;
 }
 

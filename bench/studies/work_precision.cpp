@@ -1,3 +1,5 @@
+#include "bench/studies/work_precision.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,6 +13,7 @@
 #include "reference/arkode.hpp"
 #include "reference/reference.hpp"
 #include "results/ranking.hpp"
+#include "results/table_builder.hpp"
 #include "solver/largest.hpp"
 
 namespace drape::bench {
@@ -140,7 +143,7 @@ const SceneTrials* find(const All& all, const std::string& name) {
   return found == all.end() ? nullptr : &*found;
 }
 
-results::Table try_scene(const Entry& entry, All& all, Units& units) {
+results::Table try_scene(const Entry& entry, const Methods& methods, All& all, Units& units) {
   units.show("reference of " + entry.name);
   SceneTrials& scene = all.emplace_back(SceneTrials{problem(entry), {}, {}, find(all, entry.training)});
   Problem& problem = scene.problem;
@@ -148,34 +151,57 @@ results::Table try_scene(const Entry& entry, All& all, Units& units) {
     set_explicit_truth(problem, units("truth", [&] { return find_explicit_truth(problem); }));
   else
     find_truth(problem, units);
-  scene.families = families(problem.scene, entry.search);
+  scene.families = families(problem.scene, entry.search, methods);
   scene.trials = try_all(problem, scene.families, entry.effort, units);
   units.show("timing " + entry.name);
   time_fronts(problem, scene.trials, entry.effort, named_families(scene), units);
   return trials_table(scene);
 }
 
-std::vector<TableJob> jobs(const std::vector<Entry>& list) {
+/// Our methods that are not tried, so that nobody takes their absence for a defeat.
+results::Table left_out_table(const std::vector<Entry>& list, const Methods& methods) {
+  results::TableBuilder table("left-out", "Methods that were not tried");
+  for (const Entry& entry : list)
+    for (const LeftOut& left : left_out(entry.scene, entry.search, methods)) {
+      table.row();
+      table.text("scene", "scene", "its name", entry.name);
+      table.text("method", "method", "time integrator", std::string(left.method->name));
+      table.text("reason", "reason", "why it was not tried", left.reason);
+    }
+  return table.finish();
+}
+
+std::vector<TableJob> jobs(const std::vector<Entry>& list, const Methods& methods) {
   const auto all = std::make_shared<All>();
   std::vector<TableJob> jobs;
   all->reserve(list.size());  // trials point into what is in it
   for (const Entry& entry : list)
-    jobs.push_back({static_cast<int>(families(entry.scene, entry.search).size()),
-                    [=](Units& units) { return try_scene(entry, *all, units); }});
+    jobs.push_back({static_cast<int>(families(entry.scene, entry.search, methods).size()),
+                    [=](Units& units) { return try_scene(entry, methods, *all, units); }});
   for (auto* table : {held_out_table, recommended_table, winners_table, defaults_table, ranking_table, bars_table, peers_table})
     jobs.push_back({0, [=](Units&) { return table(*all); }});
+  if (const results::Table table = left_out_table(list, methods); !table.columns.empty())
+    jobs.push_back({0, [=](Units&) { return table; }});
   return jobs;
 }
 
 }  // namespace
 
-std::vector<TableJob> work_precision(bool quick) { return jobs(quick ? quick_entries() : entries()); }
+Problem certified_problem(const std::string& name, const model::Scene& scene) {
+  Problem result = problem({name, scene});
+  find_truth(result);
+  return result;
+}
 
-std::vector<TableJob> work_precision_of(const model::Scene& scene, bool quick) {
-  if (quick) return jobs({{scene.name, scene, Search::quick, quick_effort}});
+std::vector<TableJob> work_precision(bool quick, const Methods& methods) {
+  return jobs(quick ? quick_entries() : entries(), methods);
+}
+
+std::vector<TableJob> work_precision_of(const model::Scene& scene, bool quick, const Methods& methods) {
+  if (quick) return jobs({{scene.name, scene, Search::quick, quick_effort}}, methods);
   constexpr int large = 50'000;  // particles
-  if (scene.sheet.grid.particles() >= large) return jobs({{scene.name, scene, Search::large, large_effort}});
-  return jobs({{scene.name, scene, Search::full}});
+  if (scene.sheet.grid.particles() >= large) return jobs({{scene.name, scene, Search::large, large_effort}}, methods);
+  return jobs({{scene.name, scene, Search::full}}, methods);
 }
 
 }  // namespace drape::bench

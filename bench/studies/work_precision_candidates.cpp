@@ -98,21 +98,29 @@ void add_loose(std::vector<Family>& all, const model::Scene& scene, const std::s
   all.back().name += fmt::format(" to {:g}", options.stage_accuracy);
 }
 
-void add_ours(std::vector<Family>& all, const model::Scene& scene, Search search) {
+/// Why a method is not tried; empty if it is. `named`: it was asked for by its name.
+std::string reason_against(const solver::Method& method, const model::Scene& scene, Search search, bool named) {
+  if (!scene.obstacles.empty() && !method.meets_obstacles) return "meets no obstacles";
+  if (named || method.sub_steps || !tries_few(search) || std::ranges::find(few, method.name) != std::end(few)) return "";
+  return search == Search::quick ? "--quick: few methods; name it by --method"
+                                 : "large sheet: few methods; name it by --method";
+}
+
+void add_ours(std::vector<Family>& all, const model::Scene& scene, Search search, const Methods& methods) {
   const int parts = finest_parts(search);
-  for (const solver::Method& method : solver::methods()) {
+  for (const solver::Method* chosen : all_or(methods)) {
+    const solver::Method& method = *chosen;
     const std::string name(method.name);
-    if (!scene.obstacles.empty() && !method.meets_obstacles) continue;
-    if (!method.implicit()) {
+    if (!reason_against(method, scene, search, !methods.empty()).empty()) continue;
+    if (method.sub_steps) {
       all.push_back(by_fraction(cell(scene, name), tries_few(search) ? 3 : 10));
       continue;
     }
-    if (tries_few(search) && std::ranges::find(few, name) == std::end(few)) continue;
     all.push_back(by_steps(cell(scene, name), "drape", parts));
     all.push_back(by_tolerance(cell(scene, name)));
     if (search == Search::full && std::ranges::find(looped, name) != std::end(looped)) add_loose(all, scene, name, parts);
   }
-  if (search != Search::full) return;
+  if (search != Search::full || !methods.empty()) return;
   for (const char* name : other_solvers) all.push_back(by_steps(cell(scene, name), "drape", parts));
 }
 
@@ -122,8 +130,9 @@ std::vector<int> loop_digits(Search search) {
 }
 
 /// The fixed-point loop with IC(0)   [Etzmuß 2002, 3.4].
-void add_thesis(std::vector<Family>& all, const model::Scene& scene, Search search) {
-  for (const char* method : looped)
+void add_thesis(std::vector<Family>& all, const model::Scene& scene, Search search, const Methods& methods) {
+  for (const char* method : looped) {
+    if (!methods.empty() && std::ranges::find(methods, method, &solver::Method::name) == methods.end()) continue;
     for (const int digits : loop_digits(search)) {
       solver::Options options = solver::thesis_options();
       options.loop_tolerance = std::pow(10.0, -digits);
@@ -131,6 +140,7 @@ void add_thesis(std::vector<Family>& all, const model::Scene& scene, Search sear
       family.name += fmt::format(" to {:.0e}", options.loop_tolerance);
       all.push_back(std::move(family));
     }
+  }
 }
 
 }  // namespace
@@ -161,15 +171,23 @@ std::vector<double> divided_steps(double end, int parts) {
 
 Family ladder(const model::Scene& scene, const std::string& method) {
   const Cell chosen = cell(scene, method);
-  return chosen.method->implicit() ? by_steps(chosen, "drape", finest_parts(Search::usual)) : by_fraction(chosen, 10);
+  return chosen.method->sub_steps ? by_fraction(chosen, 10) : by_steps(chosen, "drape", finest_parts(Search::usual));
 }
 
 bool is_ours(std::string_view code) { return code == "drape" || code == "explicit" || code == "thesis"; }
 
-std::vector<Family> families(const model::Scene& scene, Search search) {
+std::vector<LeftOut> left_out(const model::Scene& scene, Search search, const Methods& methods) {
+  std::vector<LeftOut> all;
+  for (const solver::Method* method : all_or(methods))
+    if (std::string reason = reason_against(*method, scene, search, !methods.empty()); !reason.empty())
+      all.push_back({method, std::move(reason)});
+  return all;
+}
+
+std::vector<Family> families(const model::Scene& scene, Search search, const Methods& methods) {
   std::vector<Family> all;
-  add_ours(all, scene, search);
-  add_thesis(all, scene, search);
+  add_ours(all, scene, search, methods);
+  add_thesis(all, scene, search, methods);
   if (scene.obstacles.empty() && search != Search::large) add_peers(all, scene, search);  // they have no contacts
   return all;
 }

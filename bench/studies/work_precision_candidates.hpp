@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "bench/studies.hpp"
 #include "model/cloth.hpp"
-#include "solver/methods.hpp"
 
 namespace drape::bench {
 
@@ -42,8 +42,16 @@ enum class Search {
 /// Whether a code is ours, and not a package of SUNDIALS.
 bool is_ours(std::string_view code);
 
-/// Everything that is compared on a scene. Apart from `large` ones, ours and SUNDIALS' are equally many.
-std::vector<Family> families(const model::Scene& scene, Search search);
+/// Everything that is compared on a scene: of our methods those that are given, or, if there are none, all that the search
+/// tries. Apart from `large` ones, ours and SUNDIALS' are equally many where none are given.
+std::vector<Family> families(const model::Scene& scene, Search search, const Methods& methods);
+
+/// A method that is not tried on a scene, and why.
+struct LeftOut {
+  const solver::Method* method;
+  std::string reason;
+};
+std::vector<LeftOut> left_out(const model::Scene& scene, Search search, const Methods& methods);
 
 /// One of our methods with the program's choice of stage and linear solvers, if its name has none: by steps, or, where
 /// sub-steps follow the stability limit, by fractions of that. Throws std::invalid_argument as choose_method() does.

@@ -177,14 +177,10 @@ std::vector<Contender> contenders(const std::vector<Trial>& trials) {
 
 namespace {
 
-/// The trials near the front of any contender; of the families only those that are named.
-std::set<std::size_t> near_fronts(const Problem& problem, const std::vector<Trial>& trials,
-                                  const std::set<std::string>& named) {
-  std::set<std::string> families;
-  for (const Trial& trial : trials) families.insert(trial.family->name);
+/// The trials near the front of any of these.
+std::set<std::size_t> near_fronts(const Problem& problem, const std::vector<Contender>& who, const std::vector<Trial>& trials) {
   std::set<std::size_t> chosen;
-  for (const Contender& contender : contenders(trials)) {
-    if (families.contains(contender.name) && !named.contains(contender.name)) continue;
+  for (const Contender& contender : who) {
     std::vector<results::Measured> measured;
     for (const std::size_t k : contender.members) measured.push_back(trials[k].measured);
     for (const std::size_t k : results::near_quickest(measured, asked(problem), slack)) chosen.insert(contender.members[k]);
@@ -193,11 +189,11 @@ std::set<std::size_t> near_fronts(const Problem& problem, const std::vector<Tria
 }
 
 /// Fails trials near a front whose energy cannot be, until there are none.
-void judge_energies(const Problem& problem, std::vector<Trial>& trials, const std::set<std::string>& named, Units& units) {
+void judge_energies(const Problem& problem, const std::vector<Contender>& who, std::vector<Trial>& trials, Units& units) {
   std::set<std::size_t> judged;
   for (bool failed = true; failed;) {
     failed = false;
-    for (const std::size_t k : near_fronts(problem, trials, named)) {
+    for (const std::size_t k : near_fronts(problem, who, trials)) {
       Trial& trial = trials[k];
       if (!judged.insert(k).second || !trial.candidate->energy_fault) continue;
       const std::string name = fmt::format("energy of {} {}", trial.family->name, trial.candidate->value);
@@ -214,8 +210,17 @@ void judge_energies(const Problem& problem, std::vector<Trial>& trials, const st
 
 void time_fronts(const Problem& problem, std::vector<Trial>& trials, const Effort& effort, const std::set<std::string>& named,
                  Units& units) {
-  judge_energies(problem, trials, named, units);
-  const std::set<std::size_t> chosen = near_fronts(problem, trials, named);
+  std::set<std::string> families;
+  for (const Trial& trial : trials) families.insert(trial.family->name);
+  std::vector<Contender> who = contenders(trials);
+  std::erase_if(who, [&](const Contender& one) { return families.contains(one.name) && !named.contains(one.name); });
+  time_fronts(problem, who, trials, effort, units);
+}
+
+void time_fronts(const Problem& problem, const std::vector<Contender>& who, std::vector<Trial>& trials, const Effort& effort,
+                 Units& units) {
+  judge_energies(problem, who, trials, units);
+  const std::set<std::size_t> chosen = near_fronts(problem, who, trials);
   std::vector<Prepare> runs;
   for (const std::size_t k : chosen)
     runs.emplace_back([&problem, &solve = trials[k].candidate->solve] {

@@ -72,6 +72,10 @@ std::vector<Contender> contenders(const std::vector<Trial>& trials);
 void time_fronts(const Problem& problem, std::vector<Trial>& trials, const Effort& effort, const std::set<std::string>& named,
                  Units& units);
 
+/// The same of some contenders.
+void time_fronts(const Problem& problem, const std::vector<Contender>& who, std::vector<Trial>& trials, const Effort& effort,
+                 Units& units);
+
 /// The trials of a contender as they were measured repeatedly; the others count as failed.
 std::vector<results::Measured> timed(const Contender& contender, const std::vector<Trial>& trials);
 

@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "solver/methods.hpp"
+#include "solver/methods/starts.hpp"
 
 namespace drape::solver {
 namespace {

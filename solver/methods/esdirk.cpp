@@ -1,7 +1,7 @@
 #include <array>
 #include <cmath>
 
-#include "solver/methods.hpp"
+#include "solver/step.hpp"
 
 namespace drape::solver {
 namespace {

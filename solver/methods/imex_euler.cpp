@@ -1,4 +1,4 @@
-#include "solver/methods.hpp"
+#include "solver/step.hpp"
 
 namespace drape::solver {
 

@@ -1,4 +1,4 @@
-#include "solver/methods.hpp"
+#include "solver/methods/starts.hpp"
 
 namespace drape::solver {
 

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solver/methods.hpp"
 #include "solver/stability.hpp"
+#include "solver/step.hpp"
 
 namespace drape::solver {
 namespace {

@@ -1,0 +1,10 @@
+#pragma once
+
+#include "bench/studies/work_precision_runs.hpp"
+
+namespace drape::bench {
+
+/// A scene with its positions at three times, from the two families that certify a reference. Throws what References does.
+Problem certified_problem(const std::string& name, const model::Scene& scene);
+
+}  // namespace drape::bench

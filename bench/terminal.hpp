@@ -1,0 +1,15 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace drape::bench {
+
+/// Columns of the terminal behind a file descriptor, 80 if it is none or does not say.
+int columns_of(int descriptor);
+
+/// The text broken at spaces into lines of at most `width` columns, those after the first behind `indent` spaces more. Longer
+/// words stay whole, and so do line breaks.
+std::string wrapped(std::string_view text, int width, int indent = 0);
+
+}  // namespace drape::bench
