@@ -111,7 +111,7 @@ class Planner {
     if (pilots_.size() < 3 || !std::isfinite(last_distance())) return false;
     const bool small = last_distance() <= negligible * control_.tolerance;
     const bool converge = last_distance() == 0 || fall() >= (small ? steady : converging);
-    return converge && last_error() <= most_ahead * target();
+    return converge && last_error() <= (remark().empty() ? most_ahead : 1) * target();
   }
 
   /// Factor by which errors fall from pilot to pilot.
