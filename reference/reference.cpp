@@ -92,7 +92,7 @@ Reference reference(const Equations& equations, const State& y0, double t0, std:
   } catch (const ReferenceError&) {
     for (const Family* left : {&bdf, &runge_kutta}) try {
         return reference_by(*left, residual, equations, y0, t0, times, options);
-      } catch (const ReferenceError&) {  // the first reason is the one to report
+      } catch (const std::runtime_error&) {  // IDA's start may fail outside its own code; the first reason is the one to report
       }
     throw;
   }
