@@ -35,7 +35,7 @@ results::Table order(const std::string& method, Units& units) {
   const model::Scene scene = smooth_scene();
   const model::Cloth cloth = model::compile(scene);
   units.show("reference of " + scene.name);
-  References references(1e-7, 1e-12);
+  References references(1e-7, {}, 1e-12);
   const reference::Reference reference = references(scene, cloth);
   units.show(fmt::format("order of {}", method));
   TableBuilder table("check-order", fmt::format("Order of {} on a soft sheet, {:g} s", method, scene.end));
@@ -155,7 +155,7 @@ results::Table cost(const std::string& method, Units& units) {
   const model::Scene scene = model::load_scene(
       "hung-corners", std::vector<model::Override>{{"grid.n", "10"}, {"material.damping", "5"}, {"end.time", "0.3"}});
   units.show("reference of " + scene.name);
-  Compared all{certified_problem(scene.name, scene), {}, {}, {}};
+  Compared all{certified_problem(scene.name, scene, units), {}, {}, {}};
   all.problem.asked = {1e-2, 1e-3, 1e-4};
   all.problem.enough = 5e-5;
   compare(all, method, units);

@@ -62,7 +62,7 @@ Case make_case(const std::string& damping, bool quick) {
   Case result{model::load_scene("hung-corners", overrides), 0, {}, {}};
   result.size = model::size(result.scene);
   for (int k = 1; k <= 10; ++k) result.times.push_back(result.scene.end * k / 10);
-  References references(1e-6);
+  References references(1e-6, {}, 1e-10);
   for (const solver::State& y : references(result.scene, model::compile(result.scene)).trajectory.states)
     result.truth.push_back(y.x);
   return result;

@@ -147,7 +147,7 @@ results::Table tolerances_on(const Setting& setting, const Methods& methods, All
   const model::Scene scene = model::load_scene(setting.scene, setting.overrides);
   results::TableBuilder table("tolerance-" + setting.name, "Error over tolerance on " + scene.name);
   units.show("reference of " + scene.name);
-  References references(SweepOptions().agreement);
+  References references(SweepOptions().agreement, {}, 1e-10);
   const Measurement measure(setting, scene, references(scene, model::compile(scene)));
   units.advance();
   for (const Method* const chosen : methods) {

@@ -187,9 +187,9 @@ std::vector<TableJob> jobs(const std::vector<Entry>& list, const Methods& method
 
 }  // namespace
 
-Problem certified_problem(const std::string& name, const model::Scene& scene) {
+Problem certified_problem(const std::string& name, const model::Scene& scene, Units& units) {
   Problem result = problem({name, scene});
-  find_truth(result);
+  find_truth(result, units);
   return result;
 }
 
