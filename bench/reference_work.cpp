@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <mutex>
 
@@ -24,7 +25,7 @@ struct Course {
   /// Seconds of wall time that are left; not a number as long as that cannot be told.
   double left(Clock::time_point now, double end) const {
     const double elapsed = Seconds(now - begin).count(), pace = t > 0.02 * end ? elapsed / t : std::nan("");
-    return pace * (end - t) + (motions - begun) * pace * end;
+    return pace * (end - t) + std::max(0, motions - begun) * pace * end;
   }
 };
 
@@ -62,8 +63,9 @@ class Pace {
     const auto& [first, second] = courses_;
     const double left = std::max(first.left(now, end_), second.left(now, end_));
     const bool known = !std::isnan(first.left(now, end_)) && !std::isnan(second.left(now, end_));
-    return fmt::format("trajectory {} of {} at t = {:.3f} s, witness at t = {:.3f} s of {:g} s, {}", first.begun, first.motions,
-                       first.t, second.t, end_, known ? fmt::format("some {:.0f} s left", left) : "estimating");
+    const std::string motion = first.begun <= 1 ? "trajectory" : fmt::format("perturbed motion {}", first.begun - 1);
+    return fmt::format("{} at t = {:.3f} s, witness at t = {:.3f} s of {:g} s, {}", motion, first.t, second.t, end_,
+                       known ? fmt::format("some {:.0f} s left", left) : "estimating");
   }
 
   const double end_;

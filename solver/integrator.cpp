@@ -292,7 +292,8 @@ RunResult advance(Integrator& integrator, double t_end, double h, const Observer
 
 RunResult integrate(Integrator& integrator, double t_end, double h, const Observer& observer) {
   if (!(h > 0) || !std::isfinite(h)) throw std::invalid_argument("the step must be a positive number of seconds");
-  if (!integrator.options().error_control.global) return advance(integrator, t_end, h, observer);
+  const ErrorControl& control = integrator.options().error_control;
+  if (!control.enabled() || !control.global) return advance(integrator, t_end, h, observer);
   const GlobalControl plan = plan_global_control(integrator, t_end, h);
   if (!plan.feasible) return {Outcome::inaccurate, plan.remark, integrator.time(), 0, 0};
   integrator.limit_error(plan.tolerance);

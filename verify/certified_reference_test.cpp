@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "model/cloth.hpp"
+#include "model/scene_file.hpp"
 #include "reference/reference.hpp"
 #include "solver/largest.hpp"
 #include "verify/small_problems.hpp"
