@@ -27,6 +27,9 @@ double noise_of(const Sheet& sheet, const Vectors& weight, const Vectors& x) {
   return k * strain_noise * strain_noise * sheet.grid.cell_areas().sum() + round_off * weight.cwiseProduct(x).cwiseAbs().sum();
 }
 
+/// What a sheet that falls freely has after a second, and that grows with the square of time [J/s²].
+double fall_of(const Sheet& sheet, const Vectors& weight) { return 0.5 * sheet.gravity.norm() * weight.rowwise().norm().sum(); }
+
 /// Ends a run from within its observer.
 struct Exceeded {
   double t, last_good_time;
@@ -66,6 +69,8 @@ EnergyGuard::EnergyGuard(const Scene& scene, const Cloth& cloth)
       x_(cloth.start.x),
       start_(kinetic_and_elastic(0, start_of(cloth))),
       noise_(noise_of(scene.sheet, weight_, x_)),
+      fall_(fall_of(scene.sheet, weight_)),
+      end_(scene.end),
       most_given_(std::max(0.0, start_)),
       work_(cloth.given, start_of(cloth), !scene.obstacles.empty() && scene.contact.response == ResponseKind::reaction) {}
 
@@ -91,8 +96,9 @@ bool EnergyGuard::exceeded(const solver::StepReport& step) {
   const double given = start_ + weight_.cwiseProduct(x_ - cloth_.start.x).sum() + work_.value() + contact_work_;
   most_given_ = std::max(most_given_, given);
   energy_ = kinetic_and_elastic(step.t, step.y);
+  const double first = std::min(first_steps * step.h, first_part * end_);
   const double doubt = work_.doubt() + unresolved_, tolerance = tolerated * most_given_ + noise_;
-  limit_ = given - damped_ + tolerance + doubt;
+  limit_ = given - damped_ + tolerance + fall_ * first * first + doubt;
   judges_ = doubt <= tolerance;
   return !(energy_ <= limit_);
 }

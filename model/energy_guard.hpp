@@ -19,6 +19,10 @@ class EnergyGuard {
   /// that gravity and the work above have added to it, and the uncertainty of that work.
   static constexpr double tolerated = 0.5;
 
+  /// And what a free fall gives in three steps, or in a quarter of the scene's time if that is less: the first steps of a
+  /// method may be wrong by more than the little that was given until then.
+  static constexpr double first_steps = 3, first_part = 0.25;
+
   /// Keeps a reference to the cloth, whose start is the begin of the run.
   EnergyGuard(const Scene& scene, const Cloth& cloth);
 
@@ -66,6 +70,7 @@ class EnergyGuard {
   solver::Vectors weight_;  ///< [N]
   solver::Vectors x_;       ///< after the last step
   double start_, noise_;    ///< [J]
+  double fall_, end_;       ///< [J/s²], [s]
   double most_given_;       ///< [J]
   double damped_ = 0, contact_work_ = 0, unresolved_ = 0, energy_ = 0, limit_ = 0;
   Work work_;

@@ -20,7 +20,7 @@ namespace {
 using Origins = std::map<std::string, std::string>;
 
 /// Limits of files, so that no file takes long or much memory to be refused.
-constexpr std::uintmax_t most_bytes = 4 << 20;
+constexpr std::uintmax_t most_scene_bytes = 4 << 20;
 constexpr int most_levels = 16;
 
 toml::table parse(std::string_view text, std::string_view origin) {
@@ -113,10 +113,10 @@ void check_together(const Scene& scene, const std::string& origin) {
 
 std::string read_file(const std::filesystem::path& path) {
   try {
-    return solver::content_of(path, most_bytes);
+    return solver::content_of(path, most_scene_bytes);
   } catch (const solver::UnreadableFile& error) {
     throw SceneError(fmt::format("{}: {}: expected a scene file of at most {}", path.string(), error.what(),
-                                 solver::in_megabytes(most_bytes)));
+                                 solver::in_megabytes(most_scene_bytes)));
   }
 }
 

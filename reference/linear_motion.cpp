@@ -34,6 +34,8 @@ SplitOde at_rest(const SplitOde& ode) {
   result.mass = ode.mass;
   result.stiffness = ode.stiffness;
   result.damping = ode.damping;
+  for (SparseMatrix* part : {&result.stiffness, &result.damping})
+    if (part->rows() == 0) part->resize(ode.particles(), ode.particles());
   result.pins = ode.pins;
   for (solver::Pin& pin : result.pins) pin.velocity.setZero();
   return result;

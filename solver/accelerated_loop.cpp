@@ -35,7 +35,7 @@ AcceleratedLoop::AcceleratedLoop(const SplitOde& ode, const Options& options, St
       options_(options),
       system_(system),
       mass_(thrice(ode.mass)),
-      drag_(thrice(ode.damping.diagonal())),
+      drag_(ode.damping.nonZeros() > 0 ? thrice(ode.damping.diagonal()) : Eigen::VectorXd::Zero(mass_.size())),
       inverse_mass_(mass_.inverse()),
       anderson_(ode.particles()),
       newton_(ode, options, system, false),

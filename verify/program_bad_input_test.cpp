@@ -200,7 +200,7 @@ TEST(GoodInput, FromWhichTheBadOnesDifferIsAccepted) {
   fill(program);
   for (const Words& more : {Words{}, {"--control", "2", "5"}, {"--set", "material.density=2"}, {"--repeat", "1"}}) {
     const ProgramResult result =
-        program.run(run_with("--out", {more.empty() ? "a.h5" : more.front() + ".h5"}) + more + Words{"--no-reference"});
+        program.run(run_with("--out", {more.empty() ? "a.h5" : more.front().substr(2) + ".h5"}) + more + Words{"--no-reference"});
     EXPECT_EQ(result.exit_code, 0);
     EXPECT_THAT(result.err, IsEmpty());
   }

@@ -191,7 +191,7 @@ TEST(SceneError, OfASceneWithoutAName) {
 
 TEST(SceneError, OfAnUnknownSceneSaysTheNamesOfAll) {
   const std::string said = message([] { load_scene("hung-egde"); });
-  EXPECT_THAT(said, AllOf(StartsWith("unknown scene 'hung-egde': expected "), HasSubstr("a file ending in .toml")));
+  EXPECT_THAT(said, AllOf(StartsWith("unknown scene 'hung-egde' (did you mean hung-edge?): expected "), HasSubstr("a file ending in .toml")));
   for (const auto& scene : model::builtin_scenes()) EXPECT_THAT(said, HasSubstr(std::string(scene.name)));
 }
 
@@ -199,8 +199,8 @@ TEST(SceneError, OfAFileThatCannotBeRead) {
   const TemporaryFolder folder;
   const std::string missing = folder / "missing.toml", directory = folder / "directory.toml";
   std::filesystem::create_directory(directory);
-  EXPECT_EQ(message([&] { load_scene(missing); }), missing + ": cannot be read: expected a scene file");
-  EXPECT_EQ(message([&] { load_scene(directory); }), directory + ": cannot be read: expected a scene file");
+  EXPECT_EQ(message([&] { load_scene(missing); }), missing + ": there is no such file: expected a scene file of at most 4 MB");
+  EXPECT_EQ(message([&] { load_scene(directory); }), directory + ": is a folder: expected a scene file of at most 4 MB");
 }
 
 TEST(SceneError, InAFileSaysItsName) {
