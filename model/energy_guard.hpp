@@ -15,9 +15,10 @@ namespace drape::model {
 /// other damping at least 0. A scene in which only gravity gives costs no evaluation of a force.
 class EnergyGuard {
  public:
-  /// The part of all that a sheet was given which may come from nowhere: what was given is the energy of the start, the most
-  /// that gravity and the work above have added to it, and the uncertainty of that work.
-  static constexpr double tolerated = 0.5;
+  /// What may come from nowhere, over all that a sheet was given. Semi-implicit methods overshoot by about as much without
+  /// being unstable. Given is the energy of the start, the most that gravity and the work above have added to it, and the
+  /// uncertainty of that work.
+  static constexpr double tolerated = 3;
 
   /// And what a free fall gives in three steps, or in a quarter of the scene's time if that is less: the first steps of a
   /// method may be wrong by more than the little that was given until then.

@@ -30,7 +30,8 @@ std::string BenchIntegrators::output(const Words& arguments) const {
   const ProgramResult result = run(arguments);
   EXPECT_EQ(result.exit_code, 0);
   for (const std::string& line : lines(result.err))  // on a slow machine it says how far its reference is
-    EXPECT_TRUE(line.starts_with("reference of ") || line.starts_with("note: ") || line.ends_with("; its error follows")) << line;
+    EXPECT_TRUE(line.starts_with("reference of ") || line.starts_with("note: ") || line.ends_with("; its error follows"))
+        << line;
   return result.out;
 }
 

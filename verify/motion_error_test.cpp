@@ -22,9 +22,9 @@ using testing::HasSubstr;
 using testing::Le;
 using testing::Lt;
 
-constexpr int side = 5;         ///< particles
-constexpr double size = 0.8;    ///< [m]
-constexpr double mass = 0.64;   ///< [kg]
+constexpr int side = 5;        ///< particles
+constexpr double size = 0.8;   ///< [m]
+constexpr double mass = 0.64;  ///< [kg]
 
 /// A coarse method and one that is right, on an undamped sheet that swings down.
 std::vector<RunRecord> swinging(const BenchIntegrators& program) {

@@ -137,7 +137,6 @@ const std::vector<BadInput> bad_inputs = {
     {"NegativeInFile", run_with("--scene", {"negative.toml"}), {"negative.toml:2", "material.density = -1", "above 0"}},
     {"NaNInFile", run_with("--scene", {"nan.toml"}), {"nan.toml:2", "material.density = nan", "finite"}},
     {"OneParticleInFile", run_with("--scene", {"one.toml"}), {"one.toml:2", "grid.n", "at least 2 particles"}},
-    {"NoNameInFile", run_with("--scene", {"nameless.toml"}), {"nameless.toml", "expected a name"}},
     {"OutExists", run_with("--out", {"exists.h5"}), {"exists.h5 exists", "choose another --out"}},
     {"SceneOfStudy", {"study", "orders", "--quick", "--scene", "pulled"}, {"--scene", "orders", "work-precision"}},
     {"UnknownSceneOfStudy", {"study", "work-precision", "--scene", "no-such"}, {"no-such", "hung-edge"}},
@@ -199,8 +198,8 @@ TEST(GoodInput, FromWhichTheBadOnesDifferIsAccepted) {
   const BenchIntegrators program;
   fill(program);
   for (const Words& more : {Words{}, {"--control", "2", "5"}, {"--set", "material.density=2"}, {"--repeat", "1"}}) {
-    const ProgramResult result =
-        program.run(run_with("--out", {more.empty() ? "a.h5" : more.front().substr(2) + ".h5"}) + more + Words{"--no-reference"});
+    const ProgramResult result = program.run(run_with("--out", {more.empty() ? "a.h5" : more.front().substr(2) + ".h5"}) +
+                                             more + Words{"--no-reference"});
     EXPECT_EQ(result.exit_code, 0);
     EXPECT_THAT(result.err, IsEmpty());
   }

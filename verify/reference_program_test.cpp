@@ -23,10 +23,9 @@ TEST(ProgramReference, IsBoundedByTheTimeLimitAndSaysHowFarItIsAfterTheTimesOfTh
   EXPECT_EQ(rows[0].at("outcome"), "success");
   EXPECT_EQ(rows[0].at("message"), "no reference: out of time: longer than 5 s");
   EXPECT_GT(number(rows[0], "wall_ms_median"), 0);
-  EXPECT_THAT(
-      result.err,
-      ContainsRegex("^hung-corners implicit-euler h = 1: success, [0-9.]+ ms; its error follows\n"
-                    "reference of hung-corners: trajectory at t = [0-9.]+ s, witness at t = [0-9.]+ s of 4 s, "));
+  EXPECT_THAT(result.err,
+              ContainsRegex("^hung-corners implicit-euler h = 1: success, [0-9.]+ ms; its error follows\n"
+                            "reference of hung-corners: trajectory at t = [0-9.]+ s, witness at t = [0-9.]+ s of 4 s, "));
   EXPECT_THAT(lines(result.err), SizeIs(2)) << "a line every five seconds";
 }
 

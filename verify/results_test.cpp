@@ -167,7 +167,7 @@ Paths unexplained(const std::vector<std::pair<std::string, std::string>>& object
     if (kind == "dataset") datasets.insert(path), wanted.insert(prefix + "unit");
     if (kind != "attribute") continue;
     present.insert(path);
-    const bool explains = path.ends_with("description") || path.ends_with("/schema_version");
+    const bool explains = path.ends_with("description") || path.ends_with("checksums") || path.ends_with("/schema_version");
     if (!explains && !datasets.contains(fs::path(path).parent_path())) wanted.insert(path + ".description");
   }
   Paths missing;

@@ -283,7 +283,9 @@ TEST_F(ProgramStudies, MethodsDrapeTheTableclothButForArtificialDamping) {
   const auto all = tables("table-3.2");
   ASSERT_THAT(all, SizeIs(1));
   const Table& table = all[0];
-  EXPECT_THAT(numbers(table, "sunk", "outcome", "success"), SizeIs(table.columns[0].cells.size())) << "all succeed";
+  const std::size_t gaining = 2;  // imex-midpoint gains energy where a falling sheet is held
+  EXPECT_THAT(numbers(table, "sunk", "outcome", "success"), SizeIs(table.columns[0].cells.size() - gaining));
+  EXPECT_THAT(numbers(table, "sunk", "method", "imex-midpoint"), SizeIs(4));
   EXPECT_THAT(numbers(table, "thesis_updates", "method", "bdf2"), ElementsAre(122, 122, IsNan(), IsNan()));
   const double truth = numbers(table, "sunk", "method", "verlet").at(1);
   for (const char* method : {"implicit-euler", "bdf2", "midpoint"})
