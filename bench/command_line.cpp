@@ -49,13 +49,6 @@ std::string called_as(const char* path) {
   return name == "run" ? path : "bench_integrators";
 }
 
-/// One line, in which what is quoted neither acts on the terminal nor fills it.
-int complain(const std::string& message, int exit_code = bad_input) {
-  constexpr std::size_t longest = 2000;
-  fmt::print(stderr, "bench_integrators: {}\n", solver::shortened(solver::printable(message), longest));
-  return exit_code;
-}
-
 std::string not_enough_memory(const CLI::App& app) {
   return fmt::format(
       "{}: not enough memory, {:.3g} GB are available: expected a smaller scene (grid.n), or fewer or smaller files",
@@ -87,8 +80,10 @@ int run_command_line(int argc, const char* const* argv) {
   std::string command_line = "bench_integrators";
   for (int k = 1; k < argc; ++k) command_line += " " + shell_word(argv[k]);
   const std::string name = argc > 0 ? called_as(argv[0]) : "bench_integrators";
+  // One line, in which what is quoted neither acts on the terminal nor fills it.
   const auto complain = [&](const std::string& message, int exit_code = bad_input) {
-    fmt::print(stderr, "{}: {}\n", name, message);
+    constexpr std::size_t longest = 2000;
+    fmt::print(stderr, "{}: {}\n", name, solver::shortened(solver::printable(message), longest));
     return exit_code;
   };
   CLI::App app(help_text("Runs time integrators of cloth side by side with a reference and records accuracy, work and time.\n"
