@@ -41,7 +41,7 @@ inline std::filesystem::path folder_of(const std::filesystem::path& file) {
 /// Writes all of it to the disk, or throws FileError that names `file`.
 inline void write_all(const std::filesystem::path& file, int fd, std::span<const std::byte> content) {
   while (!content.empty()) {
-    const ssize_t written = write(fd, content.data(), content.size());
+    const ssize_t written = ::write(fd, content.data(), content.size());
     if (written < 0 && errno == EINTR) continue;
     if (written < 0) fail(file, "cannot be written");
     content = content.subspan(static_cast<std::size_t>(written));

@@ -6,6 +6,7 @@
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -42,8 +43,11 @@ Ending compute_in_copy(const std::function<std::vector<std::byte>()>& compute, c
                        const Descriptor& out, const Descriptor& silence) {
   try {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
+    const auto own = static_cast<unsigned>(out.fd);
+    dup2(silence.fd, STDERR_FILENO);             // what the C library says of a heap that it finds corrupted
+    close_range(STDERR_FILENO + 1, own - 1, 0);  // a killed program's locks must not live on in its copy
+    close_range(own + 1, ~0U, 0);
     std::signal(SIGXCPU, SIG_DFL);
-    dup2(silence.fd, STDERR_FILENO);  // what the C library says of a heap that it finds corrupted
     limit(RLIMIT_CORE, 0);
     limit(RLIMIT_CPU, static_cast<rlim_t>(std::ceil(limits.cpu_seconds)));
     limit(RLIMIT_DATA, data_held() + limits.bytes);

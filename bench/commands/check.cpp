@@ -40,7 +40,7 @@ bool has_declared_order(const Table& order) { return text(order, "verdict", rows
 std::string order_lines(const Table& order) {
   const std::size_t last = rows(order) - 1;
   const double fitted = number(order, "fitted_order", last);
-  return fmt::format("order      {} (declared {}): {}\n           {}; {} steps from {:g} to {:.2g} s\n",
+  return fmt::format("order      {} (declared {}): {}\n           {};\n           {} steps, {:g} to {:.2g} s\n",
                      std::isnan(fitted) ? "none" : fmt::format("{:.2f}", fitted), number(order, "declared", last),
                      text(order, "verdict", last), order.description, rows(order), number(order, "step", 0),
                      number(order, "step", last));
@@ -78,12 +78,12 @@ std::string cost_lines(const Table& cost) {
     const double wanted = number(cost, "wanted", row), time = number(cost, "time", row);
     if (row == 0 || method != text(cost, "method", row - 1))
       lines += fmt::format("{}           {:<18.18}", row == 0 ? "" : "\n", method);
-    if (method == text(cost, "method", 0)) head += fmt::format("{:>12.0e}       ", wanted);
+    if (method == text(cost, "method", 0)) head += fmt::format("{:>9.0e}       ", wanted);
     bool quickest = !std::isnan(time);
     for (std::size_t other = 0; other < rows(cost); ++other)
       if (number(cost, "wanted", other) == wanted && number(cost, "time", other) < time) quickest = false;
-    lines += std::isnan(time) ? fmt::format("{:>19}", "-")
-                              : fmt::format("{:>9.3g}{}{:>9}", time, quickest ? '*' : ' ', number(cost, "forces", row));
+    lines += std::isnan(time) ? fmt::format("{:>16}", "-")
+                              : fmt::format("{:>8.3g}{}{:>7}", time, quickest ? '*' : ' ', number(cost, "forces", row));
   }
   head.erase(head.find_last_not_of(' ') + 1);
   return fmt::format("cost       median ms (* the quickest) and evaluations of forces, d = 5, 0.3 s\n           {:<18}{}\n{}\n",
