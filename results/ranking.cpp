@@ -12,7 +12,7 @@ namespace drape::results {
 namespace {
 
 constexpr int digits = 7;         ///< of the smallest error
-constexpr double resolved = 0.3;  ///< part of an error that the reference may be uncertain by
+constexpr double telling = 0.3;  ///< part of an error that the reference may be uncertain by
 
 /// The least time [ms] of those that reach an error in a scene; infinite if none does.
 struct Quickest {
@@ -34,7 +34,7 @@ Quickest quickest(const Table& trials, double error) {
   Quickest result;
   for (std::size_t row = 0; row < rows(trials); ++row) {
     const bool timed = number_in(column("repetitions"), row) > 1;
-    const bool known = number_in(column("uncertainty"), row) <= resolved * error;
+    const bool known = number_in(column("uncertainty"), row) <= telling * error;
     if (is_ours(text_in(column("code"), row)) && timed && known && number_in(column("error"), row) <= error)
       result.see(text_in(column("method"), row), number_in(column("time"), row));
   }

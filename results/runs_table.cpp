@@ -46,7 +46,7 @@ std::string shown_error(Run run) {
   if (!run.error) return {};
   if (run.error->growth > comparable_growth) return fmt::format("growth {:.1g}", run.error->growth);
   if (!comparable(*run.error)) return fmt::format("± {:.1g}", run.error->reference_error);
-  if (!is_resolved(*run.error)) return fmt::format("< {:.1g}", resolution * run.error->reference_error);
+  if (!resolved(*run.error)) return fmt::format("< {:.1g}", resolution * run.error->reference_error);
   return fmt::format("{:.4g}", run.error->rms);
 }
 
