@@ -68,6 +68,8 @@ TEST_P(ExplicitRungeKuttaOn, FollowsTheExactMotionWithoutMatrices) {
   EXPECT_LE(worst(problem, solve(1e-9)), 300e-9);
   EXPECT_GE(worst(problem, solve(1e-4)), 1e-9) << "it does not depend on its tolerance";
   EXPECT_EQ(problem.ode.work->count("arkode/factorisations"), 0);
+  for (const solver::Work::Kind& kind : problem.ode.work->kinds())
+    EXPECT_TRUE(kind.name != "arkode/jacobians" || kind.count == 0) << kind.count;
 }
 
 TEST_P(FamilyOn, BeginsWithTheStart) {
