@@ -36,7 +36,7 @@ solver::Options exact_options() {
 
 /// What a method takes from step to step, as a vector: of each of its last states, the newest first, x, h v and h² times the
 /// rows that it keeps in `Point::f`, all in the first coordinate.
-struct Memory {
+struct Lags {
   Eigen::Index states, kept;
 
   Eigen::Index entries() const { return 2 + kept; }
@@ -57,7 +57,7 @@ solver::Point point(const Eigen::Ref<const Eigen::VectorXd>& u) {
 }
 
 /// The states, the newest at time 0.
-solver::History history(const solver::Method& method, const Memory& memory, const Eigen::VectorXd& u) {
+solver::History history(const solver::Method& method, const Lags& memory, const Eigen::VectorXd& u) {
   solver::History states(method.past_states);
   for (Eigen::Index k = memory.states; k-- > 0 && method.past_states > 0;)
     states.push(-static_cast<double>(k) * h, point(u.segment(k * memory.entries(), memory.entries())).y);
@@ -66,7 +66,7 @@ solver::History history(const solver::Method& method, const Memory& memory, cons
 
 /// One step on the mode: the point at which it ends.
 solver::Point advance(const solver::Method& method, const solver::SplitOde& ode, const solver::Options& options,
-                      solver::StageSolver* stage, const Memory& memory, const Eigen::VectorXd& u) {
+                      solver::StageSolver* stage, const Lags& memory, const Eigen::VectorXd& u) {
   const Eigen::Index n = memory.entries();
   const solver::Vectors none = solver::Vectors::Zero(1, 3);
   std::int64_t substeps = 0, limits = 0;
@@ -94,7 +94,7 @@ solver::Point advance(const solver::Method& method, const solver::SplitOde& ode,
 }
 
 /// The same as a vector, which the memory before it follows.
-Eigen::VectorXd remembered(const solver::Point& end, const Memory& memory, const Eigen::VectorXd& u) {
+Eigen::VectorXd remembered(const solver::Point& end, const Lags& memory, const Eigen::VectorXd& u) {
   Eigen::VectorXd u1(memory.size());
   u1.head(2) << end.y.x(0), h * end.y.v(0);
   u1.segment(2, memory.kept) = h * h * end.f.col(0).head(memory.kept);
@@ -135,11 +135,11 @@ Eigen::MatrixXd amplification_matrix(const solver::Method& method, const Mode& m
   const solver::Options options = exact_options();
   std::optional<solver::StageSolver> stage;
   if (method.implicit()) stage.emplace(ode, options);
-  const auto end = [&](const Memory& memory, const Eigen::VectorXd& u) {
+  const auto end = [&](const Lags& memory, const Eigen::VectorXd& u) {
     return advance(method, ode, options, stage ? &*stage : nullptr, memory, u);
   };
 
-  Memory memory{std::max(method.two_step ? 2 : 1, method.past_states), 0};
+  Lags memory{std::max(method.two_step ? 2 : 1, method.past_states), 0};
   if (const solver::Point first = end(memory, Eigen::VectorXd::Unit(memory.size(), 0)); first.has_f)
     memory.kept = first.f.rows();
   Eigen::MatrixXd G(memory.size(), memory.size());

@@ -20,7 +20,7 @@ using solver::State;
 constexpr double tolerance = 1e-4;  ///< of the loose run
 constexpr double allowed = 1e-3;    ///< distance from the loose run, of the size
 constexpr double allowed_contact = 5e-2;
-constexpr double contact_step = 1e-3;  ///< [s]
+constexpr double loose_contact_step = 1e-3;  ///< [s]
 constexpr int most_steps = 2000;
 
 bool fits(const Trajectory& trajectory, std::span<const double> times, Eigen::Index particles) {
@@ -82,7 +82,7 @@ Trajectory loose_run(const SplitOde& ode, const State& y0, double t0, std::span<
 }
 
 Trajectory loose_contact_run(const SplitOde& ode, const State& y0, double t0, double first) try {
-  return stepped(ode, solver::method("midpoint"), y0, t0, std::array{first}, contact_step);
+  return stepped(ode, solver::method("midpoint"), y0, t0, std::array{first}, loose_contact_step);
 } catch (const ReferenceError&) {
   return {};
 }

@@ -6,32 +6,32 @@ namespace drape::reference::sundials_tools {
 namespace {
 
 /// What the integrator gives us to call.
-struct Content {
+struct Calls {
   void* data = nullptr;
   SUNPSetupFn setup = nullptr;
   SUNPSolveFn solve = nullptr;
 };
 
-Content& content(SUNLinearSolver solver) { return *static_cast<Content*>(solver->content); }
+Calls& calls(SUNLinearSolver solver) { return *static_cast<Calls*>(solver->content); }
 
 int keep_preconditioner(SUNLinearSolver solver, void* data, SUNPSetupFn setup, SUNPSolveFn solve) {
-  content(solver) = {data, setup, solve};
+  calls(solver) = {data, setup, solve};
   return SUNLS_SUCCESS;
 }
 
 int set_up(SUNLinearSolver solver, SUNMatrix) {
-  const int flag = content(solver).setup(content(solver).data);
+  const int flag = calls(solver).setup(calls(solver).data);
   return flag == 0 ? SUNLS_SUCCESS : flag < 0 ? SUNLS_PSET_FAIL_UNREC : SUNLS_PSET_FAIL_REC;
 }
 
 int apply(SUNLinearSolver solver, SUNMatrix, N_Vector x, N_Vector b, realtype tolerance) {
   constexpr int left = 1;
-  const int flag = content(solver).solve(content(solver).data, b, x, tolerance, left);
+  const int flag = calls(solver).solve(calls(solver).data, b, x, tolerance, left);
   return flag == 0 ? SUNLS_SUCCESS : flag < 0 ? SUNLS_PSOLVE_FAIL_UNREC : SUNLS_PSOLVE_FAIL_REC;
 }
 
 int destroy(SUNLinearSolver solver) {
-  delete &content(solver);
+  delete &calls(solver);
   SUNLinSolFreeEmpty(solver);
   return SUNLS_SUCCESS;
 }
@@ -41,7 +41,7 @@ int destroy(SUNLinearSolver solver) {
 SUNLinearSolver make_preconditioner_only(SUNContext context) {
   SUNLinearSolver solver = SUNLinSolNewEmpty(context);
   if (solver == nullptr) return nullptr;
-  solver->content = new Content;
+  solver->content = new Calls;
   _generic_SUNLinearSolver_Ops& ops = *solver->ops;
   ops.gettype = [](SUNLinearSolver) { return SUNLINEARSOLVER_ITERATIVE; };
   ops.getid = [](SUNLinearSolver) { return SUNLINEARSOLVER_CUSTOM; };

@@ -11,7 +11,7 @@
 namespace drape::results {
 namespace {
 
-constexpr int digits = 7;         ///< of the smallest error
+constexpr int digits = 7;        ///< of the smallest error
 constexpr double telling = 0.3;  ///< part of an error that the reference may be uncertain by
 
 /// The least time [ms] of those that reach an error in a scene; infinite if none does.

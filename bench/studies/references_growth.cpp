@@ -15,7 +15,7 @@
 namespace drape::bench {
 namespace {
 
-constexpr double bar = 2;  ///< largest factor by which the growth may be underestimated
+constexpr double bar = 2;       ///< largest factor by which the growth may be underestimated
 constexpr double rtol = 1e-12;  // differences of 1e-7 are taken
 constexpr int rounds[] = {0, 1, 2, 6};
 
