@@ -20,13 +20,13 @@ double centre_distance(const model::Cloth& cloth, const State& a, const State& b
   return (cloth.ode.mass.asDiagonal() * (a.x - b.x)).colwise().sum().norm() / cloth.ode.mass.sum();
 }
 
-constexpr double tolerances[] = {1e-9, 1e-10, 1e-11, 1e-12};  ///< of references
+constexpr double reference_tolerances[] = {1e-9, 1e-10, 1e-11, 1e-12};  ///< of references
 
 /// The loosest of them that promises an uncertainty, as it falls with the tolerance; at least the next.
 double tightened(double tolerance, double factor) {
-  for (const double next : tolerances)
+  for (const double next : reference_tolerances)
     if (next < 0.99 * tolerance && next <= 1.01 * factor * tolerance) return next;
-  return tolerances[std::size(tolerances) - 1];
+  return reference_tolerances[std::size(reference_tolerances) - 1];
 }
 
 }  // namespace
@@ -73,7 +73,7 @@ reference::Reference References::tight(const model::Scene& scene, const model::C
   const auto left = [&] { return watch_.seconds - std::chrono::duration<double>(Clock::now() - begin_).count(); };
   reference::Reference best = at(rtol_, scene, cloth, times, left());
   for (;;) {
-    const double worst = std::ranges::max(best.error), tightest = std::ranges::min(tolerances);
+    const double worst = std::ranges::max(best.error), tightest = std::ranges::min(reference_tolerances);
     const bool comparable = !cloth.ode.contacts && std::ranges::max(best.growth) <= results::comparable_growth;
     if (!comparable || !(worst > uncertainty) || best.tolerance <= tightest) return best;
     try {
@@ -91,7 +91,7 @@ reference::Reference References::at(double tolerance, const model::Scene& scene,
   const auto check = [&](const reference::Reference& found) {
     reference::require_plausible(found, cloth.ode, cloth.start, 0, times, options.size);
   };
-  for (const double tighter : tolerances | std::views::reverse) {
+  for (const double tighter : reference_tolerances | std::views::reverse) {
     options.rtol = tighter;
     if (tighter >= tolerance) break;
     if (auto known = cache_.find(key(), check)) return *std::move(known);

@@ -85,9 +85,9 @@ TEST(ContactReference, IsApproachedByEveryMethod) {
     const auto truth = reference::contact_reference(trial.cloth.ode, trial.cloth.start, 0, times, {.size = 0.3});
     EXPECT_EQ(truth.name, "verlet");
     EXPECT_EQ(truth.witness, "midpoint");
-    const auto coarse = reference::stepped(trial.cloth.ode, solver::method("verlet"), trial.cloth.start, 0, times, 1e-3);
+    const auto doubled = reference::stepped(trial.cloth.ode, solver::method("verlet"), trial.cloth.start, 0, times, 1e-3);
     for (std::size_t k = 0; k < times.size(); ++k)
-      EXPECT_GE(truth.error[k], reference::rms_distance(truth.trajectory.states[k].x, coarse.states[k].x)) << "of the steps";
+      EXPECT_GE(truth.error[k], reference::rms_distance(truth.trajectory.states[k].x, doubled.states[k].x)) << "of the steps";
     for (const std::string& method : methods()) {
       const Distance coarse = distance(trial, truth, method, 0.004), fine = distance(trial, truth, method, 0.001);
       EXPECT_LE(fine.uncertainty, 1e-4) << obstacle;

@@ -235,11 +235,12 @@ TEST(ProgramWithoutStreams, RecordsWhatItWouldWithThem) {
   EXPECT_EQ(run_program(command).exit_code, 0);
   EXPECT_THAT(program.output({"inspect", "a.h5", "--validate"}), HasSubstr("is as results/README.md specifies"));
   for (const auto& [name, content] : program.files())
-    if (name.ends_with(".obj")) EXPECT_THAT(content, StartsWith("# t = ")) << name;
+    if (name.ends_with(".obj")) {
+      EXPECT_THAT(content, StartsWith("# t = ")) << name;
+    }
 }
 
 // --- Texts that are recorded and printed again
-// ---------------------------------------------------------------------------------
 
 TEST(ProgramRecordedText, NeitherActsOnTheTerminalNorOnSpreadsheets) {
   const BenchIntegrators program;
@@ -255,13 +256,16 @@ TEST(ProgramRecordedText, NeitherActsOnTheTerminalNorOnSpreadsheets) {
         EXPECT_TRUE(is_plain(line)) << line;
         EXPECT_THAT(line, AllOf(Not(HasSubstr("\u202e")), Not(HasSubstr("\u009b"))));
       }
-    if (format == "csv") EXPECT_THAT(out, HasSubstr(R"('=1+1\u001b[31m\n\u202e\u009b,)"));
-    if (format == "json") EXPECT_THAT(out, HasSubstr(R"("=1+1\u001b[31m\n\u202e\u009b")"));
+    if (format == "csv") {
+      EXPECT_THAT(out, HasSubstr(R"('=1+1\u001b[31m\n\u202e\u009b,)"));
+    }
+    if (format == "json") {
+      EXPECT_THAT(out, HasSubstr(R"("=1+1\u001b[31m\n\u202e\u009b")"));
+    }
   }
 }
 
 // --- What killed processes leave
-// ------------------------------------------------------------------------------------------------
 
 TEST(KilledProgram, LeavesNothingThatTheNextOneDoesNotRemove) {
   const BenchIntegrators program;

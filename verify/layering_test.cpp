@@ -105,8 +105,8 @@ std::vector<std::string> wrong_includes(const std::string& name, const std::stri
       wrong.push_back(fmt::format("{} includes {}: quotes are for our headers, from the root; <> for all else", name, header));
     }
     for (const auto& [prefixes, places] : confined_libraries) {
-      const auto begins = [](std::string_view text) {
-        return [=](const std::string& prefix) { return text.starts_with(prefix); };
+      const auto begins = [](std::string_view path) {
+        return [=](const std::string& prefix) { return path.starts_with(prefix); };
       };
       if (std::ranges::any_of(prefixes, begins(header)) && std::ranges::none_of(places, begins(name))) {
         wrong.push_back(fmt::format("{} includes {}, which is for {} only", name, header, fmt::join(places, " and ")));

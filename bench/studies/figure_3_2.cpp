@@ -13,9 +13,9 @@
 namespace drape::bench {
 namespace {
 
-constexpr double step = 0.01;      ///< [s]
-constexpr double last = 1;         ///< part of the run that is looked at [s]
-constexpr double smoothed = 0.95;  ///< energy over the truth's below which it counts as smoothed away
+constexpr double figure_step = 0.01;  ///< [s]
+constexpr double last = 1;            ///< part of the run that is looked at [s]
+constexpr double smoothed = 0.95;     ///< energy over the truth's below which it counts as smoothed away
 
 /// Waves between the side edges: the cosines, orthogonal in the dual cells along a line, and the sines of its inner particles.
 /// Row m - 1 has m half-waves, 1 ≤ m ≤ n - 2.
@@ -90,7 +90,7 @@ Flutter flutter(const model::Scene& scene, const char* method) {
   const Waves waves(scene);
   Flutter seen;
   seen.bending = seen.kinetic = Eigen::VectorXd::Zero(waves.count());
-  seen.run = record({scene, "", &solver::method(method), step, options}, [&](const solver::StepReport& s) {
+  seen.run = record({scene, "", &solver::method(method), figure_step, options}, [&](const solver::StepReport& s) {
     if (s.t <= scene.end - last) return;
     const Eigen::ArrayXd edge = s.y.x.col(1).head(scene.sheet.grid.nu);  // the lower one; the start is in the plane y = 0
     seen.swing.push_back(edge.mean());
@@ -109,7 +109,7 @@ Flutter flutter(const model::Scene& scene, const char* method) {
 constexpr const char* dampings[] = {"0.2", "0.02", "0.002"};
 
 /// Euler, BDF(2), and the truth for the same particles: sub-steps of some 10⁻⁴ s.
-constexpr const char* methods[] = {"implicit-euler", "bdf2", "verlet"};
+constexpr const char* figure_methods[] = {"implicit-euler", "bdf2", "verlet"};
 using Flutters = std::array<Flutter, 3>;
 
 Flutters compare(const char* damping, bool quick, Units& units) {
@@ -118,8 +118,8 @@ Flutters compare(const char* damping, bool quick, Units& units) {
   const model::Scene scene = model::load_scene("wind", overrides);
   Flutters all;
   for (std::size_t k = 0; k < all.size(); ++k) {
-    units.show(fmt::format("{}, d = {}, {}", scene.name, damping, methods[k]));
-    all[k] = units(fmt::format("{} {}", damping, methods[k]), [&] { return flutter(scene, methods[k]); });
+    units.show(fmt::format("{}, d = {}, {}", scene.name, damping, figure_methods[k]));
+    all[k] = units(fmt::format("{} {}", damping, figure_methods[k]), [&] { return flutter(scene, figure_methods[k]); });
     units.advance();
   }
   return all;
@@ -133,7 +133,8 @@ void add_damping(results::TableBuilder& table, std::size_t k) {
 }
 
 results::Table swings(const Runs& runs) {
-  results::TableBuilder table("figure-3.2", fmt::format("Figure 3.2: the sheet in the wind, h = {} s, the last second", step));
+  results::TableBuilder table("figure-3.2",
+                              fmt::format("Figure 3.2: the sheet in the wind, h = {} s, the last second", figure_step));
   for (std::size_t k = 0; k < runs.size(); ++k)
     for (const Flutter& seen : runs[k]) {
       add_damping(table, k);
@@ -157,11 +158,12 @@ std::string add_energies(results::TableBuilder& table, const std::string& name, 
                          bool seen) {
   const std::array<const char*, 3> titles{"Euler", "BDF(2)", "truth"};
   for (std::size_t k = 0; k < energy.size(); ++k)
-    table.number(fmt::format("{}_{}", name, methods[k]).c_str(), seen ? fmt::format("{}: {}", name, titles[k]).c_str() : "",
-                 "J", "energy of these waves, mean over the last second", energy[k]);
+    table.number(fmt::format("{}_{}", name, figure_methods[k]).c_str(),
+                 seen ? fmt::format("{}: {}", name, titles[k]).c_str() : "", "J",
+                 "energy of these waves, mean over the last second", energy[k]);
   for (const std::size_t k : {0, 1})
-    table.number(fmt::format("{}_ratio_{}", name, methods[k]).c_str(), fmt::format("{}: {}/truth", name, titles[k]).c_str(),
-                 "1", "ratio of these energies", energy[k] / energy[2]);
+    table.number(fmt::format("{}_ratio_{}", name, figure_methods[k]).c_str(),
+                 fmt::format("{}: {}/truth", name, titles[k]).c_str(), "1", "ratio of these energies", energy[k] / energy[2]);
   const double euler = energy[0] / energy[2], bdf2 = energy[1] / energy[2];
   if (std::abs(std::log(bdf2)) > std::abs(std::log(euler))) return "BDF(2) is NOT nearer";
   return euler < smoothed ? "smoothed by Euler" : "not smoothed";
@@ -195,7 +197,7 @@ results::Table spectrum(const Runs& runs) {
 
 std::vector<TableJob> figure_3_2(bool quick) {
   const auto runs = std::make_shared<Runs>();  // of the first table, for the second
-  return {{static_cast<int>(std::size(dampings) * std::size(methods)),
+  return {{static_cast<int>(std::size(dampings) * std::size(figure_methods)),
            [=](Units& units) {
              for (const char* damping : dampings) runs->push_back(compare(damping, quick, units));
              return swings(*runs);

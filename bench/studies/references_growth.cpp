@@ -19,11 +19,11 @@ constexpr double bar = 2;       ///< largest factor by which the growth may be u
 constexpr double rtol = 1e-12;  // differences of 1e-7 are taken
 constexpr int rounds[] = {0, 1, 2, 6};
 
-struct Sheet {
+struct GrowthScene {
   const char *scene, *damping;
   double end;  ///< [s]
 };
-constexpr std::array<Sheet, growth_parts> sheets{
+constexpr std::array<GrowthScene, growth_parts> growing{
     {{"hung-corners", "0", 0.3}, {"hung-corners", "0.05", 0.4}, {"hung-corners", "5", 0.3}, {"wind", "5", 0.3}}};
 
 /// Of the perturbation that each number of rounds finds, and the largest of all.
@@ -71,7 +71,7 @@ results::Table growth_of_perturbations(bool quick, Units& units) {
   results::TableBuilder table("growth",
                               "Growth of a small perturbation of the start: of the one that grows most, as rounds of the "
                               "power method find it, and of any");
-  for (const Sheet& sheet : sheets) {
+  for (const GrowthScene& sheet : growing) {
     std::vector<model::Override> overrides{{"grid.n", quick ? "4" : "6"}, {"material.damping", sheet.damping}};
     if (std::string_view(sheet.scene) == "wind") overrides.push_back({"start.pleats", "[1, 35]"});  // as many as it can have
     model::Scene scene = model::load_scene(sheet.scene, overrides);

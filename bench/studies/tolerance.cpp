@@ -57,8 +57,8 @@ struct Controlled {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Controlled, scene, set, method, tolerance, error, uncertainty, steps, rejected, pilots,
                                    forces, largest_steps, outcome, note, verdict)
 
-/// The same for all scenes.
-using All = std::vector<Controlled>;
+/// Of all scenes.
+using ControlledRuns = std::vector<Controlled>;
 
 std::string judge(const Controlled& run) {
   if (run.outcome != to_string(solver::Outcome::success)) return run.steps == 0 ? "cost explodes" : "fails";
@@ -143,7 +143,7 @@ void add_row(results::TableBuilder& table, const Controlled& run) {
   table.text("verdict", "verdict", "whether the error is within ten times of the tolerance, to both sides", run.verdict);
 }
 
-results::Table tolerances_on(const Setting& setting, const Methods& methods, All& all, Units& units) {
+results::Table tolerances_on(const Setting& setting, const Methods& methods, ControlledRuns& all, Units& units) {
   const model::Scene scene = model::load_scene(setting.scene, setting.overrides);
   results::TableBuilder table("tolerance-" + setting.name, "Error over tolerance on " + scene.name);
   units.show("reference of " + scene.name);
@@ -164,11 +164,11 @@ results::Table tolerances_on(const Setting& setting, const Methods& methods, All
 }
 
 /// How many cells of a method have become what.
-results::Table summary(const All& all, const Methods& methods) {
+results::Table summary(const ControlledRuns& all, const Methods& methods) {
   results::TableBuilder table("tolerance-summary", "Error over tolerance, all scenes and tolerances");
   for (const Method* const chosen : methods) {
     const Method& method = *chosen;
-    All runs;
+    ControlledRuns runs;
     std::ranges::copy_if(all, std::back_inserter(runs), [&](const Controlled& run) { return run.method == method.name; });
     const auto count = [&](std::string_view verdict) {
       return std::ranges::count_if(runs, [&](const Controlled& run) { return run.verdict.find(verdict) != std::string::npos; });
@@ -199,7 +199,7 @@ results::Table summary(const All& all, const Methods& methods) {
 }  // namespace
 
 std::vector<TableJob> tolerance(bool quick, const Methods& chosen) {
-  const auto all = std::make_shared<All>();
+  const auto all = std::make_shared<ControlledRuns>();
   const Methods methods = all_or(chosen);
   std::vector<TableJob> jobs;
   for (const Setting& setting : settings(quick))
