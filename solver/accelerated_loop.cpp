@@ -24,6 +24,7 @@ constexpr int longest_stay = 64;            ///< stages after which `auto` tries
 constexpr double cheap = 50;                ///< cost of a stage for which the constant matrix need not be tried
 constexpr double mean_weight = 0.2;         ///< of the second estimate of the error
 constexpr double reduction_memory = 0.5;    ///< part of the reduction seen before that is the least to be expected
+constexpr double regular = 0.3;             ///< reduction from which on convergence is too irregular to be counted on
 constexpr double reduction_ages = 1.3;      ///< how much less is expected of it in each further stage
 constexpr double sudden = 1.2;              ///< growth of the first |d| from stage to stage from which on nothing is expected
 constexpr double stiffest = 1e4;            ///< A over A without springs, beyond which `auto` does not trust it
@@ -203,10 +204,12 @@ bool AcceleratedLoop::escalate(State& y) {
   return use_newton(&lean_newton_, y);
 }
 
-/// What an update reduces |d| by, as far as it has been seen; nothing where a stage begins farther off than the one before.
+/// What an update reduces |d| by, as far as it has been seen; nothing where convergence is slow, or where a stage begins
+/// farther off than the one before.
 void AcceleratedLoop::expect() {
   if (std::isfinite(last_)) {
-    reduction_ = std::clamp(size_ / last_, reduction_memory * reduction_, 1.0);
+    const double seen = size_ / last_;
+    reduction_ = seen > regular ? 1 : std::max(seen, reduction_memory * reduction_);
   } else {
     if (size_ > sudden * first_) reduction_ = 1;
     first_ = size_;
