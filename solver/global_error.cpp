@@ -14,7 +14,7 @@ namespace {
 
 constexpr double unknown = std::numeric_limits<double>::infinity();
 
-constexpr double aim = 0.5;          ///< part of the tolerance that the error should be
+constexpr double aim = 0.7;          ///< part of the tolerance that the error should be
 constexpr double crudest = 0.1;      ///< tolerance of the local error of the first pilot, at most,
 constexpr double head_start = 1e3;   ///< and over the tolerance
 constexpr double converging = 2.5;   ///< least factor by which their distances fall
@@ -22,7 +22,7 @@ constexpr double most_ahead = 10;    ///< error of the last pilot over that of t
 constexpr double negligible = 0.05;  ///< distance over the tolerance that need not fall so much,
 constexpr double steady = 0.5;       ///< but hardly rise
 constexpr int most_pilots = 20;
-constexpr int many_steps = 200;  ///< fewer are nothing to remark on
+constexpr int many_steps = 50;  ///< fewer are nothing to remark on
 
 struct Pilot {
   double scale;  ///< of steps
@@ -106,9 +106,19 @@ class Planner {
   double last_distance() const { return distances_.back(); }
   double fall() const { return distances_[distances_.size() - 2] / last_distance(); }
 
+  /// How many times finer pilot k was meant to be than the one before, and how many times as many steps it took.
+  double finer(std::size_t k) const { return pilots_[k - 1].scale / pilots_[k].scale; }
+  double more_steps(std::size_t k) const { return static_cast<double>(pilots_[k].steps) / std::max(1, pilots_[k - 1].steps); }
+
+  /// Whether the steps of the last pilot are as long as those of the one before: their distance is no measure of its error.
+  bool no_finer() const {
+    const std::size_t last = pilots_.size() - 1;
+    return pilots_[last].steps >= many_steps && more_steps(last) < std::sqrt(finer(last));
+  }
+
   /// Runs that are wrong in the same way are near each other, but they do not converge.
   bool enough() const {
-    if (pilots_.size() < 3 || !std::isfinite(last_distance())) return false;
+    if (pilots_.size() < 3 || !std::isfinite(last_distance()) || no_finer()) return false;
     const bool small = last_distance() <= negligible * control_.tolerance;
     const bool converge = last_distance() == 0 || fall() >= (small ? steady : converging);
     return converge && last_error() <= (remark().empty() ? most_ahead : 1) * target();
@@ -155,11 +165,10 @@ class Planner {
   /// certain.
   std::string remark() const {
     for (std::size_t k = 1; k < pilots_.size(); ++k) {
-      const double finer = pilots_[k - 1].scale / pilots_[k].scale;
-      const double more = static_cast<double>(pilots_[k].steps) / std::max(1, pilots_[k - 1].steps);
-      if (pilots_[k].steps < many_steps || (more >= std::sqrt(finer) && more <= 2 * finer)) continue;
+      const double more = more_steps(k);
+      if (pilots_[k].steps < many_steps || (more >= std::sqrt(finer(k)) && more <= 2 * finer(k))) continue;
       return "stability or ringing limits the steps, not the tolerance alone: " + std::to_string(pilots_[k - 1].steps) +
-             ", and " + std::to_string(pilots_[k].steps) + " with steps meant to be " + text(finer) + " times finer";
+             ", and " + std::to_string(pilots_[k].steps) + " with steps meant to be " + text(finer(k)) + " times finer";
     }
     return "";
   }
