@@ -176,7 +176,7 @@ std::shared_ptr<Reaction> respond(const ContactRule& rule, const std::shared_ptr
     };
     return {};
   }
-  const auto reaction = std::make_shared<Reaction>(contacts, rule, ode.mass);
+  auto reaction = std::make_shared<Reaction>(contacts, rule, ode.mass);
   const auto whole = std::make_shared<Vectors>(ode.particles(), 3);
   const auto force = ode.force;
   ode.force = [=](double t, const Vectors& x, const Vectors& v, Vectors& f) {

@@ -69,8 +69,9 @@ Trajectory take_trajectory(Reader& reader) {
 
 /// A right checksum does not make a right file.
 void require_consistent(const Reference& reference) {
-  const auto& [times, states] = reference.trajectory;
-  const auto rows = [&] { return states.empty() ? 0 : states.front().x.rows(); }();
+  const std::vector<double>& times = reference.trajectory.times;
+  const std::vector<solver::State>& states = reference.trajectory.states;
+  const Eigen::Index rows = states.empty() ? 0 : states.front().x.rows();
   const auto fits = [&](const Trajectory& trajectory) {
     return trajectory.times == times && std::ranges::all_of(trajectory.states, [&](const solver::State& y) {
              return y.x.rows() == rows && y.v.rows() == rows;
@@ -108,9 +109,9 @@ Reference decode(std::string_view bytes, std::string_view key) {
   if (reader.take<std::string>() != key) throw DamagedFile("it belongs to another key");
   Reference reference;
   for (std::string* name : {&reference.name, &reference.witness}) *name = reader.take<std::string>();
-  const auto tolerance = reader.take<std::vector<double>>();
-  if (tolerance.size() != 1) throw DamagedFile("it has not one tolerance");
-  reference.tolerance = tolerance.front();
+  const auto tolerances = reader.take<std::vector<double>>();
+  if (tolerances.size() != 1) throw DamagedFile("it has not one tolerance");
+  reference.tolerance = tolerances.front();
   for (auto* series : {&reference.error, &reference.growth}) *series = reader.take<std::vector<double>>();
   for (Trajectory* trajectory : {&reference.trajectory, &reference.witnessed, &reference.perturbed})
     *trajectory = take_trajectory(reader);

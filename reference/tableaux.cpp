@@ -1,6 +1,7 @@
 #include "reference/tableaux.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include "solver/named.hpp"
 
@@ -13,7 +14,9 @@ constexpr auto ars = "L-stable additive pair [Ascher, Ruuth, Spiteri 1997]";
 constexpr auto kennedy = "L-stable [Kennedy, Carpenter 2016]";
 
 Part named(std::string_view table) { return {table}; }
-Part ours(std::vector<double> A, std::vector<double> b, std::vector<double> c) { return {{}, A, b, c}; }
+Part ours(std::vector<double> A, std::vector<double> b, std::vector<double> c) {
+  return {{}, std::move(A), std::move(b), std::move(c)};
+}
 
 std::vector<Tableau> make_tableaux() {
   const double g = 1 - std::sqrt(0.5), d = 1 - 1 / (2 * g);  // of ARS(2,2,2)
