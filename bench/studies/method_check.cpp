@@ -20,16 +20,6 @@ using results::TableBuilder;
 /// Methods that everybody knows.
 constexpr const char* neighbours[] = {"bdf2", "midpoint", "implicit-euler", "verlet"};
 
-/// So soft and damped that the motion is smooth at large steps: errors of the highest orders are above the reference's.
-model::Scene smooth_scene() {
-  return model::load_scene("hung-corners", std::vector<model::Override>{{"name", "soft"},
-                                                                        {"grid.n", "5"},
-                                                                        {"material.tension", "20"},
-                                                                        {"material.damping", "0.5"},
-                                                                        {"material.shear", "0.2"},
-                                                                        {"end.time", "0.3"}});
-}
-
 results::Table order(const std::string& method, Units& units) {
   constexpr double most_work = 2e6;
   const model::Scene scene = smooth_scene();

@@ -9,23 +9,19 @@
 namespace drape::bench {
 namespace {
 
-using model::Override;
-
-/// A scene for a short time, with what is set in it.
-struct Setting {
-  std::string scene;
-  std::vector<Override> overrides;
-};
-
-std::vector<Setting> settings(bool quick) {
-  if (quick) return {{"hung-corners", {{"grid.n", "6"}, {"material.damping", "5"}, {"end.time", "0.05"}}}};
-  return {{"hung-edge", {{"end.time", "0.2"}}},
-          {"hung-corners", {{"material.damping", "5"}, {"end.time", "0.2"}}},
-          {"pulled", {{"end.time", "0.1"}}}};
+std::vector<model::Scene> scenes(bool quick) {
+  std::vector<model::Scene> all{smooth_scene()};
+  if (quick) return all;
+  const auto add = [&](const char* scene, const std::vector<model::Override>& overrides) {
+    all.push_back(model::load_scene(scene, overrides));
+  };
+  add("hung-edge", {{"end.time", "0.2"}});
+  add("hung-corners", {{"material.damping", "5"}, {"end.time", "0.2"}});
+  add("pulled", {{"end.time", "0.1"}});
+  return all;
 }
 
-results::Table orders_on(const Setting& setting, bool quick, const Methods& methods, Units& units) {
-  const model::Scene scene = model::load_scene(setting.scene, setting.overrides);
+results::Table orders_on(const model::Scene& scene, bool quick, const Methods& methods, Units& units) {
   const model::Cloth cloth = model::compile(scene);
   units.show("reference of " + scene.name);
   const auto say = [&](const std::string& pace) { units.report("reference of " + scene.name + ": " + pace); };
@@ -50,9 +46,8 @@ results::Table orders_on(const Setting& setting, bool quick, const Methods& meth
 std::vector<TableJob> orders(bool quick, const Methods& methods) {
   const Methods chosen = all_or(methods);
   std::vector<TableJob> jobs;
-  for (const Setting& setting : settings(quick))
-    jobs.push_back(
-        {1 + static_cast<int>(chosen.size()), [=](Units& units) { return orders_on(setting, quick, chosen, units); }});
+  for (const model::Scene& scene : scenes(quick))
+    jobs.push_back({1 + static_cast<int>(chosen.size()), [=](Units& units) { return orders_on(scene, quick, chosen, units); }});
   return jobs;
 }
 
