@@ -56,9 +56,11 @@ class Session {
   SUNContext context() { return context_; }
 
   /// Runs a callback: exceptions must not pass through C code, they become its "unrecoverable" and the reason to report. One
-  /// that returns false becomes "recoverable": it may be called again after a smaller step.
+  /// that returns false becomes "recoverable": it may be called again after a smaller step. Once one has thrown, all fail:
+  /// CVODE's functional iteration takes any failure for recoverable and would come ever nearer to where it throws.
   template <class Function>
   int guarded(Function&& function) noexcept {
+    if (threw_) return -1;
     try {
       if constexpr (std::is_same_v<decltype(function()), bool>)
         return function() ? 0 : 1;
@@ -70,6 +72,7 @@ class Session {
     } catch (...) {
       reason_ = "the force or its Jacobian threw something that is no std::exception";
     }
+    threw_ = true;
     return -1;
   }
 
@@ -81,6 +84,7 @@ class Session {
 
  private:
   std::string solver_, reason_;
+  bool threw_ = false;
   sundials::Context context_;
 };
 
