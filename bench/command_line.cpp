@@ -87,7 +87,7 @@ int run_command_line(int argc, const char* const* argv) {
     return exit_code;
   };
   CLI::App app(help_text("Runs time integrators of cloth side by side with a reference and records accuracy, work and time.\n"
-                         "Without arguments: the main job, three studies and a report of them."),
+                         "Without arguments: the main job, four studies and a report of them."),
                name);
   app.require_subcommand(0, 1);
   app.formatter(std::make_shared<HelpFormat>());

@@ -42,12 +42,13 @@ struct Study {
   bool takes_methods() const { return groups != nullptr || of_methods != nullptr; }
 };
 
-/// All studies; the first is the main job.
+/// All studies.
 std::span<const Study> studies();
 
 /// The study with this name. Throws std::invalid_argument, naming all that there are.
 const Study& study(std::string_view name);
 
+std::vector<Group> motions(bool quick);
 std::vector<Group> hung_sheets(bool quick);
 std::vector<TableJob> convergence(bool quick);
 std::vector<TableJob> orders(bool quick, const Methods& methods);
@@ -63,6 +64,7 @@ std::vector<TableJob> scaling(bool quick);
 std::vector<TableJob> stability(bool quick, const Methods& methods);
 std::vector<TableJob> tolerance(bool quick, const Methods& methods);
 std::vector<TableJob> work_precision(bool quick, const Methods& methods);
+std::vector<TableJob> bars(bool quick);
 std::vector<TableJob> work_precision_of(const model::Scene& scene, bool quick, const Methods& methods);
 
 }  // namespace drape::bench

@@ -4,12 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <string_view>
 
+#include "results/conclusion.hpp"
+#include "results/scene_runs.hpp"
 #include "results/table_builder.hpp"
-#include "results/work_precision.hpp"
-#include "solver/outcome.hpp"
 
 namespace drape::results {
 namespace {
@@ -55,13 +54,14 @@ void add_orders(const Table& table, TableBuilder& overview) {
 /// The best of SUNDIALS in a row of winners: how much slower it is than our best.
 void add_peers(const Table& table, std::size_t row, TableBuilder& overview) {
   const Column *best = nullptr, *best_ratio = nullptr;
-  for (const char* family : {"cvode-bdf", "arkode-esdirk", "arkode-imex", "arkode-erk", "ida-bdf"})
-    if (const Column* ratio = find_column(table, fmt::format("{}_ratio", family)); std::isfinite(number_in(ratio, row)))
-      if (best == nullptr || number_in(ratio, row) < number_in(best_ratio, row))
-        best = find_column(table, family), best_ratio = ratio;
+  for (const Column& family : table.columns) {
+    const Column* ratio = is_sundials(family.name) ? find_column(table, family.name + "_ratio") : nullptr;
+    if (!std::isfinite(number_in(ratio, row))) continue;
+    if (best == nullptr || number_in(ratio, row) < number_in(best_ratio, row)) best = &family, best_ratio = ratio;
+  }
   if (best == nullptr) return;
-  overview.text("peer", "SUNDIALS' best", "its quickest with an error of at most so much", text_in(best, row));
-  overview.number("ratio", "slower by", "1", "time of SUNDIALS' best over that of our best", number_in(best_ratio, row));
+  overview.text("peer", "SUNDIALS, tuned", "its quickest with that error", text_in(best, row));
+  overview.number("ratio", "slower by", "1", "time of SUNDIALS over that of our quickest", number_in(best_ratio, row));
 }
 
 void add_winners(const Table& table, TableBuilder& overview) {
@@ -71,34 +71,14 @@ void add_winners(const Table& table, TableBuilder& overview) {
     if (text_in(best, row).empty()) continue;
     overview.row();
     overview.text("scene", "scene", "its name", text_in(scene, row));
-    overview.number("error", "error", "1", "largest error, over the size of the scene", number_in(error, row));
-    overview.text("ours", "our quickest", "with an error of at most that", text_in(best, row));
+    overview.number("error", "error <=", "1", "over the size of the scene", number_in(error, row));
+    overview.text("ours", "our quickest", "with that error", text_in(best, row));
     overview.number("ours_ms", "time", "ms", "median wall time", number_in(time, row));
     add_peers(table, row, overview);
   }
 }
 
 // --- Runs ----------------------------------------------------------------------------------------------------------------
-
-std::string scene_title(const RunRecord& run) {
-  return run.overrides.empty() ? run.scene : fmt::format("{} {}", run.scene, run.overrides);
-}
-
-using RunsOfScene = std::map<std::string, std::vector<const RunRecord*>>;
-
-RunsOfScene by_scene(std::span<const Recording> recordings) {
-  RunsOfScene scenes;
-  for (const Recording& recording : recordings)
-    for (const RunRecord& run : recording.runs) scenes[scene_title(run)].push_back(&run);
-  return scenes;
-}
-
-bool ended_well(const RunRecord& run) { return run.outcome == to_string(solver::Outcome::success); }
-
-Measured measured(const RunRecord& run) {
-  if (!ended_well(run) || !run.error || !comparable(*run.error) || run.times_ms.empty()) return {NAN, {}};
-  return {std::max(run.error->rms, resolution * run.error->reference_error), run.times_ms};
-}
 
 void add_quickest(const std::string& scene, const std::vector<const RunRecord*>& runs, TableBuilder& overview) {
   std::vector<Measured> candidates;
@@ -109,7 +89,7 @@ void add_quickest(const std::string& scene, const std::vector<const RunRecord*>&
   for (int digits = 1; digits <= 7; ++digits) {
     const auto best = quickest(candidates, std::pow(10, -digits));
     const std::string name = fmt::format("1e-{}", digits);
-    overview.text(name.c_str(), name.c_str(), "method and step of the quickest run with an error of at most that",
+    overview.text(name.c_str(), name.c_str(), "method and step of the quickest run with that error",
                   best ? fmt::format("{} {:g}", runs[*best]->method, runs[*best]->step) : "");
   }
 }
@@ -155,8 +135,8 @@ Table shortened(Table table, std::size_t most) {
 }  // namespace
 
 std::vector<Table> overview(std::span<const Recording> recordings) {
-  TableBuilder orders("orders", "Orders of convergence"), winners("winners", "The quickest with an error of at most so much"),
-      quickest_runs("quickest-runs", "The quickest recorded run, method and step [s], with an error of at most so much"),
+  TableBuilder orders("orders", "Orders of convergence"), winners("winners", "The quickest at each error"),
+      quickest_runs("quickest-runs", "The quickest recorded run at each error: method and step [s]"),
       failures("failures", "Runs that failed"), not_met("not-met", "What is not as it was wanted");
   for (const Recording& recording : recordings)
     for (const Table& table : recording.tables) {
@@ -168,6 +148,7 @@ std::vector<Table> overview(std::span<const Recording> recordings) {
     add_failures(scene, runs, failures);
   }
   std::vector<Table> tables;
+  if (Table words = conclusion(recordings); rows(words) > 0) tables.push_back(std::move(words));
   for (TableBuilder* table : {&orders, &winners, &quickest_runs, &failures, &not_met})
     if (Table done = shortened(table->finish(), 10); rows(done) > 0) tables.push_back(std::move(done));
   return tables;

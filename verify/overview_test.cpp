@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "results/conclusion.hpp"
 #include "results/table_builder.hpp"
 
 namespace drape::verify::overview_test {
@@ -20,12 +21,20 @@ using testing::IsEmpty;
 
 Recording recording(TableBuilder table) { return {{}, {}, {table.finish()}}; }
 
-/// The only table of the overview.
+/// A table of the overview, which is the only one beside the conclusion.
 std::string shown(const Recording& recording, const std::string& name) {
   const std::vector<Table> tables = results::overview({&recording, 1});
-  EXPECT_EQ(tables.size(), 1);
-  EXPECT_EQ(tables.at(0).name, name);
-  return results::to_csv(tables.at(0));
+  EXPECT_LE(tables.size(), 2);
+  return results::to_csv(*std::ranges::find(tables, name, &Table::name));
+}
+
+/// What is concluded, sentence by sentence.
+std::vector<std::string> conclusion(const Recording& recording) {
+  const Table table = results::conclusion({&recording, 1});
+  std::vector<std::string> sentences;
+  for (std::size_t row = 0; row < rows(table); ++row)
+    sentences.push_back(text_in(find_column(table, "subject"), row) + ": " + text_in(find_column(table, "conclusion"), row));
+  return sentences;
 }
 
 TEST(Overview, CountsOrdersThatAreAsDeclaredAndNamesTheOthers) {
@@ -106,6 +115,36 @@ TEST(Overview, ShowsTenOfWhatIsNotAsItWasWanted) {
   EXPECT_EQ(rows(not_met), 10);
   EXPECT_THAT(not_met.description, HasSubstr("2 more"));
   EXPECT_EQ(text_in(find_column(not_met, "row"), 9), "faster at 0.1");
+}
+
+TEST(Conclusion, SaysOfRunsWhoIsQuickWhoIsWrongAndWhoFails) {
+  RunRecord failed = run("unlucky", 0, 1);
+  failed.error.reset();
+  failed.outcome = "unstable";
+  EXPECT_THAT(
+      conclusion({{}, {run("slow", 1e-5, 3), run("quick", 1e-2, 0.05), run("wrong", 0.3, 1), failed}, {}}),
+      ElementsAre("sheet: error <= 0.01 in 0.05 ms by quick, h = 0.01 s; error <= 0.0001 in 3 ms by slow, h = 0.01 s",
+                  "sheet: stable and wrong: wrong, h = 0.01 s, ends 30 % of the size away", "sheet: fails: unlucky unstable"));
+}
+
+TEST(Conclusion, SaysOfTablesHowManyOrdersAreAsDeclaredAndHowFarSundialsIsBehind) {
+  TableBuilder orders("orders-sheet", ""), winners("winners", "");
+  for (const char* verdict : {"", "2 as declared", "NOT 3"}) {
+    orders.row();
+    orders.text("verdict", "verdict", "", verdict);
+    orders.number("fitted_order", "fitted", "1", "", 2);
+  }
+  for (const double ratio : {3.0, 0.9, 2.0}) {
+    winners.row();
+    winners.text("scene", "scene", "", "sheet");
+    winners.number("arkode-steps_ratio", "", "1", "", ratio);
+    winners.number("cvode-bdf_ratio", "", "1", "", 4);
+    winners.number("thesis_ratio", "", "1", "", 0.1);
+  }
+  EXPECT_THAT(
+      conclusion({{}, {}, {orders.finish(), winners.finish()}}),
+      ElementsAre("orders-sheet: 1 of 2 methods converge with the order they declare",
+                  "sheet: SUNDIALS, tuned, takes 0.9 to 3 times as long as our quickest, in the median 2, over 3 errors"));
 }
 
 TEST(Overview, OfNothingIsEmpty) { EXPECT_THAT(results::overview({}), IsEmpty()); }

@@ -125,7 +125,7 @@ class WorkPrecision : public testing::Test {
 };
 
 TEST_F(WorkPrecision, NamesWinnersJudgesTheBarsAndDrawsEveryScene) {
-  program.run({"study", "work-precision", "--quick", "--out", "study.h5"});
+  program.run({"study", "bars", "--quick", "--out", "study.h5"});
   const auto all = results::read_tables(program.folder() / "study.h5");
   ASSERT_THAT(all, SizeIs(10));
   for (const char* name : {"trials: hung-corners d=5", "trials: peer-edge n=8"}) {

@@ -7,22 +7,29 @@
 namespace drape::bench {
 namespace {
 
-/// How all methods do on two sheets; whether their orders are as declared; and which is the quickest at which error, beside
-/// SUNDIALS at its best.
+constexpr double frame = 0.04;  ///< [s]
+
+/// Four motions to look at; how all methods do on two sheets; whether their orders are as declared; and which is the quickest
+/// at which error, beside SUNDIALS, tuned.
 std::vector<StudyArguments> main_job() {
-  std::vector<StudyArguments> studies(3);
-  studies[0].name = "hung-sheets";
-  studies[1].name = "orders";
-  studies[1].quick = true;
-  studies[2].name = "work-precision";
-  studies[2].choice.scene = "hung-corners";
+  std::vector<StudyArguments> studies(4);
+  studies[0].name = "motions";
+  studies[0].output.sweep.frames_every = frame;
+  studies[1].name = "hung-sheets";
+  studies[2].name = "orders";
+  studies[2].quick = true;
+  studies[3].name = "work-precision";
+  studies[3].choice.scene = "hung-corners";
   return studies;
 }
 
 /// What does one of them alone.
 std::string command_of(const StudyArguments& a) {
-  return fmt::format("bench_integrators study {}{}{}", a.name, a.quick ? " --quick" : "",
-                     a.choice.scene.empty() ? "" : " --scene " + a.choice.scene);
+  std::string command = "bench_integrators study " + a.name;
+  if (a.quick) command += " --quick";
+  if (!a.choice.scene.empty()) command += " --scene " + a.choice.scene;
+  if (a.output.sweep.frames_every) command += fmt::format(" --trajectory every={:g}", *a.output.sweep.frames_every);
+  return command;
 }
 
 }  // namespace

@@ -171,15 +171,16 @@ results::Table left_out_table(const std::vector<Entry>& list, const Methods& met
   return table.finish();
 }
 
-std::vector<TableJob> jobs(const std::vector<Entry>& list, const Methods& methods) {
+std::vector<TableJob> jobs(const std::vector<Entry>& list, const Methods& methods, bool with_bars = false) {
   const auto all = std::make_shared<All>();
   std::vector<TableJob> jobs;
   all->reserve(list.size());  // trials point into what is in it
   for (const Entry& entry : list)
     jobs.push_back({static_cast<int>(families(entry.scene, entry.search, methods).size()),
                     [=](Units& units) { return try_scene(entry, methods, *all, units); }});
-  for (auto* table : {held_out_table, recommended_table, winners_table, defaults_table, ranking_table, bars_table, peers_table})
+  for (auto* table : {held_out_table, recommended_table, winners_table, defaults_table, ranking_table, peers_table})
     jobs.push_back({0, [=](Units&) { return table(*all); }});
+  if (with_bars) jobs.push_back({0, [=](Units&) { return bars_table(*all); }});
   if (const results::Table table = left_out_table(list, methods); !table.columns.empty())
     jobs.push_back({0, [=](Units&) { return table; }});
   return jobs;
@@ -196,6 +197,8 @@ Problem certified_problem(const std::string& name, const model::Scene& scene, Un
 std::vector<TableJob> work_precision(bool quick, const Methods& methods) {
   return jobs(quick ? quick_entries() : entries(), methods);
 }
+
+std::vector<TableJob> bars(bool quick) { return jobs(quick ? quick_entries() : entries(), {}, true); }
 
 std::vector<TableJob> work_precision_of(const model::Scene& scene, bool quick, const Methods& methods) {
   if (quick) return jobs({{scene.name, scene, Search::quick, quick_effort}}, methods);

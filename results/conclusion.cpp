@@ -1,0 +1,107 @@
+#include "results/conclusion.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "results/scene_runs.hpp"
+#include "results/table_builder.hpp"
+
+namespace drape::results {
+namespace {
+
+using Runs = RunsOfScene::mapped_type;
+
+bool has_error(const RunRecord& run) { return ended_well(run) && run.error && comparable(*run.error); }
+
+std::string percent(double part) { return fmt::format("{:.2g} %", 100 * part); }
+
+/// The quickest of a scene's runs at a coarse and a fine error.
+std::string quickest_in_words(const Runs& runs) {
+  std::vector<Measured> candidates;
+  for (const RunRecord* run : runs) candidates.push_back(measured(*run));
+  std::string text;
+  for (const double error : {1e-2, 1e-4})
+    if (const auto best = quickest(candidates, error)) {
+      const RunRecord& run = *runs[*best];
+      text += fmt::format("{}error <= {:g} in {:.3g} ms by {}, h = {:g} s", text.empty() ? "" : "; ", error,
+                          quartiles(run.times_ms).median, run.method, run.step);
+    }
+  return text;
+}
+
+/// The least accurate of the runs that did not fail: what looks right to a program and is not.
+std::string worst_in_words(const Runs& runs) {
+  constexpr double visible = 0.05;
+  const RunRecord* worst = nullptr;
+  for (const RunRecord* run : runs)
+    if (has_error(*run) && (worst == nullptr || run->error->rms > worst->error->rms)) worst = run;
+  if (worst == nullptr || worst->error->rms < visible) return "";
+  return fmt::format("stable and wrong: {}, h = {:g} s, ends {} of the size away", worst->method, worst->step,
+                     percent(worst->error->rms));
+}
+
+std::string failures_in_words(const Runs& runs) {
+  std::map<std::string, int> outcomes;
+  for (const RunRecord* run : runs)
+    if (!ended_well(*run)) ++outcomes[fmt::format("{} {}", run->method, run->outcome)];
+  std::string text;
+  for (const auto& [what, count] : outcomes) text += (text.empty() ? "fails: " : ", ") + what;
+  return text;
+}
+
+void add(TableBuilder& words, const std::string& subject, const std::string& sentence) {
+  if (sentence.empty()) return;
+  words.row();
+  words.text("subject", "about", "scene and what is set in it, or table", subject);
+  words.text("conclusion", "conclusion", "what its runs or rows come to", sentence);
+}
+
+void add_orders(TableBuilder& words, const Table& table) {
+  const Column* verdicts = find_column(table, "verdict");
+  int curves = 0, good = 0;
+  for (std::size_t row = 0; row < rows(table); ++row) {
+    const std::string verdict = text_in(verdicts, row);
+    curves += verdict.empty() ? 0 : 1;
+    good += verdict.ends_with("as declared") ? 1 : 0;
+  }
+  if (curves > 0) add(words, table.name, fmt::format("{} of {} methods converge with the order they declare", good, curves));
+}
+
+/// The least and the greatest ratio of SUNDIALS' quickest to our quickest.
+void add_peers(TableBuilder& words, const Table& table) {
+  std::map<std::string, std::vector<double>> ratios;
+  for (std::size_t row = 0; row < rows(table); ++row) {
+    double best = INFINITY;
+    for (const Column& column : table.columns)
+      if (column.name.ends_with("_ratio") && is_sundials(column.name))
+        if (const double ratio = number_in(&column, row); std::isfinite(ratio)) best = std::min(best, ratio);
+    if (std::isfinite(best)) ratios[text_in(find_column(table, "scene"), row)].push_back(best);
+  }
+  for (auto& [scene, all] : ratios) {
+    std::ranges::sort(all);
+    add(words, scene,
+        fmt::format(
+            "SUNDIALS, tuned, takes {:.2g} to {:.2g} times as long as our quickest, in the median {:.2g}, over {} errors",
+            all.front(), all.back(), all[all.size() / 2], all.size()));
+  }
+}
+
+}  // namespace
+
+Table conclusion(std::span<const Recording> recordings) {
+  TableBuilder words("conclusion", "What it comes to");
+  for (const auto& [scene, runs] : by_scene(recordings))
+    for (const std::string& sentence : {quickest_in_words(runs), worst_in_words(runs), failures_in_words(runs)})
+      add(words, scene, sentence);
+  for (const Recording& recording : recordings)
+    for (const Table& table : recording.tables) {
+      if (find_column(table, "fitted_order") != nullptr) add_orders(words, table);
+      if (table.name == "winners") add_peers(words, table);
+    }
+  return words.finish();
+}
+
+}  // namespace drape::results
