@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "results/scene_runs.hpp"
 #include "results/table_builder.hpp"
@@ -44,12 +45,10 @@ std::string worst_in_words(const Runs& runs) {
 }
 
 std::string failures_in_words(const Runs& runs) {
-  std::map<std::string, int> outcomes;
+  std::set<std::string> outcomes;
   for (const RunRecord* run : runs)
-    if (!ended_well(*run)) ++outcomes[fmt::format("{} {}", run->method, run->outcome)];
-  std::string text;
-  for (const auto& [what, count] : outcomes) text += (text.empty() ? "fails: " : ", ") + what;
-  return text;
+    if (!ended_well(*run)) outcomes.insert(fmt::format("{} {}", run->method, run->outcome));
+  return outcomes.empty() ? "" : fmt::format("fails: {}", fmt::join(outcomes, ", "));
 }
 
 void add(TableBuilder& words, const std::string& subject, const std::string& sentence) {
