@@ -253,6 +253,15 @@ TEST(ProgramFailure, IsShownInEveryFormatAndRecorded) {
             "not converged False\nsuccess True\n");
 }
 
+TEST(ProgramFailure, IsTimedNoFurtherThanItCame) {
+  const BenchIntegrators program;
+  program.output(unstable + Words{"--repeat", "2", "--no-reference", "--out", "a.h5"});
+  EXPECT_EQ(
+      h5py(program, "for run in files[0]['runs'].values(): print(int(run['work/timed_steps'][()] - run['work/steps'][()]))",
+           {"a.h5"}),
+      "0\n0\n");
+}
+
 // --- The record ----------------------------------------------------------------------------------------------------------
 
 TEST(ProgramRecord, IsTheFileThatOutNames) {

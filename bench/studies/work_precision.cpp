@@ -178,8 +178,9 @@ std::vector<TableJob> jobs(const std::vector<Entry>& list, const Methods& method
   for (const Entry& entry : list)
     jobs.push_back({static_cast<int>(families(entry.scene, entry.search, methods).size()),
                     [=](Units& units) { return try_scene(entry, methods, *all, units); }});
-  for (auto* table : {held_out_table, recommended_table, winners_table, defaults_table, ranking_table, peers_table})
+  for (auto* table : {held_out_table, recommended_table, winners_table, defaults_table, peers_table})
     jobs.push_back({0, [=](Units&) { return table(*all); }});
+  if (list.size() > 1) jobs.push_back({0, [=](Units&) { return ranking_table(*all); }});
   if (with_bars) jobs.push_back({0, [=](Units&) { return bars_table(*all); }});
   if (const results::Table table = left_out_table(list, methods); !table.columns.empty())
     jobs.push_back({0, [=](Units&) { return table; }});
