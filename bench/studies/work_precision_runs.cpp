@@ -19,9 +19,10 @@ namespace {
 /// Below so many uncertainties of the truth an error says nothing.
 constexpr double too_exact = 1;
 
-/// A family that is so many times slower than another of the same code twice in a row will not win, unless its steps are so
-/// coarse that finer ones take less time.
+/// A family that is so many times slower than another of the same code twice in a row will not win, unless finer steps take
+/// hardly more time: it may be the quickest at smaller errors.
 constexpr double hopeless = 2;
+constexpr double hardly_more = 1.3;
 
 /// Steps may be so coarse that nothing converges in time: this many are left out then, as long as no finer one has succeeded.
 constexpr std::size_t leap = 4;
@@ -110,7 +111,7 @@ std::vector<Tried> try_family(const Problem& problem, const Family& family, cons
     const double taken = seconds(effort.time_of) - begin;
     const bool too_long = taken > 0.7 * effort.cap;
     succeeded |= trial.outcome == "success";
-    times_outdone = taken > before && outdone(trial.measured, rivals) ? times_outdone + 1 : 0;
+    times_outdone = taken > hardly_more * before && outdone(trial.measured, rivals) ? times_outdone + 1 : 0;
     before = taken;
     rivals.push_back(trial.measured);
     const bool exact = trial.measured.error < std::max(too_exact * problem.uncertainty, problem.enough);
