@@ -56,6 +56,7 @@ void EnergyGuard::Work::go_on(double t, const State& y) {
     coarse_ += pair_.work_to(now_);
     doubt_ = std::max(doubt_, std::abs(fine_ - coarse_));
     pair_ = now_;
+    paired_ = true;
   }
   halfway_ = !halfway_;
   std::swap(last_, now_);
@@ -99,7 +100,7 @@ bool EnergyGuard::exceeded(const solver::StepReport& step) {
   const double first = std::min(first_steps * step.h, first_part * end_);
   const double doubt = work_.doubt() + unresolved_, tolerance = tolerated * most_given_ + noise_;
   limit_ = given - damped_ + tolerance + fall_ * first * first + doubt;
-  judges_ = doubt <= tolerance;
+  judges_ = work_.compared() && doubt <= tolerance;
   return !(energy_ <= limit_);
 }
 

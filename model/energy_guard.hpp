@@ -36,7 +36,8 @@ class EnergyGuard {
   double energy() const { return energy_; }  ///< kinetic and elastic, after the last step [J]
   double limit() const { return limit_; }    ///< of that [J]
 
-  /// False if the work is more uncertain than the tolerance is wide: then the limit is wider than stated.
+  /// False if the work is more uncertain than the tolerance is wide, as it is after a single step: then the limit is wider than
+  /// stated.
   bool judges() const { return judges_; }
 
  private:
@@ -49,6 +50,9 @@ class EnergyGuard {
     double value() const { return fine_; }
     double doubt() const { return doubt_ + pending_; }
 
+    /// False after a single step: nothing tells what its work is uncertain by.
+    bool compared() const { return !given_ || paired_; }
+
    private:
     /// A state of the run with the force on it.
     struct Point {
@@ -57,7 +61,7 @@ class EnergyGuard {
     };
     const solver::SplitOde::Force& given_;
     Point pair_, last_, now_;  ///< the begin of the pair of steps, and of the step
-    bool jumps_, halfway_ = false;
+    bool jumps_, halfway_ = false, paired_ = false;
     double fine_ = 0, coarse_ = 0;    ///< by single and by double steps [J]
     double doubt_ = 0, pending_ = 0;  ///< of all pairs, and of the step that has none yet [J]
   };
