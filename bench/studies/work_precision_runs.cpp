@@ -20,8 +20,8 @@ namespace {
 constexpr double too_exact = 1;
 
 /// A family that is so many times slower than another of the same code twice in a row will not win, unless finer steps take
-/// hardly more time: it may be the quickest at smaller errors.
-constexpr double hopeless = 2;
+/// hardly more time: it may be the quickest at smaller errors, if it is not yet slower by far.
+constexpr double hopeless = 2, by_far = 8;
 constexpr double hardly_more = 1.3;
 
 /// Steps may be so coarse that nothing converges in time: this many are left out then, as long as no finer one has succeeded.
@@ -91,10 +91,10 @@ Tried attempt(const Problem& problem, const Family& family, std::size_t candidat
   return trial;
 }
 
-/// Whether a rival was as exact in a small part of the time.
-bool outdone(const results::Measured& trial, const std::vector<results::Measured>& rivals) {
+/// Whether a rival was as exact, and so many times quicker.
+bool outdone(const results::Measured& trial, const std::vector<results::Measured>& rivals, double factor) {
   return !trial.times.empty() && std::ranges::any_of(rivals, [&](const results::Measured& other) {
-    return !other.times.empty() && other.error <= trial.error && hopeless * other.times[0] < trial.times[0];
+    return !other.times.empty() && other.error <= trial.error && factor * other.times[0] < trial.times[0];
   });
 }
 
@@ -111,7 +111,8 @@ std::vector<Tried> try_family(const Problem& problem, const Family& family, cons
     const double taken = seconds(effort.time_of) - begin;
     const bool too_long = taken > 0.7 * effort.cap;
     succeeded |= trial.outcome == "success";
-    times_outdone = taken > hardly_more * before && outdone(trial.measured, rivals) ? times_outdone + 1 : 0;
+    const double factor = taken > hardly_more * before ? hopeless : by_far;
+    times_outdone = outdone(trial.measured, rivals, factor) ? times_outdone + 1 : 0;
     before = taken;
     rivals.push_back(trial.measured);
     const bool exact = trial.measured.error < std::max(too_exact * problem.uncertainty, problem.enough);
