@@ -17,8 +17,6 @@ using Runs = RunsOfScene::mapped_type;
 
 bool has_error(const RunRecord& run) { return ended_well(run) && run.error && comparable(*run.error); }
 
-std::string percent(double part) { return fmt::format("{:.2g} %", 100 * part); }
-
 /// The quickest of a scene's runs at a coarse and a fine error.
 std::string quickest_in_words(const Runs& runs) {
   std::vector<Measured> candidates;
@@ -40,8 +38,8 @@ std::string worst_in_words(const Runs& runs) {
   for (const RunRecord* run : runs)
     if (has_error(*run) && (worst == nullptr || run->error->rms > worst->error->rms)) worst = run;
   if (worst == nullptr || worst->error->rms < visible) return "";
-  return fmt::format("stable and wrong: {}, h = {:g} s, ends {} of the size away", worst->method, worst->step,
-                     percent(worst->error->rms));
+  return fmt::format("stable and wrong: {}, h = {:g} s, ends {:.2g} % of the size away", worst->method, worst->step,
+                     100 * worst->error->rms);
 }
 
 std::string failures_in_words(const Runs& runs) {
@@ -59,24 +57,16 @@ void add(TableBuilder& words, const std::string& subject, const std::string& sen
 }
 
 void add_orders(TableBuilder& words, const Table& table) {
-  const Column* verdicts = find_column(table, "verdict");
-  int curves = 0, good = 0;
-  for (std::size_t row = 0; row < rows(table); ++row) {
-    const std::string verdict = text_in(verdicts, row);
-    curves += verdict.empty() ? 0 : 1;
-    good += verdict.ends_with("as declared") ? 1 : 0;
-  }
-  if (curves > 0) add(words, table.name, fmt::format("{} of {} methods converge with the order they declare", good, curves));
+  const OrderCount count = count_orders(table);
+  if (count.curves == 0) return;
+  add(words, table.name, fmt::format("{} of {} methods converge with the order they declare", count.as_declared, count.curves));
 }
 
 /// The least and the greatest ratio of SUNDIALS' quickest to our quickest.
 void add_peers(TableBuilder& words, const Table& table) {
   std::map<std::string, std::vector<double>> ratios;
   for (std::size_t row = 0; row < rows(table); ++row) {
-    double best = INFINITY;
-    for (const Column& column : table.columns)
-      if (column.name.ends_with("_ratio") && is_sundials(column.name))
-        if (const double ratio = number_in(&column, row); std::isfinite(ratio)) best = std::min(best, ratio);
+    const double best = quickest_peer(table, row).ratio;
     if (std::isfinite(best)) ratios[text_in(find_column(table, "scene"), row)].push_back(best);
   }
   for (auto& [scene, all] : ratios) {

@@ -30,22 +30,19 @@ bool has_orders(const Table& table) { return find_column(table, "fitted_order") 
 
 void add_orders(const Table& table, TableBuilder& overview) {
   const Column *verdicts = find_column(table, "verdict"), *fitted = find_column(table, "fitted_order");
-  int curves = 0, good = 0;
+  const OrderCount count = count_orders(table);
+  if (count.curves == 0) return;
   std::string others;
   for (std::size_t row = 0; row < rows(table); ++row) {
     const std::string verdict = text_in(verdicts, row);
-    if (verdict.empty()) continue;
-    ++curves;
-    if (verdict.ends_with("as declared"))
-      ++good;
-    else
-      others += fmt::format("{}{}: {}{}", others.empty() ? "" : "; ", row_title(table, row), verdict,
-                            std::isfinite(number_in(fitted, row)) ? fmt::format(" but {:.2f}", number_in(fitted, row)) : "");
+    if (verdict.empty() || is_as_declared(verdict)) continue;
+    others += fmt::format("{}{}: {}{}", others.empty() ? "" : "; ", row_title(table, row), verdict,
+                          std::isfinite(number_in(fitted, row)) ? fmt::format(" but {:.2f}", number_in(fitted, row)) : "");
   }
-  if (curves == 0) return;
   overview.row();
   overview.text("table", "table", "its name", table.name);
-  overview.text("good", "as declared", "curves whose order is as declared, of all", fmt::format("{} of {}", good, curves));
+  overview.text("good", "as declared", "curves whose order is as declared, of all",
+                fmt::format("{} of {}", count.as_declared, count.curves));
   overview.text("others", "the others", "their verdicts", others);
 }
 
@@ -53,15 +50,10 @@ void add_orders(const Table& table, TableBuilder& overview) {
 
 /// The best of SUNDIALS in a row of winners: how much slower it is than our best.
 void add_peers(const Table& table, std::size_t row, TableBuilder& overview) {
-  const Column *best = nullptr, *best_ratio = nullptr;
-  for (const Column& family : table.columns) {
-    const Column* ratio = is_sundials(family.name) ? find_column(table, family.name + "_ratio") : nullptr;
-    if (!std::isfinite(number_in(ratio, row))) continue;
-    if (best == nullptr || number_in(ratio, row) < number_in(best_ratio, row)) best = &family, best_ratio = ratio;
-  }
-  if (best == nullptr) return;
-  overview.text("peer", "SUNDIALS, tuned", "its quickest with that error", text_in(best, row));
-  overview.number("ratio", "slower by", "1", "time of SUNDIALS over that of our quickest", number_in(best_ratio, row));
+  const Peer best = quickest_peer(table, row);
+  if (!std::isfinite(best.ratio)) return;
+  overview.text("peer", "SUNDIALS, tuned", "its quickest with that error", best.name);
+  overview.number("ratio", "slower by", "1", "time of SUNDIALS over that of our quickest", best.ratio);
 }
 
 void add_winners(const Table& table, TableBuilder& overview) {

@@ -8,6 +8,14 @@
 #include "solver/outcome.hpp"
 
 namespace drape::results {
+namespace {
+
+/// Whether a contender in a table of work and precision is a solver of SUNDIALS.
+bool is_sundials(std::string_view code) {
+  return code.starts_with("cvode-") || code.starts_with("arkode-") || code.starts_with("ida-");
+}
+
+}  // namespace
 
 RunsOfScene by_scene(std::span<const Recording> recordings) {
   RunsOfScene scenes;
@@ -24,8 +32,28 @@ Measured measured(const RunRecord& run) {
   return {std::max(run.error->rms, resolution * run.error->reference_error), run.times_ms};
 }
 
-bool is_sundials(std::string_view code) {
-  return code.starts_with("cvode-") || code.starts_with("arkode-") || code.starts_with("ida-");
+bool is_as_declared(std::string_view verdict) { return verdict.ends_with("as declared"); }
+
+OrderCount count_orders(const Table& table) {
+  OrderCount count;
+  for (std::size_t row = 0; row < rows(table); ++row) {
+    const std::string verdict = text_in(find_column(table, "verdict"), row);
+    count.curves += verdict.empty() ? 0 : 1;
+    count.as_declared += is_as_declared(verdict) ? 1 : 0;
+  }
+  return count;
+}
+
+Peer quickest_peer(const Table& winners, std::size_t row) {
+  constexpr std::string_view ending = "_ratio";
+  Peer best;
+  for (const Column& column : winners.columns) {
+    const double ratio = number_in(&column, row);
+    if (!is_sundials(column.name) || !column.name.ends_with(ending) || !std::isfinite(ratio) || ratio >= best.ratio) continue;
+    const std::string family = column.name.substr(0, column.name.size() - ending.size());
+    best = {text_in(find_column(winners, family), row), ratio};
+  }
+  return best;
 }
 
 }  // namespace drape::results

@@ -110,15 +110,12 @@ class Planner {
   double finer(std::size_t k) const { return pilots_[k - 1].scale / pilots_[k].scale; }
   double more_steps(std::size_t k) const { return static_cast<double>(pilots_[k].steps) / std::max(1, pilots_[k - 1].steps); }
 
-  /// Whether the steps of the last pilot are as long as those of the one before: their distance is no measure of its error.
-  bool no_finer() const {
-    const std::size_t last = pilots_.size() - 1;
-    return pilots_[last].steps >= many_steps && more_steps(last) < std::sqrt(finer(last));
-  }
+  /// Whether pilot k took steps about as long as the one before, so that their distance does not measure an error.
+  bool no_finer(std::size_t k) const { return pilots_[k].steps >= many_steps && more_steps(k) < std::sqrt(finer(k)); }
 
   /// Runs that are wrong in the same way are near each other, but they do not converge.
   bool enough() const {
-    if (pilots_.size() < 3 || !std::isfinite(last_distance()) || no_finer()) return false;
+    if (pilots_.size() < 3 || !std::isfinite(last_distance()) || no_finer(pilots_.size() - 1)) return false;
     const bool small = last_distance() <= negligible * control_.tolerance;
     const bool converge = last_distance() == 0 || fall() >= (small ? steady : converging);
     return converge && last_error() <= (remark().empty() ? most_ahead : 1) * target();
@@ -165,8 +162,8 @@ class Planner {
   /// certain.
   std::string remark() const {
     for (std::size_t k = 1; k < pilots_.size(); ++k) {
-      const double more = more_steps(k);
-      if (pilots_[k].steps < many_steps || (more >= std::sqrt(finer(k)) && more <= 2 * finer(k))) continue;
+      const bool far_more = pilots_[k].steps >= many_steps && more_steps(k) > 2 * finer(k);
+      if (!no_finer(k) && !far_more) continue;
       return "stability or ringing limits the steps, not the tolerance alone: " + std::to_string(pilots_[k - 1].steps) +
              ", and " + std::to_string(pilots_[k].steps) + " with steps meant to be " + text(finer(k)) + " times finer";
     }
