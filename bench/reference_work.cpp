@@ -17,7 +17,7 @@ using Seconds = std::chrono::duration<double>;
 
 /// The motions that one thread computes, one after the other.
 struct Course {
-  int motions;  ///< in all
+  int motions;  ///< in all, at least
   int begun = 0;
   double t = 0;  ///< [s] of the motion it is at
   Clock::time_point begin = {};
@@ -63,7 +63,7 @@ class Pace {
     const auto& [first, second] = courses_;
     const double left = std::max(first.left(now, end_), second.left(now, end_));
     const bool known = !std::isnan(first.left(now, end_)) && !std::isnan(second.left(now, end_));
-    const std::string motion = first.begun <= 1 ? "trajectory" : fmt::format("perturbed motion {}", first.begun - 1);
+    const std::string motion = first.begun <= 1 ? "trajectory" : fmt::format("motion {} of its conditioning", first.begun - 1);
     return fmt::format("{} at t = {:.3f} s, witness at t = {:.3f} s of {:g} s, {}", motion, first.t, second.t, end_,
                        known ? fmt::format("some {:.0f} s left", left) : "estimating");
   }

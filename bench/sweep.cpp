@@ -110,11 +110,6 @@ void require_trajectories(const std::vector<Group>& groups, const SweepOptions& 
   if (options.start == results::Start::fresh) results::require_creatable(results::xdmf_path(options.out));
 }
 
-/// A run that the energy guard ended went one step further than it has recorded.
-std::size_t steps_of(const results::RunRecord& run) {
-  return run.steps.size() + (run.outcome == to_string(solver::Outcome::unstable) ? 1 : 0);
-}
-
 /// Times those runs of a group that have kept their limits, as far as they went; the others have no times.
 std::vector<TimedRun> time_all(const Group& group, int repetitions, const std::vector<MeasuredRun>& runs, Units& units) {
   Group timed;
@@ -122,8 +117,7 @@ std::vector<TimedRun> time_all(const Group& group, int repetitions, const std::v
   for (std::size_t k = 0; k < group.size(); ++k) {
     const results::RunRecord& run = runs[k].run;
     if (run.outcome == out_of_time || run.outcome == out_of_memory) continue;
-    timed.push_back(group[k]);
-    timed.back().most_steps = steps_of(run);
+    timed.push_back(as_far_as(group[k], run));
     places.push_back(k);
   }
   std::vector<std::size_t> steps;

@@ -60,7 +60,7 @@ void interleave_repetitions() {
 
 }  // namespace
 
-std::vector<std::vector<double>> time_runs(const std::vector<Prepare>& runs, int repetitions, const std::function<void()>& done,
+std::vector<std::vector<double>> time_runs(const std::vector<Repeated>& runs, const std::function<void()>& done,
                                            TimeOf time_of) {
   if (runs.empty()) return {};
   interleave_repetitions();
@@ -68,14 +68,14 @@ std::vector<std::vector<double>> time_runs(const std::vector<Prepare>& runs, int
   benchmark::ClearRegisteredBenchmarks();
   for (std::size_t k = 0; k < runs.size(); ++k)
     benchmark::RegisterBenchmark(std::to_string(k).c_str(),
-                                 [&prepare = runs[k], &done](benchmark::State& state) {
+                                 [&prepare = runs[k].prepare, &done](benchmark::State& state) {
                                    check_interruption();
                                    const std::function<void()> run = prepare();
                                    for (auto _ : state) run();
                                    done();
                                  })
         ->Iterations(1)
-        ->Repetitions(repetitions)
+        ->Repetitions(runs[k].repetitions)
         ->MeasureProcessCPUTime()
         ->UseRealTime();
   Collector collector(times, time_of);
@@ -83,12 +83,18 @@ std::vector<std::vector<double>> time_runs(const std::vector<Prepare>& runs, int
   return times;
 }
 
+/// A run that the energy guard ended went one step further than it has recorded.
+Cell as_far_as(Cell cell, const results::RunRecord& run) {
+  cell.most_steps = run.steps.size() + (run.outcome == to_string(solver::Outcome::unstable) ? 1 : 0);
+  return cell;
+}
+
 std::vector<std::vector<double>> time_group(const Group& group, int repetitions, const std::function<void()>& done,
                                             std::vector<std::size_t>* steps) {
-  std::vector<Prepare> runs;
+  std::vector<Repeated> runs;
   std::vector<std::size_t> taken(group.size());
-  for (std::size_t k = 0; k < group.size(); ++k) runs.push_back(prepared(group[k], taken[k]));
-  auto times = time_runs(runs, repetitions, done);
+  for (std::size_t k = 0; k < group.size(); ++k) runs.push_back({prepared(group[k], taken[k]), repetitions});
+  auto times = time_runs(runs, done);
   if (steps != nullptr) *steps = std::move(taken);
   return times;
 }

@@ -29,4 +29,17 @@ std::span<const Family> families() {
 
 const Family& family(std::string_view name) { return solver::find_named(families(), "family of solvers", name); }
 
+Trajectory solve_by_either(const Family& family, const solver::SplitOde& ode, const solver::State& y0, double t0,
+                           std::span<const double> times, SolveOptions options) {
+  std::int64_t& fallbacks = ode.work->counter("reference/klu_fallbacks", "motions for which only the exact Jacobian would do");
+  try {
+    options.newton = &newton_solve("constant-gmres");
+    return family.solve(ode, y0, t0, times, options);
+  } catch (const ReferenceError&) {
+    ++fallbacks;
+    options.newton = &newton_solve("klu");
+    return family.solve(ode, y0, t0, times, options);
+  }
+}
+
 }  // namespace drape::reference

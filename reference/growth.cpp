@@ -1,10 +1,11 @@
 #include "reference/growth.hpp"
 
 #include <cmath>
+#include <memory>
 #include <random>
 #include <utility>
 
-#include "reference/cvode.hpp"
+#include "reference/families.hpp"
 #include "reference/linear_motion.hpp"
 #include "solver/largest.hpp"
 
@@ -46,10 +47,11 @@ State noise(const SplitOde& ode, double duration, unsigned seed) {
   return unit({std::move(x), draw(1 / duration)}, duration);
 }
 
-LinearMotion linearised(const SplitOde& ode, const State& y0, double t0, int steps, double h, double size) {
+std::unique_ptr<LinearMotion> linearised(const SplitOde& ode, const State& y0, double t0, int steps, double h, double size) {
   std::vector<double> middles;
   for (int k = 0; k < steps; ++k) middles.push_back(t0 + (k + 0.5) * h);
-  return {ode, cvode(ode, y0, t0, middles, {.rtol = base_rtol, .size = size}), h};
+  const SolveOptions options{.rtol = base_rtol, .size = size};
+  return std::make_unique<LinearMotion>(ode, solve_by_either(family("cvode-bdf"), ode, y0, t0, middles, options), h);
 }
 
 /// The times [s] at which growth counts, and the steps from t0 on whose ends are nearest to them.
@@ -104,12 +106,14 @@ State fastest_growing(const SplitOde& ode, const State& y0, double t0, std::span
   State direction = noise(ode, duration, seed);
   if (rounds == 0) return direction;
   try {
+    auto motion = linearised(ode, y0, t0, fewest_steps, duration / fewest_steps, size);
     for (int steps = fewest_steps; steps <= most_steps; steps *= 2) {
       const double h = duration / steps;
-      LinearMotion motion = linearised(ode, y0, t0, steps, h, size), finer = linearised(ode, y0, t0, 2 * steps, h / 2, size);
-      const double growth = improve(direction, motion, {t0, times, h}, rounds);
-      const double resolved = largest(kept(finer.forward(direction), {t0, times, h / 2}));
+      auto finer = linearised(ode, y0, t0, 2 * steps, h / 2, size);
+      const double growth = improve(direction, *motion, {t0, times, h}, rounds);
+      const double resolved = largest(kept(finer->forward(direction), {t0, times, h / 2}));
       if (growth <= alike * resolved && resolved <= alike * growth) break;
+      motion = std::move(finer);
     }
   } catch (const LinearMotion::NotSolved&) {
     // what was found so far is measured, too

@@ -19,7 +19,8 @@ double perturbation_size(const solver::State& change, double duration);
 /// from normal noise: each round applies PᵀP, where P is the linearised motion about y0's own, from (x, duration v) to the
 /// positions at all these times together, and in the last rounds at the one where they are largest. It ends where a round gains
 /// less than a tenth, after `rounds` at most. The linearised motion has 30 steps, or twice as many until half of a step
-/// predicts the same growth within a factor of 1.5. Every doubling takes two of CVODE's trajectories at rtol = 1e-5.
+/// predicts the same growth within a factor of 1.5. It takes two of CVODE's trajectories at rtol = 1e-5, and another for every
+/// doubling.
 ///
 /// If the noise has the part c in the direction that grows most, r rounds, if none ends it earlier, find one that grows by at
 /// least c^(1/(2r + 1)) of the largest singular value of P. Of a random direction in n dimensions c < δ/√n has a probability of

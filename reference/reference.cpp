@@ -50,28 +50,14 @@ Reference compare(const Equations& equations, const State& y0, double t0, double
   return result;
 }
 
-/// Our factor of the constant matrix is the quickest where GMRES gets by with it; KLU is slow and needs no luck.
-Trajectory solve_by_any(const Family& family, const SplitOde& ode, const State& start, double t0, std::span<const double> times,
-                        SolveOptions options) {
-  std::int64_t& fallbacks = ode.work->counter("reference/klu_fallbacks", "motions for which only the exact Jacobian would do");
-  try {
-    options.newton = &newton_solve("constant-gmres");
-    return family.solve(ode, start, t0, times, options);
-  } catch (const ReferenceError&) {
-    ++fallbacks;
-    options.newton = &newton_solve("klu");
-    return family.solve(ode, start, t0, times, options);
-  }
-}
-
 Reference reference_by(const Family& first, const Family& second, const Equations& equations, const State& y0, double t0,
                        std::span<const double> times, const SolveOptions& options) {
   SolveOptions witness_options = options;
   if (&second == &family("arkode-esdirk")) witness_options.rtol *= looser;
   Reference result = compare(
       equations, y0, t0, options.size,
-      [&](const State& start) { return solve_by_any(first, equations.first, start, t0, times, options); },
-      [&](const State& start) { return solve_by_any(second, equations.second, start, t0, times, witness_options); });
+      [&](const State& start) { return solve_by_either(first, equations.first, start, t0, times, options); },
+      [&](const State& start) { return solve_by_either(second, equations.second, start, t0, times, witness_options); });
   result.name = first.name;
   result.witness = second.name;
   result.tolerance = options.rtol;

@@ -28,8 +28,9 @@ struct Equations {
   bool at_once() const { return &first != &second; }
 };
 
-/// Motions that the first thread computes: the trajectory, and one that measures its conditioning. The second computes one.
-inline constexpr int first_motions = 2;
+/// Motions that the first thread computes at least: the trajectory, two about which is linearised, and a perturbed one. The
+/// second computes one.
+inline constexpr int first_motions = 4;
 
 /// Solves with two families at once, CVODE's BDF at the given rtol and ARKODE's ESDIRK at 10 rtol, whose errors are smaller
 /// still. Their disagreement is the uncertainty. At a single time two solutions may meet by chance, so prefer its maximum over

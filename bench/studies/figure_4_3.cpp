@@ -95,7 +95,7 @@ void add_bar(results::TableBuilder& table, const RunRecord& run, const char* wha
 /// All bars of a method, from its cells with and without box.
 void add_bars(results::TableBuilder& table, const Group& group, int repetitions) {
   const RunRecord with = record(group[0]), without = record(group[1]);
-  const auto times = time_group(group, repetitions, [] {});
+  const auto times = time_group({as_far_as(group[0], with), as_far_as(group[1], without)}, repetitions, [] {});
   const double time = results::quantile(times[0], 0.5) / results::quantile(times[1], 0.5);
   const Steps all = with.steps, rest = all.last(std::min(all.size(), at_rest));
   add_bar(table, with, "CG iterations a step, at rest over before the first contact",

@@ -74,14 +74,14 @@ std::vector<solver::Vectors> solve(const Row& row, const Case& on) {
 
 results::Measured measure(const Row& row, const Case& on, Units& units) {
   constexpr int repetitions = 15;
-  const std::vector<Prepare> runs{[&] {
+  const auto prepare = [&] {
     return [&, cloth = std::make_shared<model::Cloth>(model::compile(on.scene))] {
       solve_by_peer(row.setup, row.value, on.size, *cloth, on.times);
     };
-  }};
+  };
   return {0, units(fmt::format("{} {} {}", row.damping, row.setup.name(), row.value), [&] {
             return time_runs(
-                runs, repetitions, [] {}, TimeOf::process);
+                {{prepare, repetitions}}, [] {}, TimeOf::process);
           })[0]};
 }
 

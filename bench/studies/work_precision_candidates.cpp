@@ -189,6 +189,7 @@ std::vector<Family> families(const model::Scene& scene, Search search, const Met
   add_ours(all, scene, search, methods);
   add_thesis(all, scene, search, methods);
   if (scene.obstacles.empty() && search != Search::large) add_peers(all, scene, search);  // they have no contacts
+  for (Family& family : all) family.advised = family.name == advised_ours || family.name == advised_peer();
   return all;
 }
 

@@ -29,7 +29,11 @@ struct Family {
   std::string control;  ///< "step", "tolerance" or "fraction"
   std::string method;   ///< ours with the program's choice of stage and linear solvers: the method; else empty
   std::vector<Candidate> candidates;
+  bool advised = false;  ///< recommended by its authors: tried to the end, however slow
 };
+
+/// The program's default method and control.
+inline constexpr const char* advised_ours = "bdf2 by steps";
 
 /// How much is tried.
 enum class Search {

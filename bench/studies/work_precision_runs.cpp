@@ -20,12 +20,16 @@ namespace {
 constexpr double too_exact = 1;
 
 /// A family that is so many times slower than another of the same code twice in a row will not win, unless finer steps take
-/// hardly more time: it may be the quickest at smaller errors, if it is not yet slower by far.
+/// hardly more time: it may be the quickest at smaller errors, if it is not yet slower by far, or so coarse that nothing
+/// follows.
 constexpr double hopeless = 2, by_far = 8;
-constexpr double hardly_more = 1.3;
+constexpr double hardly_more = 1.3, coarse = 1e-2;
 
 /// Steps may be so coarse that nothing converges in time: this many are left out then, as long as no finer one has succeeded.
 constexpr std::size_t leap = 4;
+
+/// Repetitions of slow runs.
+constexpr int fewest_repetitions = 3;
 
 /// A first run may have been so much slower than others by chance.
 constexpr double slack = 1.4;
@@ -111,8 +115,10 @@ std::vector<Tried> try_family(const Problem& problem, const Family& family, cons
     const double taken = seconds(effort.time_of) - begin;
     const bool too_long = taken > 0.7 * effort.cap;
     succeeded |= trial.outcome == "success";
-    const double factor = taken > hardly_more * before ? hopeless : by_far;
-    times_outdone = outdone(trial.measured, rivals, factor) ? times_outdone + 1 : 0;
+    const bool slower = taken > hardly_more * before;
+    const bool lost = !family.advised && (slower || trial.measured.error <= coarse) &&
+                      outdone(trial.measured, rivals, slower ? hopeless : by_far);
+    times_outdone = lost ? times_outdone + 1 : 0;
     before = taken;
     rivals.push_back(trial.measured);
     const bool exact = trial.measured.error < std::max(too_exact * problem.uncertainty, problem.enough);
@@ -223,16 +229,19 @@ void time_fronts(const Problem& problem, const std::vector<Contender>& who, std:
                  Units& units) {
   judge_energies(problem, who, trials, units);
   const std::set<std::size_t> chosen = near_fronts(problem, who, trials);
-  std::vector<Prepare> runs;
-  for (const std::size_t k : chosen)
-    runs.emplace_back([&problem, &solve = trials[k].candidate->solve] {
+  std::vector<Repeated> runs;
+  for (const std::size_t k : chosen) {
+    const auto prepare = [&problem, &solve = trials[k].candidate->solve] {
       return [&problem, &solve, cloth = std::make_shared<model::Cloth>(model::compile(problem.scene))] {
         solve(*cloth, problem.times);
       };
-    });
+    };
+    const bool slow = trials[k].measured.times.front() > 1e3 * effort.slow;
+    runs.push_back({prepare, slow ? std::min(fewest_repetitions, effort.repetitions) : effort.repetitions});
+  }
   const auto times = units("times", [&] {
     return time_runs(
-        runs, effort.repetitions, [] {}, effort.time_of);
+        runs, [] {}, effort.time_of);
   });
   for (std::size_t place = 0; const std::size_t k : chosen) {
     trials[k].measured.times = times[place++];

@@ -46,9 +46,6 @@ void add_search(TableBuilder& table, const SceneTrials& scene) {
 
 constexpr const char* sides[] = {"ours", "defaults", "sundials"};
 
-/// The program's default method and control.
-constexpr const char* advised_ours = "bdf2 by steps";
-
 void add_side(TableBuilder& table, const std::string& key, const std::string& title, const Winner& winner) {
   table.text(key.c_str(), title.c_str(), "the family with the value that is the quickest", winner.name());
   if (winner) table.number((key + "_ms").c_str(), "CPU", "ms", "its median CPU time", winner.time);
