@@ -64,6 +64,16 @@ std::vector<Entry> entries() {
   return all;
 }
 
+/// And all other built-in scenes as they are, so that no ranking rests on a choice of scenes.
+std::vector<Entry> with_all_scenes(std::vector<Entry> all) {
+  for (const model::BuiltinScene& scene : model::builtin_scenes()) {
+    const std::string name(scene.name);
+    if (std::ranges::find(all, name, [](const Entry& e) { return e.scene.name; }) == all.end())
+      all.push_back(entry(name, name, {}));
+  }
+  return all;
+}
+
 Problem problem(const Entry& entry) {
   Problem result{entry.name, entry.scene, model::size(entry.scene)};
   for (int tenth = 1; tenth <= tenths; ++tenth) result.times.push_back(entry.scene.end * tenth / tenths);
@@ -196,7 +206,7 @@ Problem certified_problem(const std::string& name, const model::Scene& scene, Un
 }
 
 std::vector<TableJob> work_precision(bool quick, const Methods& methods) {
-  return jobs(quick ? quick_entries() : entries(), methods);
+  return jobs(quick ? quick_entries() : with_all_scenes(entries()), methods);
 }
 
 std::vector<TableJob> bars(bool quick) { return jobs(quick ? quick_entries() : entries(), {}, true); }
