@@ -57,6 +57,17 @@ TEST(AcceleratedStages, ServeTheNextOnes) {
   EXPECT_LE(std::accumulate(updates.begin() + 80, updates.end(), 0), 30);  // of 20 steps
 }
 
+/// Folds that tumble: what one update reduces the error by says little of the next.
+TEST(AcceleratedStages, CountOnNoReductionsWhereConvergenceIsIrregular) {
+  const model::Scene scene = model::load_scene("wind");
+  const model::Cloth cloth = model::compile(scene);
+  const Ended usual = run(cloth, "esdirk4", stage("auto"), 0.01, 0.5),
+              exact = run(cloth, "esdirk4", stage("auto", 1e-3), 0.01, 0.5);
+  ASSERT_EQ(usual.result.outcome, Outcome::success) << usual.result.message;
+  ASSERT_EQ(exact.result.outcome, Outcome::success) << exact.result.message;
+  EXPECT_LE(rms(usual.end.x - exact.end.x), 2e-5 * model::size(scene)) << "the error of the time step is 1.7e-5";
+}
+
 class StageKinds : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(, StageKinds,
                          testing::Values("anderson", "newton", "lean-newton", "auto", "newton/multigrid", "lean-newton/ic0"),
