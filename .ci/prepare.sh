@@ -69,11 +69,11 @@ build() {
   cmake --build "$directory" --parallel "$(nproc)" "${@:2}" 2>&1 | show_progress "$log" || failed_by "building" "$log"
 }
 
-# run_tests <preset> [GoogleTest option]...: in four parts, as many at a time as there are cores; not by ctest, which would start the
+# run_tests <preset> [GoogleTest option]...: in eight parts, as many at a time as there are cores; not by ctest, which would start the
 # program anew for each of some two thousand tests.
 run_tests() {
   local status=0
-  seq 0 3 | GTEST_TOTAL_SHARDS=4 xargs -P "$(nproc)" -I '{}' env GTEST_SHARD_INDEX='{}' \
+  seq 0 7 | GTEST_TOTAL_SHARDS=8 xargs -P "$(nproc)" -I '{}' env GTEST_SHARD_INDEX='{}' \
     timeout 1200 "$root/build/$1/verify/verify" --gtest_brief=1 "${@:2}" || status=$?
   [[ $status -eq 0 ]] && echo "all tests passed" || echo "tests failed"
   return "$status"
