@@ -21,9 +21,9 @@ std::span<const Family> families();
 /// The family with this name. Throws std::invalid_argument, naming all that there are.
 const Family& family(std::string_view name);
 
-/// Solves with an implicit family, its Newton systems by our factor of the constant matrix, the quickest where GMRES gets by with
-/// it; where it does not, by KLU, which is slow and needs no luck, counted as "reference/klu_fallbacks". The Newton solve of
-/// `options` has no meaning here. Exceptions as for cvode().
+/// Solves with an implicit family, its Newton systems by our factor of the constant matrix, the quickest where GMRES gets by
+/// with it; where it does not, by KLU, which is slow and needs no luck, counted as "reference/klu_fallbacks". The Newton solve
+/// of `options` has no meaning here. Exceptions as for cvode().
 Trajectory solve_by_either(const Family& family, const solver::SplitOde& ode, const solver::State& y0, double t0,
                            std::span<const double> times, SolveOptions options);
 

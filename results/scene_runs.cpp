@@ -35,9 +35,10 @@ Measured measured(const RunRecord& run) {
 bool is_as_declared(std::string_view verdict) { return verdict.ends_with("as declared"); }
 
 OrderCount count_orders(const Table& table) {
+  const Column* verdicts = find_column(table, "verdict");
   OrderCount count;
   for (std::size_t row = 0; row < rows(table); ++row) {
-    const std::string verdict = text_in(find_column(table, "verdict"), row);
+    const std::string verdict = text_in(verdicts, row);
     count.curves += verdict.empty() ? 0 : 1;
     count.as_declared += is_as_declared(verdict) ? 1 : 0;
   }

@@ -28,7 +28,8 @@ constexpr double hardly_more = 1.3, coarse = 1e-2;
 /// Steps may be so coarse that nothing converges in time: this many are left out then, as long as no finer one has succeeded.
 constexpr std::size_t leap = 4;
 
-/// Repetitions of slow runs.
+/// Runs that take longer [ms] are repeated so often: the fewest times that still show a spread.
+constexpr double slow = 100;
 constexpr int fewest_repetitions = 3;
 
 /// A first run may have been so much slower than others by chance.
@@ -116,7 +117,7 @@ std::vector<Tried> try_family(const Problem& problem, const Family& family, cons
     const bool too_long = taken > 0.7 * effort.cap;
     succeeded |= trial.outcome == "success";
     const bool slower = taken > hardly_more * before;
-    const bool lost = !family.advised && (slower || trial.measured.error <= coarse) &&
+    const bool lost = !is_advised(family) && (slower || trial.measured.error <= coarse) &&
                       outdone(trial.measured, rivals, slower ? hopeless : by_far);
     times_outdone = lost ? times_outdone + 1 : 0;
     before = taken;
@@ -236,8 +237,8 @@ void time_fronts(const Problem& problem, const std::vector<Contender>& who, std:
         solve(*cloth, problem.times);
       };
     };
-    const bool slow = trials[k].measured.times.front() > 1e3 * effort.slow;
-    runs.push_back({prepare, slow ? std::min(fewest_repetitions, effort.repetitions) : effort.repetitions});
+    const bool few = trials[k].measured.times.front() > slow;
+    runs.push_back({prepare, few ? std::min(fewest_repetitions, effort.repetitions) : effort.repetitions});
   }
   const auto times = units("times", [&] {
     return time_runs(

@@ -50,8 +50,7 @@ struct Trial {
 /// How long a study may take, and what times are.
 struct Effort {
   double cap = 1;       ///< time of a run before it is given up [s]
-  int repetitions = 7;  ///< of those near a front,
-  double slow = 0.1;    ///< [s] but for those that take longer: as few as tell a median with its spread
+  int repetitions = 7;  ///< of those near a front; fewer of slow ones
   TimeOf time_of = TimeOf::process;
 };
 
