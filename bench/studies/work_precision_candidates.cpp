@@ -174,8 +174,6 @@ Family ladder(const model::Scene& scene, const std::string& method) {
   return chosen.method->sub_steps ? by_fraction(chosen, 10) : by_steps(chosen, "drape", finest_parts(Search::usual));
 }
 
-bool is_advised(const Family& family) { return family.name == advised_ours || family.name == advised_peer(); }
-
 bool is_ours(std::string_view code) { return code == "drape" || code == "explicit" || code == "thesis"; }
 
 std::vector<LeftOut> left_out(const model::Scene& scene, Search search, const Methods& methods) {
@@ -191,6 +189,7 @@ std::vector<Family> families(const model::Scene& scene, Search search, const Met
   add_ours(all, scene, search, methods);
   add_thesis(all, scene, search, methods);
   if (scene.obstacles.empty() && search != Search::large) add_peers(all, scene, search);  // they have no contacts
+  for (Family& family : all) family.advised = family.name == advised_ours || family.name == advised_peer();
   return all;
 }
 

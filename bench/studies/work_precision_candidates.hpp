@@ -29,13 +29,11 @@ struct Family {
   std::string control;  ///< "step", "tolerance" or "fraction"
   std::string method;   ///< ours with the program's choice of stage and linear solvers: the method; else empty
   std::vector<Candidate> candidates;
+  bool advised = false;  ///< recommended by its authors: tried to the end, however slow; in the study only, not in a ladder
 };
 
 /// The program's default method and control.
 inline constexpr const char* advised_ours = "bdf2 by steps";
-
-/// Whether a family is the setting that its authors recommend: it is tried to the end, however slow.
-bool is_advised(const Family& family);
 
 /// How much is tried.
 enum class Search {

@@ -117,7 +117,7 @@ std::vector<Tried> try_family(const Problem& problem, const Family& family, cons
     const bool too_long = taken > 0.7 * effort.cap;
     succeeded |= trial.outcome == "success";
     const bool slower = taken > hardly_more * before;
-    const bool lost = !is_advised(family) && (slower || trial.measured.error <= coarse) &&
+    const bool lost = !family.advised && (slower || trial.measured.error <= coarse) &&
                       outdone(trial.measured, rivals, slower ? hopeless : by_far);
     times_outdone = lost ? times_outdone + 1 : 0;
     before = taken;
