@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <limits>
-#include <numeric>
 #include <vector>
 
 #include "solver/dense_output.hpp"
@@ -15,19 +15,29 @@ namespace {
 constexpr double unknown = std::numeric_limits<double>::infinity();
 
 constexpr double aim = 0.7;          ///< part of the tolerance that the error should be
+constexpr double lowest = 0.25;      ///< and may be
 constexpr double crudest = 0.1;      ///< tolerance of the local error of the first pilot, at most,
 constexpr double head_start = 1e3;   ///< and over the tolerance
 constexpr double converging = 2.5;   ///< least factor by which their distances fall
 constexpr double most_ahead = 10;    ///< error of the last pilot over that of the run
 constexpr double negligible = 0.05;  ///< distance over the tolerance that need not fall so much,
 constexpr double steady = 0.5;       ///< but hardly rise
+constexpr double apart = 1.5;        ///< least quotient of errors that a distance tells from each other,
+constexpr double further = 2;        ///< and of those of a further pilot
+constexpr double narrow = 1.1;       ///< quotient of scales with nothing worth a pilot between them
 constexpr int most_pilots = 20;
-constexpr int many_steps = 50;  ///< fewer are nothing to remark on
+constexpr int most_trials = 6;
+constexpr int many_steps = 50;     ///< fewer are nothing to remark on
+constexpr int few_steps = 10'000;  ///< that any pilot may take,
+constexpr double most_excess = 4;  ///< or as many times more than expected
 
 struct Pilot {
   double scale;  ///< of steps
   int steps = 0;
+  bool largest_steps = false;           ///< whether all are as long as allowed
   std::vector<Vectors> positions = {};  ///< at the tenths; fewer if it failed
+  std::string message = {};             ///< why it did
+  double error = unknown;
 };
 
 /// Counters that are those of the run itself.
@@ -65,12 +75,19 @@ class Planner {
   GlobalControl plan() {
     while (!enough()) {
       const double scale = pilots_.empty() ? 1 : pilots_.back().scale * std::pow(refinement(), -1.0 / order());
-      if (std::ssize(pilots_) == most_pilots || expected_steps(scale) > control_.most_steps) return too_costly(scale);
-      fly(scale);
+      if (std::ssize(pilots_) == most_pilots || !fly(scale)) return too_costly(scale);
     }
-    const double scale = wanted_scale();
-    if (expected_steps(scale) > control_.most_steps) return too_costly(scale);
-    return {tolerance(scale), largest_step(scale), true, std::max(50, static_cast<int>(expected_steps(scale))), remark()};
+    remark_ = remark();
+    exponent_ = std::log(rate()) / std::log(refinement()) * order();
+    measure();
+    for (int trials = 0;; ++trials) {
+      const double scale = wanted_scale();
+      const auto same = std::ranges::find(pilots_, scale, &Pilot::scale);
+      if (same != pilots_.end()) return {tolerance(scale), largest_step(scale), true, remark_.empty() ? cliff(*same) : remark_};
+      if (trials == most_trials || !fly(scale)) return too_costly(scale);
+      std::ranges::sort(pilots_, std::greater(), &Pilot::scale);
+      measure();
+    }
   }
 
  private:
@@ -82,16 +99,23 @@ class Planner {
   double tolerance(double scale) const { return coarsest_ * std::pow(scale, order() + 1); }
   double largest_step(double scale) const { return h_ * std::min(1.0, scale); }
 
-  void fly(double scale) {
+  /// A run with steps of that scale; false if it takes too many.
+  bool fly(double scale) {
+    const double expected = expected_steps(scale);
+    if (expected > control_.most_steps) return false;
     Options options = integrator_.options();
     options.error_control.global = false;
     options.error_control.tolerance = tolerance(scale);
+    const double most = pilots_.empty() ? unknown : std::max<double>(few_steps, most_excess * expected);
+    options.error_control.most_steps = static_cast<int>(std::min<double>(control_.most_steps, most));
     Integrator integrator(integrator_.ode(), integrator_.method(), options, integrator_.state(), integrator_.time());
     SmoothOutput output(times_, integrator.time(), integrator.state());
     const RunResult run =
         integrate(integrator, t_end_, largest_step(scale), [&](const StepReport& step) { output.see(step.t, step.y); });
-    pilots_.push_back({scale, run.steps + run.rejected_steps, std::move(output.positions)});
-    if (pilots_.size() > 1) distances_.push_back(distance(pilots_[pilots_.size() - 2], pilots_.back()));
+    const int steps = run.steps + run.rejected_steps;
+    const bool largest = steps <= std::ceil((t_end_ - integrator_.time()) / largest_step(scale));
+    pilots_.push_back({scale, steps, largest, std::move(output.positions), run.message});
+    return steps < options.error_control.most_steps;
   }
 
   /// What the error of the first is taken for.
@@ -103,8 +127,11 @@ class Planner {
     return std::isfinite(distance) ? distance : unknown;
   }
 
-  double last_distance() const { return distances_.back(); }
-  double fall() const { return distances_[distances_.size() - 2] / last_distance(); }
+  /// Of the pilot that is `back` pilots before the last from the next.
+  double last_distance(std::size_t back = 0) const {
+    return distance(pilots_[pilots_.size() - 2 - back], pilots_[pilots_.size() - 1 - back]);
+  }
+  double fall() const { return last_distance(1) / last_distance(); }
 
   /// How many times finer pilot k was meant to be than the one before, and how many times as many steps it took.
   double finer(std::size_t k) const { return pilots_[k - 1].scale / pilots_[k].scale; }
@@ -118,34 +145,42 @@ class Planner {
     if (pilots_.size() < 3 || !std::isfinite(last_distance()) || no_finer(pilots_.size() - 1)) return false;
     const bool small = last_distance() <= negligible * control_.tolerance;
     const bool converge = last_distance() == 0 || fall() >= (small ? steady : converging);
-    return converge && last_error() <= (remark().empty() ? most_ahead : 1) * target();
+    return converge && last_distance() / (rate() - 1) <= (remark().empty() ? most_ahead : 1) * target();
   }
 
   /// Factor by which errors fall from pilot to pilot.
-  double rate() const { return std::clamp(fall(), std::pow(refinement(), 0.8), std::pow(refinement(), 1.1)); }
+  double rate() const { return std::clamp(fall(), std::pow(refinement(), 0.9), std::pow(refinement(), 1.1)); }
 
-  double last_error() const { return last_distance() / (rate() - 1); }
-
-  /// The error of pilot k, by its way to the last one.
-  double error(std::size_t k) const {
-    return std::accumulate(distances_.begin() + static_cast<std::ptrdiff_t>(k), distances_.end(), last_error());
+  /// Finds errors: that of the finest pilot by its distance from a coarser one, as errors go with a power of the scale, and
+  /// those of the others by their distances from it.
+  void measure() {
+    Pilot& finest = pilots_.back();
+    finest.error = unknown;
+    for (std::size_t k = pilots_.size() - 1; k-- > 0 && finest.error == unknown;) {
+      const double taken = static_cast<double>(finest.steps) / std::max(1, pilots_[k].steps);
+      const double finer = remark_.empty() ? taken : std::min(taken, pilots_[k].scale / finest.scale);
+      const double quotient = std::pow(finer, exponent_);
+      if (quotient >= apart) finest.error = distance(pilots_[k], finest) / (quotient - 1);
+    }
+    for (std::size_t k = 0; k + 1 < pilots_.size(); ++k) pilots_[k].error = distance(pilots_[k], finest) + finest.error;
   }
 
-  /// Between the last pilot whose error is too large and the next, or beyond the ends.
+  /// That of the first pilot from which on errors are small enough, or one between it and the one before or beyond the ends
+  /// that should come nearer to the tolerance.
   double wanted_scale() const {
     std::size_t k = pilots_.size();
-    while (k > 0 && error(k - 1) < target()) --k;
-    if (k == 0) return between(0, std::max(target() / std::max(error(0), 1e-300), 1e-2), refinement());
-    const double excess = error(k - 1) / target();
-    if (k == pilots_.size()) return between(k - 1, 1 / excess, rate());
-    if (!std::isfinite(excess) || !remark().empty()) return pilots_[k].scale;
-    return between(k - 1, 1 / excess, std::clamp(error(k - 1) / error(k), 2.0, 1e3));
-  }
-
-  /// From pilot k on, so that the error changes by a factor where one pilot more divides it by `fall`.
-  double between(std::size_t k, double factor, double fall) const {
-    const double pilots = std::clamp(std::log(factor) / std::log(fall), -8.0, 2.0);
-    return pilots_[k].scale * std::pow(refinement(), pilots / order());
+    while (k > 0 && pilots_[k - 1].error <= control_.tolerance) --k;
+    if (k == pilots_.size())
+      return pilots_[k - 1].scale * std::pow(std::max(further, pilots_[k - 1].error / target()), -1 / exponent_);
+    const Pilot& good = pilots_[k];
+    if (good.error >= lowest * control_.tolerance) return good.scale;
+    const double excess = target() / std::max(good.error, 1e-300);
+    if (k == 0) return good.largest_steps ? good.scale : good.scale * std::pow(std::min(excess, 100.0), 1 / exponent_);
+    const Pilot& bad = pilots_[k - 1];
+    const double scales = bad.scale / good.scale;
+    if (scales < narrow) return good.scale;
+    const double part = std::log(excess) / std::log(bad.error / std::max(good.error, 1e-300));
+    return good.scale * std::pow(scales, std::clamp(std::isfinite(part) ? part : 0.5, 0.1, 0.9));
   }
 
   double expected_steps(double scale) const {
@@ -153,9 +188,10 @@ class Planner {
   }
 
   GlobalControl too_costly(double scale) const {
-    return {0, 0, false, 0,
-            "an error of " + text(control_.tolerance) + " takes more than " + text(control_.most_steps) + " steps, about " +
-                text(expected_steps(scale)) + " as far as pilot runs tell"};
+    std::string why = "an error of " + text(control_.tolerance) + " takes more than " + std::to_string(control_.most_steps) +
+                      " steps, about " + text(expected_steps(scale)) + " as far as pilot runs tell";
+    if (!pilots_.back().message.empty()) why += "; the last: " + pilots_.back().message;
+    return {0, 0, false, why};
   }
 
   /// Where the number of steps does not go with their scale, it is not accuracy that they serve, and between pilots nothing is
@@ -170,6 +206,14 @@ class Planner {
     return "";
   }
 
+  /// What is to be said of a run far more accurate than was wanted.
+  std::string cliff(const Pilot& chosen) const {
+    if (chosen.error >= lowest * control_.tolerance || chosen.largest_steps || &chosen == pilots_.data()) return "";
+    const Pilot& coarser = *(&chosen - 1);
+    return "the error jumps: " + text(coarser.error) + " with " + std::to_string(coarser.steps) + " steps, " +
+           text(chosen.error) + " with " + std::to_string(chosen.steps);
+  }
+
   static std::string text(double value) {
     char digits[32];
     std::snprintf(digits, sizeof digits, "%.2g", value);
@@ -179,9 +223,10 @@ class Planner {
   const Integrator& integrator_;
   const ErrorControl& control_;
   double t_end_, h_, coarsest_;
+  double exponent_ = 0;  ///< of the scale, with which errors go
   std::vector<double> times_;
-  std::vector<Pilot> pilots_;
-  std::vector<double> distances_;  ///< of each pilot from the next, over the length
+  std::vector<Pilot> pilots_;  ///< from coarse to fine
+  std::string remark_;
 };
 
 }  // namespace

@@ -265,10 +265,17 @@ class StepSizes {
 };
 
 RunResult advance(Integrator& integrator, double t_end, double h, const Observer& observer) {
+  const ErrorControl& control = integrator.options().error_control;
   StepSizes sizes(integrator, h);
   RunResult run;
   run.last_good_time = integrator.time();
   for (double left = t_end - integrator.time(); left > same_step * h; left = t_end - integrator.time()) {
+    if (control.enabled() && run.steps + run.rejected_steps >= control.most_steps) {
+      run.outcome = Outcome::inaccurate;
+      run.message = "more than " + std::to_string(control.most_steps) + " steps, " + std::to_string(run.rejected_steps) +
+                    " of them rejected, at t = " + std::to_string(integrator.time()) + " s";
+      return run;
+    }
     const double size = sizes.next(left);
     const StageResult result = integrator.step(size);
     if (result.outcome == Outcome::success) {
@@ -298,11 +305,7 @@ RunResult integrate(Integrator& integrator, double t_end, double h, const Observ
   if (!plan.feasible) return {Outcome::inaccurate, plan.remark, integrator.time(), 0, 0};
   integrator.limit_error(plan.tolerance);
   RunResult run = advance(integrator, t_end, plan.largest_step, observer);
-  constexpr double tolerated = 4;
-  const int tried = run.steps + run.rejected_steps;
   if (run.message.empty()) run.message = plan.remark;
-  if (run.message.empty() && tried > tolerated * plan.expected_steps)
-    run.message = std::to_string(tried) + " steps where pilot runs suggested " + std::to_string(plan.expected_steps);
   return run;
 }
 

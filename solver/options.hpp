@@ -20,11 +20,11 @@ struct StepControl {
 /// Steps whose estimated local error stays below a tolerance: in the root mean square of positions relative to `length` and
 /// velocities relative to length/duration, as the references have it. Or, measured by pilot runs, a global error near it.
 struct ErrorControl {
-  double tolerance = 0;        ///< 0: constant steps
-  double length = 1;           ///< size of the scene [m]
-  double duration = 1;         ///< of the run [s]
-  bool global = false;         ///< whether the tolerance is of the error of positions at all tenths of the run
-  int most_steps = 1'000'000;  ///< a run that needs more for a global error is not begun
+  double tolerance = 0;      ///< 0: constant steps
+  double length = 1;         ///< size of the scene [m]
+  double duration = 1;       ///< of the run [s]
+  bool global = false;       ///< whether the tolerance is of the error of positions at all tenths of the run
+  int most_steps = 100'000;  ///< accepted or not, after which a run ends; one that needs more for a global error is not begun
 
   bool enabled() const { return tolerance > 0; }
 };

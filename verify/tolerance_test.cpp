@@ -137,6 +137,49 @@ TEST(Tolerance, SaysSoWhereStabilityLimitsTheSteps) {
   EXPECT_THAT(run.result.message, HasSubstr("stability or ringing limits the steps"));
 }
 
+/// Where what pilots told at first was wrong by more than a factor of ten.
+TEST(Tolerance, IsNearTheErrorWherePilotsMislead) {
+  struct Cell {
+    const char *scene, *method;
+    double tolerance;
+  };
+  for (const Cell& cell :
+       {Cell{"chain", "esdirk3", 1e-5}, {"hung-corners", "sbdf2", 1e-4}, {"hung-edge", "imex-midpoint", 1e-5}}) {
+    const Sheet sheet({"", cell.scene, {}});
+    const Motion truth = sheet.run("esdirk4", sheet.control(1e-8, false));
+    ErrorControl control = sheet.control(cell.tolerance, true);
+    control.most_steps = 20'000;
+    const Motion run = sheet.run(cell.method, control);
+    ASSERT_EQ(run.result.outcome, Outcome::success) << cell.scene << ": " << run.result.message;
+    EXPECT_EQ(run.result.message, "") << cell.scene;
+    EXPECT_LE(sheet.distance(run, truth), 3 * cell.tolerance) << cell.scene;
+    EXPECT_GE(sheet.distance(run, truth), 0.1 * cell.tolerance) << cell.scene;
+  }
+}
+
+/// The errors of IMEX Euler ring there, and steps become tiny.
+TEST(Tolerance, IsGivenUpWhereAPilotTakesTooManySteps) {
+  const Sheet sheet({"", "pulled", {}});
+  ErrorControl control = sheet.control(1e-3, true);
+  control.most_steps = 400;
+  const Motion run = sheet.run("imex-euler", control);
+  EXPECT_EQ(run.result.outcome, Outcome::inaccurate);
+  EXPECT_EQ(run.result.steps, 0);
+  EXPECT_THAT(run.result.message, HasSubstr("takes more than 400 steps"));
+  EXPECT_THAT(run.result.message, HasSubstr("more than 400 steps, "));
+  EXPECT_LE(sheet.cloth.ode.work->count("pilot_steps"), 1.5 * control.most_steps);
+}
+
+TEST(Tolerance, OfTheLocalErrorEndsAfterTheMostSteps) {
+  const Sheet sheet(settings[0]);
+  ErrorControl control = sheet.control(1e-6, false);
+  control.most_steps = 20;
+  const Motion run = sheet.run("bdf2", control);
+  EXPECT_EQ(run.result.outcome, Outcome::inaccurate);
+  EXPECT_EQ(run.result.steps + run.result.rejected_steps, 20);
+  EXPECT_GT(run.result.last_good_time, 0);
+}
+
 TEST(Tolerance, OfAPulledSheetIsReached) {
   const Sheet sheet({"", "pulled", {{"end.time", "0.05"}}});
   const Motion truth = sheet.run("esdirk4", sheet.control(1e-9, false));
