@@ -137,12 +137,9 @@ class Planner {
   double finer(std::size_t k) const { return pilots_[k - 1].scale / pilots_[k].scale; }
   double more_steps(std::size_t k) const { return static_cast<double>(pilots_[k].steps) / std::max(1, pilots_[k - 1].steps); }
 
-  /// Whether pilot k took steps about as long as the one before, so that their distance does not measure an error.
-  bool no_finer(std::size_t k) const { return pilots_[k].steps >= many_steps && more_steps(k) < std::sqrt(finer(k)); }
-
   /// Runs that are wrong in the same way are near each other, but they do not converge.
   bool enough() const {
-    if (pilots_.size() < 3 || !std::isfinite(last_distance()) || no_finer(pilots_.size() - 1)) return false;
+    if (pilots_.size() < 3 || !std::isfinite(last_distance())) return false;
     const bool small = last_distance() <= negligible * control_.tolerance;
     const bool converge = last_distance() == 0 || fall() >= (small ? steady : converging);
     return converge && last_distance() / (rate() - 1) <= (remark().empty() ? most_ahead : 1) * target();
@@ -198,8 +195,8 @@ class Planner {
   /// certain.
   std::string remark() const {
     for (std::size_t k = 1; k < pilots_.size(); ++k) {
-      const bool far_more = pilots_[k].steps >= many_steps && more_steps(k) > 2 * finer(k);
-      if (!no_finer(k) && !far_more) continue;
+      const bool as_meant = more_steps(k) >= std::sqrt(finer(k)) && more_steps(k) <= 2 * finer(k);
+      if (pilots_[k].steps < many_steps || as_meant) continue;
       return "stability or ringing limits the steps, not the tolerance alone: " + std::to_string(pilots_[k - 1].steps) +
              ", and " + std::to_string(pilots_[k].steps) + " with steps meant to be " + text(finer(k)) + " times finer";
     }
