@@ -137,9 +137,12 @@ class Planner {
   double finer(std::size_t k) const { return pilots_[k - 1].scale / pilots_[k].scale; }
   double more_steps(std::size_t k) const { return static_cast<double>(pilots_[k].steps) / std::max(1, pilots_[k - 1].steps); }
 
+  /// Whether pilot k took steps about as long as the one before, so that their distance does not measure an error.
+  bool no_finer(std::size_t k) const { return pilots_[k].steps >= many_steps && more_steps(k) < std::sqrt(finer(k)); }
+
   /// Runs that are wrong in the same way are near each other, but they do not converge.
   bool enough() const {
-    if (pilots_.size() < 3 || !std::isfinite(last_distance())) return false;
+    if (pilots_.size() < 3 || !std::isfinite(last_distance()) || no_finer(pilots_.size() - 1)) return false;
     const bool small = last_distance() <= negligible * control_.tolerance;
     const bool converge = last_distance() == 0 || fall() >= (small ? steady : converging);
     return converge && last_distance() / (rate() - 1) <= (remark().empty() ? most_ahead : 1) * target();
@@ -168,7 +171,7 @@ class Planner {
     std::size_t k = pilots_.size();
     while (k > 0 && pilots_[k - 1].error <= control_.tolerance) --k;
     if (k == pilots_.size())
-      return pilots_[k - 1].scale * std::pow(std::max(further, pilots_[k - 1].error / target()), -1 / exponent_);
+      return pilots_[k - 1].scale * std::pow(std::clamp(pilots_[k - 1].error / target(), further, 100.0), -1 / exponent_);
     const Pilot& good = pilots_[k];
     if (good.error >= lowest * control_.tolerance) return good.scale;
     const double excess = target() / std::max(good.error, 1e-300);
@@ -195,8 +198,8 @@ class Planner {
   /// certain.
   std::string remark() const {
     for (std::size_t k = 1; k < pilots_.size(); ++k) {
-      const bool as_meant = more_steps(k) >= std::sqrt(finer(k)) && more_steps(k) <= 2 * finer(k);
-      if (pilots_[k].steps < many_steps || as_meant) continue;
+      const bool far_more = pilots_[k].steps >= many_steps && more_steps(k) > 2 * finer(k);
+      if (!no_finer(k) && !far_more) continue;
       return "stability or ringing limits the steps, not the tolerance alone: " + std::to_string(pilots_[k - 1].steps) +
              ", and " + std::to_string(pilots_[k].steps) + " with steps meant to be " + text(finer(k)) + " times finer";
     }
