@@ -1,3 +1,3 @@
-#include "bench/command_line.hpp"
+#include "bench/commands/command_line.hpp"
 
 int main(int argc, char** argv) { return drape::bench::run_command_line(argc, argv); }

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 
-#include "model/exact_jacobian.hpp"
-#include "model/grid_sweep.hpp"
-#include "model/newton_matrix.hpp"
-#include "model/normals.hpp"
-#include "model/reaction.hpp"
+#include "model/forces/fused/fused_forces.hpp"
+#include "model/jacobian/exact.hpp"
+#include "model/jacobian/newton.hpp"
+#include "model/obstacles/reaction.hpp"
+#include "model/sheet/normals.hpp"
 
 namespace drape::model {
 namespace {
@@ -251,7 +251,7 @@ Cloth compile(const Scene& scene) {
   };
   std::shared_ptr<Reaction> reaction;
   if (!scene.obstacles.empty()) {
-    cloth.contacts = std::make_shared<Contacts>(scene, *ode.work);
+    cloth.contacts = std::make_shared<Contacts>(contacts(scene, *ode.work));
     reaction = respond(scene.contact, cloth.contacts, ode);
   }
   cloth.given = given(forces, reaction, ode);

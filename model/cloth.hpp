@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "model/contacts.hpp"
+#include "model/obstacles/contacts.hpp"
 #include "model/scene.hpp"
 
 namespace drape::model {

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <tuple>
 
-#include "solver/named.hpp"
+#include "solver/base/registry.hpp"
 
 namespace drape::model {
 namespace {
@@ -43,7 +43,7 @@ std::vector<int> pinned_particles(const Grid& grid, const PinRule& rule) {
     for (const auto& [a, b] : rule.particles) found.push_back(grid.index(a, b));
     return found;
   }
-  const NamedPlace& place = solver::find_named<NamedPlace>(places, "place", rule.where);
+  const NamedPlace& place = base::find_named<NamedPlace>(places, "place", rule.where);
   for (int b = 0; b < grid.nv; ++b)
     for (int a = 0; a < grid.nu; ++a)
       if (place.contains(grid, a, b)) found.push_back(grid.index(a, b));
@@ -88,6 +88,10 @@ std::vector<solver::Pin> pins(const Scene& scene) {
   std::vector<solver::Pin> all;
   for (const auto& [particle, pin] : merged) all.push_back(pin);
   return all;
+}
+
+Contacts contacts(const Scene& scene, solver::Work& work) {
+  return {scene.obstacles, scene.contact, scene.sheet.gravity.norm(), scene.sheet.grid.particles(), work};
 }
 
 solver::State start(const Scene& scene) {

@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "model/obstacle.hpp"
-#include "model/term.hpp"
+#include "model/forces/term.hpp"
+#include "model/obstacles/contacts.hpp"
 #include "solver/split_ode.hpp"
 
 namespace drape::model {
@@ -36,19 +36,6 @@ struct Start {
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< [m/s]
 };
 
-enum class ResponseKind {
-  constraint,  ///< velocities of colliding particles are constrained in the step's linear systems [Etzmuß 2002, 4.4]
-  reaction,    ///< forces on colliding particles are replaced by a damped spring [Etzmuß 2002, 4.3]
-};
-
-/// How particles and obstacles meet.
-struct ContactRule {
-  double distance = 5e-3;   ///< d: what is nearer than this is in the collision area [m]
-  double relaxation = 0.5;  ///< ω: part of its depth in the collision area that a particle loses in a step (4.4)
-  ResponseKind response = ResponseKind::constraint;
-  double reaction_time = 0.02;  ///< τ [s]: the springs of reaction constraints have k = m/τ² and d = 2m/τ
-};
-
 /// A scene as people describe it. A value: copy it, change it, compile it.
 struct Scene {
   std::string name;
@@ -66,6 +53,9 @@ const std::vector<std::string>& pin_places();
 
 /// The pins of a scene, at most one for a particle. Later rules win where directions overlap.
 std::vector<solver::Pin> pins(const Scene& scene);
+
+/// What finds the contacts of its obstacles. Throws as Contacts does.
+Contacts contacts(const Scene& scene, solver::Work& work);
 
 /// The state at t = 0 without prescribed velocities.
 solver::State start(const Scene& scene);

@@ -2,19 +2,18 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <sundials/sundials_version.h>
-#include <sunlinsol/sunlinsol_klu.h>
 #include <xxhash.h>
 
-#include <array>
+#include <Eigen/Core>
 #include <cstdlib>
 #include <fstream>
 #include <system_error>
 
 #include "reference/fingerprint.hpp"
 #include "reference/reference_file.hpp"
-#include "solver/input_file.hpp"
-#include "solver/temporary.hpp"
+#include "reference/sundials/sundials_build.hpp"
+#include "solver/base/input_file.hpp"
+#include "solver/base/temporary.hpp"
 
 namespace drape::reference {
 namespace {
@@ -22,17 +21,14 @@ namespace {
 constexpr std::uintmax_t largest_file = std::uintmax_t{4} << 30;  // [bytes]
 
 std::string complete(std::string_view key) {
-  std::array<char, 32> sundials{};
-  SUNDIALSGetVersion(sundials.data(), static_cast<int>(sundials.size()));
-  return fmt::format("{}\nSUNDIALS {}, KLU {}.{}.{}, Eigen {}.{}.{}\n{}\n", key, sundials.data(), KLU_MAIN_VERSION,
-                     KLU_SUB_VERSION, KLU_SUBSUB_VERSION, EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION,
-                     fingerprint);
+  return fmt::format("{}\n{}, Eigen {}.{}.{}\n{}\n", key, sundials_versions(), EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION,
+                     EIGEN_MINOR_VERSION, fingerprint);
 }
 
 /// Writes a file of its own beside the target and renames it, so that no reader ever sees a half of it.
 void write_atomically(const std::filesystem::path& target, const std::string& bytes) {
   std::filesystem::create_directories(target.parent_path());
-  const solver::Temporary temporary(target.parent_path(), solver::Temporary::Kind::file);
+  const base::Temporary temporary(target.parent_path(), base::Temporary::Kind::file);
   std::ofstream file(temporary.path(), std::ios::binary);
   file.exceptions(std::ios::badbit | std::ios::failbit);
   file << bytes;
@@ -53,7 +49,7 @@ std::filesystem::path default_cache_folder() {
   return {};
 }
 
-Cache::Cache(std::filesystem::path folder) : folder_(std::move(folder)) { solver::remove_leftovers(folder_); }
+Cache::Cache(std::filesystem::path folder) : folder_(std::move(folder)) { base::remove_leftovers(folder_); }
 
 std::filesystem::path Cache::file(std::string_view key) const {
   const std::string text = complete(key);
@@ -68,7 +64,7 @@ std::optional<Reference> Cache::find(std::string_view key, const Check& check) {
     return std::nullopt;
   }
   try {
-    Reference reference = decode(solver::content_of(path, largest_file), complete(key));
+    Reference reference = decode(base::content_of(path, largest_file), complete(key));
     if (check) check(reference);
     ++counts_.hits;
     return reference;

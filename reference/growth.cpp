@@ -5,9 +5,9 @@
 #include <random>
 #include <utility>
 
-#include "reference/families.hpp"
 #include "reference/linear_motion.hpp"
-#include "solver/largest.hpp"
+#include "reference/sundials/families.hpp"
+#include "solver/base/largest.hpp"
 
 namespace drape::reference {
 namespace {
@@ -73,7 +73,7 @@ std::vector<Vectors> kept(std::vector<Vectors> positions, const Counted& counted
 
 double largest(const std::vector<Vectors>& positions) {
   double result = 0;
-  for (const Vectors& x : positions) result = solver::larger(result, rms(x));
+  for (const Vectors& x : positions) result = base::larger(result, rms(x));
   return result;
 }
 
@@ -162,8 +162,7 @@ Growth measure_growth(const SplitOde& ode, const State& y0, double t0, const Tra
   const Growth first = growth_along(noise(ode, duration, 1), y0, unperturbed, size, solve);
   const State &end = first.perturbed.states.back(), &truth = unperturbed.states.back();
   Growth second = growth_along(unit({end.x - truth.x, end.v - truth.v}, duration), y0, unperturbed, size, solve);
-  for (std::size_t k = 0; k < first.factors.size(); ++k)
-    second.factors[k] = solver::larger(second.factors[k], first.factors[k]);
+  for (std::size_t k = 0; k < first.factors.size(); ++k) second.factors[k] = base::larger(second.factors[k], first.factors[k]);
   return second;
 }
 

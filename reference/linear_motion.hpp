@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "reference/trajectory.hpp"
-#include "solver/stage_solver.hpp"
+#include "solver/stage/stage_solver.hpp"
 
 namespace drape::reference {
 

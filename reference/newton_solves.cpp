@@ -1,6 +1,6 @@
 #include "reference/newton_solves.hpp"
 
-#include "solver/named.hpp"
+#include "solver/base/registry.hpp"
 
 namespace drape::reference {
 
@@ -16,6 +16,6 @@ std::span<const NewtonSolve> newton_solves() {
   return table;
 }
 
-const NewtonSolve& newton_solve(std::string_view name) { return solver::find_named(newton_solves(), "Newton solve", name); }
+const NewtonSolve& newton_solve(std::string_view name) { return base::find_named(newton_solves(), "Newton solve", name); }
 
 }  // namespace drape::reference

@@ -6,9 +6,9 @@
 #include <array>
 #include <cmath>
 
-#include "reference/coordinates.hpp"
 #include "reference/reference_file.hpp"
 #include "reference/stepped.hpp"
+#include "reference/sundials/coordinates.hpp"
 #include "solver/integrator.hpp"
 
 namespace drape::reference {
@@ -21,7 +21,7 @@ constexpr double tolerance = 1e-4;  ///< of the loose run
 constexpr double allowed = 1e-3;    ///< distance from the loose run, of the size
 constexpr double allowed_contact = 5e-2;
 constexpr double loose_contact_step = 1e-3;  ///< [s]
-constexpr int most_steps = 2000;
+constexpr int most_plausible_steps = 2000;
 
 bool fits(const Trajectory& trajectory, std::span<const double> times, Eigen::Index particles) {
   return std::ranges::equal(trajectory.times, times) && trajectory.states.size() == times.size() &&
@@ -68,7 +68,7 @@ Trajectory loose_run(const SplitOde& ode, const State& y0, double t0, std::span<
   Trajectory run;
   int steps = 0;
   const auto count = [&](const solver::StepReport&) {
-    if (++steps > most_steps) throw Enough();
+    if (++steps > most_plausible_steps) throw Enough();
   };
   try {
     for (const double t : times) {

@@ -8,10 +8,10 @@
 #include <future>
 #include <utility>
 
-#include "reference/families.hpp"
 #include "reference/growth.hpp"
 #include "reference/stepped.hpp"
-#include "solver/largest.hpp"
+#include "reference/sundials/families.hpp"
+#include "solver/base/largest.hpp"
 
 namespace drape::reference {
 namespace {
@@ -100,7 +100,7 @@ Reference contact_reference(const Equations& equations, const State& y0, double 
   result.witness = "midpoint";
   result.tolerance = contact_step;
   for (std::size_t k = 0; k < times.size(); ++k)
-    result.error[k] = solver::larger(result.error[k], solver::larger(effect[k], witness_effect[k]));
+    result.error[k] = base::larger(result.error[k], base::larger(effect[k], witness_effect[k]));
   return result;
 }
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "solver/named.hpp"
+#include "solver/base/registry.hpp"
 
 namespace drape::reference {
 namespace {
@@ -55,6 +55,6 @@ std::span<const Tableau> tableaux() {
   return table;
 }
 
-const Tableau& tableau(std::string_view name) { return solver::find_named(tableaux(), "Runge-Kutta method of ARKODE", name); }
+const Tableau& tableau(std::string_view name) { return base::find_named(tableaux(), "Runge-Kutta method of ARKODE", name); }
 
 }  // namespace drape::reference

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
-#include "solver/printable.hpp"
+#include "solver/base/printable.hpp"
 
 namespace drape::results {
 namespace {
@@ -47,7 +47,7 @@ nlohmann::ordered_json to_value(const Table& table) {
 }
 
 std::string dump(const nlohmann::ordered_json& value) {
-  return solver::printable_lines(value.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace)) + "\n";
+  return base::printable_lines(value.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace)) + "\n";
 }
 
 /// A text or number of CSV. Programs that calculate would take some texts for formulas, unless an apostrophe is before them.
@@ -55,7 +55,7 @@ std::string csv_cell(const Cell& cell) {
   std::string text = to_text(cell, "{}");
   if (!std::holds_alternative<std::string>(cell)) return text;
   if (text.find_first_of("=+-@") == 0) text.insert(0, 1, '\'');
-  text = solver::printable(text);
+  text = base::printable(text);
   if (text.find_first_of(",\"") == std::string::npos) return text;
   std::string quoted = "\"";
   for (const char c : text) quoted.append(c == '"' ? 2 : 1, c);
@@ -64,9 +64,9 @@ std::string csv_cell(const Cell& cell) {
 
 /// Appends one cell to each line: text to the left of the column, numbers to the right.
 void append_column(std::vector<std::string>& lines, const std::vector<std::string>& cells, bool is_text) {
-  const std::size_t width = solver::characters(std::ranges::max(cells, {}, solver::characters));
+  const std::size_t width = base::characters(std::ranges::max(cells, {}, base::characters));
   for (std::size_t i = 0; i < lines.size(); ++i) {
-    const std::string padding(width - solver::characters(cells[i]), ' ');
+    const std::string padding(width - base::characters(cells[i]), ' ');
     if (!lines[i].empty()) lines[i] += "  ";
     lines[i] += is_text ? cells[i] + padding : padding + cells[i];
   }
@@ -110,10 +110,10 @@ std::string to_text(const Table& table) {
     const bool has_unit = !column.unit.empty() && column.unit != "1";
     std::vector<std::string> cells{column.title, has_unit ? fmt::format("[{}]", column.unit) : ""};
     cells.insert(cells.end(), body.begin(), body.end());
-    for (std::string& cell : cells) cell = solver::shortened(solver::printable(cell), widest);
+    for (std::string& cell : cells) cell = base::shortened(base::printable(cell), widest);
     append_column(lines, cells, column.unit.empty());
   }
-  lines.insert(lines.begin() + 2, std::string(solver::characters(lines.front()), '-'));
+  lines.insert(lines.begin() + 2, std::string(base::characters(lines.front()), '-'));
   if (lines[1].find_first_not_of(' ') == std::string::npos) lines.erase(lines.begin() + 1);  // no column has a unit
   return fmt::format("{}\n", fmt::join(lines, "\n"));
 }

@@ -26,7 +26,7 @@ constexpr double apart = 1.5;        ///< least quotient of errors that a distan
 constexpr double further = 2;        ///< and of those of a further pilot
 constexpr double narrow = 1.1;       ///< quotient of scales with nothing worth a pilot between them
 constexpr int most_pilots = 20;
-constexpr int most_trials = 6;
+constexpr int most_trial_pilots = 6;
 constexpr int many_steps = 50;     ///< fewer are nothing to remark on
 constexpr int few_steps = 10'000;  ///< that any pilot may take,
 constexpr double most_excess = 4;  ///< or as many times more than expected
@@ -84,7 +84,7 @@ class Planner {
       const double scale = wanted_scale();
       const auto same = std::ranges::find(pilots_, scale, &Pilot::scale);
       if (same != pilots_.end()) return {tolerance(scale), largest_step(scale), true, remark_.empty() ? cliff(*same) : remark_};
-      if (trials == most_trials || !fly(scale)) return too_costly(scale);
+      if (trials == most_trial_pilots || !fly(scale)) return too_costly(scale);
       std::ranges::sort(pilots_, std::greater(), &Pilot::scale);
       measure();
     }

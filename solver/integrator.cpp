@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "solver/global_error.hpp"
-#include "solver/linear_work.hpp"
+#include "solver/linear/counters.hpp"
 
 namespace drape::solver {
 namespace {

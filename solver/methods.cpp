@@ -1,6 +1,6 @@
 #include "solver/methods.hpp"
 
-#include "solver/named.hpp"
+#include "solver/base/registry.hpp"
 
 namespace drape::solver {
 
@@ -42,6 +42,6 @@ std::span<const Method> methods() {
 
 std::span<const Method> thesis_methods() { return methods().first(7); }
 
-const Method& method(std::string_view name) { return find_named(methods(), "method", name); }
+const Method& method(std::string_view name) { return base::find_named(methods(), "method", name); }
 
 }  // namespace drape::solver

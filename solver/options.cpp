@@ -1,6 +1,6 @@
 #include "solver/options.hpp"
 
-#include "solver/named.hpp"
+#include "solver/base/registry.hpp"
 
 namespace drape::solver {
 
@@ -17,7 +17,7 @@ std::span<const StageKind> stage_kinds() {
   return table;
 }
 
-const StageKind& stage_kind(std::string_view name) { return find_named(stage_kinds(), "stage solver", name); }
+const StageKind& stage_kind(std::string_view name) { return base::find_named(stage_kinds(), "stage solver", name); }
 
 Options thesis_options() {
   Options options;

@@ -3,7 +3,7 @@
 #include <span>
 #include <string_view>
 
-#include "solver/preconditioner.hpp"
+#include "solver/linear/preconditioner.hpp"
 
 namespace drape::solver {
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "solver/contact.hpp"
+#include "solver/counters.hpp"
 #include "solver/state.hpp"
-#include "solver/work.hpp"
 
 namespace drape::solver {
 

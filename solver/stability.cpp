@@ -4,7 +4,7 @@
 #include <limits>
 #include <random>
 
-#include "solver/decompositions.hpp"
+#include "solver/base/decompositions.hpp"
 
 namespace drape::solver {
 namespace {
@@ -39,7 +39,7 @@ double largest_eigenvalue(const SplitOde& ode, const Map& map) {
     H(k + 1, k) = next.norm();
     const bool complete = H(k + 1, k) <= 1e-6 * size;
     if (complete || (k + 1) % check == 0) {
-      const double estimate = eigenvalues(H.topLeftCorner(k + 1, k + 1)).cwiseAbs().maxCoeff();
+      const double estimate = base::eigenvalues(H.topLeftCorner(k + 1, k + 1)).cwiseAbs().maxCoeff();
       if (complete || estimate - eigenvalue <= 1e-3 * estimate) return estimate;
       eigenvalue = estimate;
     }
@@ -55,7 +55,7 @@ double amplification(double W, double s) {
   G.row(0) << 1, 1, 0.5;
   G.row(2) << -W, -W - s, -W / 2 - s;
   G.row(1) = Eigen::RowVector3d(0, 1, 0.5) + 0.5 * G.row(2);
-  return eigenvalues(G).cwiseAbs().maxCoeff();
+  return base::eigenvalues(G).cwiseAbs().maxCoeff();
 }
 
 }  // namespace

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <vector>
 
+#include "solver/contact/impact_response.hpp"
 #include "solver/history.hpp"
-#include "solver/impact_response.hpp"
 #include "solver/limit_watch.hpp"
-#include "solver/stage_solver.hpp"
+#include "solver/stage/stage_solver.hpp"
 
 namespace drape::solver {
 

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "results/file/run_file.hpp"
 #include "results/provenance.hpp"
-#include "results/run_file.hpp"
-#include "verify/bench_integrators.hpp"
+#include "verify/support/bench_integrators.hpp"
 
 namespace drape::verify::baselines_test {
 namespace {

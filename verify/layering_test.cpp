@@ -1,4 +1,4 @@
-// Includes go one way only:  solver <- model, reference, results <- verify, bench;  and three libraries have one place each.
+// Includes go one way only, between folders and between the rooms inside them; and some libraries have one place each.
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -16,6 +16,8 @@
 #include <string_view>
 #include <vector>
 
+#include "verify/support/run_program.hpp"
+
 namespace drape::verify::layering_test {
 namespace {
 
@@ -24,15 +26,78 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-/// For every folder, the folders it may include.
-const std::map<std::string, std::vector<std::string>> layers = {
-    {"solver", {"solver"}},
-    {"model", {"solver", "model"}},
-    {"reference", {"solver", "reference"}},
-    {"results", {"solver", "results"}},
-    {"verify", {"solver", "model", "reference", "results", "verify"}},
-    {"bench", {"solver", "model", "reference", "results", "bench"}},
+/// A part of the sources: files whose paths begin with one of `files`, the longest such beginning counts. They may include each
+/// other, the rooms in `below` and what these may include.
+struct Room {
+  std::string name;
+  std::vector<std::string> files;
+  std::vector<std::string> below;
 };
+
+/// From the ground up.
+const std::vector<Room> rooms = {
+    {"solver/base", {"solver/base/"}, {}},
+    {"solver's vocabulary",
+     {"solver/contact.", "solver/counters.", "solver/filter.", "solver/outcome.", "solver/split_ode.", "solver/stage.",
+      "solver/state."},
+     {"solver/base"}},
+    {"solver/linear", {"solver/linear/"}, {"solver's vocabulary"}},
+    {"solver/contact", {"solver/contact/"}, {"solver's vocabulary"}},
+    {"solver's options", {"solver/options."}, {"solver/linear"}},
+    {"solver/stage", {"solver/stage/"}, {"solver's options", "solver/contact"}},
+    {"solver", {"solver/"}, {"solver/stage"}},
+    {"solver/methods", {"solver/methods/"}, {"solver"}},
+
+    {"model/sheet", {"model/sheet/"}, {"solver"}},
+    {"model/forces/fused", {"model/forces/fused/"}, {"model/sheet"}},
+    {"model/forces", {"model/forces/"}, {"model/forces/fused"}},
+    {"model/jacobian", {"model/jacobian/"}, {"model/forces"}},
+    {"model/obstacles", {"model/obstacles/"}, {"model/sheet"}},
+    {"model", {"model/"}, {"model/jacobian", "model/obstacles"}},
+    {"model/scene_file", {"model/scene_file/"}, {"model"}},
+
+    {"reference's vocabulary", {"reference/newton_solves.", "reference/tableaux.", "reference/trajectory."}, {"solver"}},
+    {"reference/sundials", {"reference/sundials/"}, {"reference's vocabulary"}},
+    {"reference/exact", {"reference/exact/"}, {"solver"}},
+    {"reference/theory", {"reference/theory/"}, {"reference/exact"}},
+    {"reference", {"reference/"}, {"reference/sundials", "reference/theory"}},
+
+    {"results", {"results/"}, {"solver"}},
+    {"results/file", {"results/file/"}, {"results"}},
+    {"results/analysis", {"results/analysis/"}, {"results/file"}},
+
+    {"bench/runs", {"bench/runs/"}, {"model/scene_file", "reference", "results/analysis"}},
+    {"bench/studies", {"bench/studies/"}, {"bench/runs"}},
+    {"bench/report", {"bench/report/"}, {"bench/runs"}},
+    {"bench/score", {"bench/score/"}, {"bench/studies"}},
+    {"bench/commands", {"bench/commands/"}, {"bench/score", "bench/report"}},
+    {"bench/kernels", {"bench/kernels/"}, {"model/scene_file"}},
+    {"bench", {"bench/"}, {"bench/commands"}},
+
+    {"verify", {"verify/"}, {"bench", "solver/methods"}},
+};
+
+const Room& room_named(const std::string& name) { return *std::ranges::find(rooms, name, &Room::name); }
+
+/// The room of a file, nullptr if it is none of ours.
+const Room* room_of(const std::string& path) {
+  const Room* found = nullptr;
+  std::size_t longest = 0;
+  for (const Room& room : rooms) {
+    for (const std::string& beginning : room.files) {
+      if (!path.starts_with(beginning) || beginning.size() <= longest) continue;
+      found = &room;
+      longest = beginning.size();
+    }
+  }
+  return found;
+}
+
+/// Whether files of the one may include files of the other.
+bool may_include(const Room& from, const Room& to) {
+  return &from == &to ||
+         std::ranges::any_of(from.below, [&](const std::string& name) { return may_include(room_named(name), to); });
+}
 
 /// A library whose headers begin with one of `prefixes` is for the files whose names begin with one of `places`.
 struct Confined {
@@ -40,13 +105,13 @@ struct Confined {
   std::vector<std::string> places;
 };
 const std::vector<Confined> confined_libraries = {
-    {{"hdf5", "H5"}, {"results/hdf5"}},
+    {{"hdf5", "H5"}, {"results/file/hdf5"}},
     {{"arkode/", "cvode/", "cvodes/", "ida/", "idas/", "kinsol/", "sundials/", "nvector/", "sunmatrix/", "sunlinsol/",
       "sunnonlinsol/"},
-     {"verify/state_vector_test.cpp", "reference/"}},
-    {{"cholmod", "suitesparse/cholmod", "Eigen/CholmodSupport"}, {"solver/"}},
-    {{"klu", "suitesparse/klu"}, {"reference/"}},
-    {{"assimp/", "unsupported/Eigen/BVH"}, {"model/mesh_shape.cpp"}},
+     {"verify/reference/state_vector_test.cpp", "reference/sundials/"}},
+    {{"cholmod", "suitesparse/cholmod", "Eigen/CholmodSupport"}, {"solver/linear/"}},
+    {{"klu", "suitesparse/klu"}, {"reference/sundials/"}},
+    {{"assimp/", "unsupported/Eigen/BVH"}, {"model/obstacles/mesh_shape.cpp"}},
 };
 
 /// The text without its comments; "//" in a string is none.
@@ -82,26 +147,20 @@ std::string_view included_header(std::string_view line) {
   return line.substr(0, line.find_first_of("\">", 1) + 1);
 }
 
-/// The first folder of a path, "" if it has none.
-std::string top_folder(const std::string& path) {
-  const std::size_t slash = path.find('/');
-  return slash == std::string::npos ? "" : path.substr(0, slash);
-}
-
 /// What is wrong with the includes of a file: `name` is its path from the root, as in "model/cloth.cpp", `text` its content.
 std::vector<std::string> wrong_includes(const std::string& name, const std::string& text) {
-  const std::vector<std::string>& allowed = layers.at(top_folder(name));
+  const Room& room = *room_of(name);
   std::vector<std::string> wrong;
   std::istringstream code(without_comments(text));
   for (std::string line; std::getline(code, line);) {
     const std::string_view include = included_header(line);
     if (include.empty()) continue;
     const std::string header(include.substr(1, include.size() - 2));
-    const bool ours = layers.contains(top_folder(header));
-    if (ours && std::ranges::find(allowed, top_folder(header)) == allowed.end()) {
-      wrong.push_back(fmt::format("{} includes {}, but may include only {}", name, header, fmt::join(allowed, ", ")));
+    const Room* const included = room_of(header);
+    if (included && !may_include(room, *included)) {
+      wrong.push_back(fmt::format("{} includes {}: {} is not below {}", name, header, included->name, room.name));
     }
-    if (ours != include.starts_with('"')) {
+    if ((included != nullptr) != include.starts_with('"')) {
       wrong.push_back(fmt::format("{} includes {}: quotes are for our headers, from the root; <> for all else", name, header));
     }
     for (const auto& [prefixes, places] : confined_libraries) {
@@ -133,35 +192,90 @@ std::string read(const std::string& name) {
 }
 
 TEST(Layering, IncludesGoOneWayOnly) {
-  for (const auto& [folder, allowed] : layers) {
-    const std::vector<std::string> names = sources(folder);
-    EXPECT_THAT(names, Not(IsEmpty())) << folder;
-    for (const std::string& name : names) {
+  std::set<std::string> seen;
+  for (const char* folder : {"solver", "model", "reference", "results", "bench", "verify"}) {
+    for (const std::string& name : sources(folder)) {
+      seen.insert(room_of(name)->name);
       const std::string text = read(name);
       EXPECT_THAT(text, Not(IsEmpty())) << name << " was not read";
       EXPECT_THAT(wrong_includes(name, text), IsEmpty());
     }
   }
+  for (const Room& room : rooms) EXPECT_TRUE(seen.contains(room.name)) << room.name << " has no files";
 }
 
-TEST(LayeringChecker, KnowsEveryDirection) {
-  const std::set<std::string> middle = {"model", "reference", "results"}, top = {"verify", "bench"};
-  for (const auto& [from, from_allowed] : layers) {
-    for (const auto& [to, to_allowed] : layers) {
-      const bool right = from == to || to == "solver" || (top.contains(from) && middle.contains(to));
-      const auto wrong = wrong_includes(from + "/a.cpp", "#pragma once\n#include \"" + to + "/b.hpp\"\n");
-      EXPECT_EQ(wrong.empty(), right) << from << " includes " << to;
+/// A room knows only rooms that stand before it, so that there is no cycle.
+TEST(Layering, GoesFromTheGroundUp) {
+  for (const Room& room : rooms) {
+    for (const std::string& name : room.below) EXPECT_LT(&room_named(name), &room) << room.name << " and " << name;
+  }
+}
+
+/// Unity builds hide what a header does not include itself.
+TEST(Layering, HeadersCompileAlone) {
+  const ProgramResult result = run_program({.program = DRAPE_CMAKE,
+                                            .arguments = {"--build", ".", "--target", "headers"},
+                                            .folder = DRAPE_BINARY_DIR,
+                                            .environment = {},
+                                            .output = {}});
+  EXPECT_EQ(result.exit_code, 0) << result.out << result.err;
+}
+
+std::vector<std::string> include_of(const std::string& header, const std::string& by) {
+  return wrong_includes(by, "#pragma once\n#include \"" + header + "\"\n");
+}
+
+TEST(LayeringChecker, KnowsTheOrderOfFolders) {
+  const std::set<std::string> middle = {"model", "reference", "results"};
+  const std::vector<std::string> folders = {"solver", "model", "reference", "results", "bench", "verify"};
+  for (const std::string& from : folders) {
+    for (const std::string& to : folders) {
+      const bool right = from == to || to == "solver" || from == "verify" || (from == "bench" && middle.contains(to));
+      EXPECT_EQ(include_of(to + "/b.hpp", from + "/a.cpp").empty(), right) << from << " includes " << to;
     }
   }
 }
 
-TEST(LayeringChecker, SaysWhatMayBeIncluded) {
-  EXPECT_THAT(wrong_includes("model/forces/a.cpp", "#include \"results/b.hpp\"\n"),
-              ElementsAre("model/forces/a.cpp includes results/b.hpp, but may include only solver, model"));
+TEST(LayeringChecker, KnowsTheOrderInsideFolders) {
+  const std::vector<std::vector<std::string>> chains = {
+      {"solver/base/a.hpp", "solver/state.hpp", "solver/linear/a.hpp", "solver/options.hpp", "solver/stage/a.hpp",
+       "solver/a.hpp", "solver/methods/a.hpp"},
+      {"model/sheet/a.hpp", "model/forces/fused/a.hpp", "model/forces/a.hpp", "model/jacobian/a.hpp", "model/a.hpp",
+       "model/scene_file/a.hpp"},
+      {"model/sheet/a.hpp", "model/obstacles/a.hpp", "model/a.hpp"},
+      {"reference/trajectory.hpp", "reference/sundials/a.hpp", "reference/a.hpp"},
+      {"reference/exact/a.hpp", "reference/theory/a.hpp", "reference/a.hpp"},
+      {"results/a.hpp", "results/file/a.hpp", "results/analysis/a.hpp"},
+      {"bench/runs/a.hpp", "bench/studies/a.hpp", "bench/score/a.hpp", "bench/commands/a.hpp"},
+      {"bench/runs/a.hpp", "bench/report/a.hpp", "bench/commands/a.hpp"},
+  };
+  for (const std::vector<std::string>& chain : chains) {
+    for (std::size_t i = 0; i < chain.size(); ++i) {
+      for (std::size_t k = 0; k < chain.size(); ++k)
+        EXPECT_EQ(include_of(chain[i], chain[k]).empty(), i <= k) << chain[k] << " includes " << chain[i];
+    }
+  }
+}
+
+TEST(LayeringChecker, KeepsRoomsBesideEachOtherApart) {
+  const std::pair<std::string, std::string> apart[] = {{"solver/linear/a.hpp", "solver/contact/a.hpp"},
+                                                       {"model/obstacles/a.hpp", "model/forces/a.hpp"},
+                                                       {"reference/sundials/a.hpp", "reference/exact/a.hpp"},
+                                                       {"bench/studies/a.hpp", "bench/report/a.hpp"},
+                                                       {"bench/kernels/a.hpp", "bench/runs/a.hpp"}};
+  for (const auto& [a, b] : apart) {
+    EXPECT_THAT(include_of(a, b), SizeIs(1)) << b << " includes " << a;
+    EXPECT_THAT(include_of(b, a), SizeIs(1)) << a << " includes " << b;
+  }
+}
+
+TEST(LayeringChecker, NamesTheRooms) {
+  EXPECT_THAT(include_of("results/b.hpp", "model/forces/a.cpp"),
+              ElementsAre("model/forces/a.cpp includes results/b.hpp: results is not below model/forces"));
 }
 
 TEST(LayeringChecker, ReportsAngleBracketsToo) {
-  EXPECT_THAT(wrong_includes("solver/a.cpp", " #  include <model/b.hpp>\n"), Contains(HasSubstr("may include only solver")));
+  EXPECT_THAT(wrong_includes("solver/a.cpp", " #  include <model/b.hpp>\n"), Contains(HasSubstr("model is not below solver")));
 }
 
 TEST(LayeringChecker, ReportsPathsThatHideTheFolder) {
@@ -170,22 +284,24 @@ TEST(LayeringChecker, ReportsPathsThatHideTheFolder) {
 }
 
 TEST(LayeringChecker, AcceptsLibrariesInTheirPlace) {
-  EXPECT_THAT(wrong_includes("solver/cholesky.cpp", "#include <Eigen/Dense>\n#include <cholmod.h>\n"), IsEmpty());
-  EXPECT_THAT(wrong_includes("reference/cvode.cpp", "#include <cvode/cvode.h>\n"), IsEmpty());
-  EXPECT_THAT(wrong_includes("results/hdf5.cpp", "#include <hdf5.h>\n"), IsEmpty());
+  EXPECT_THAT(wrong_includes("solver/linear/cholesky.cpp", "#include <Eigen/Dense>\n#include <cholmod.h>\n"), IsEmpty());
+  EXPECT_THAT(wrong_includes("reference/sundials/cvode.cpp", "#include <cvode/cvode.h>\n"), IsEmpty());
+  EXPECT_THAT(wrong_includes("results/file/hdf5.cpp", "#include <hdf5.h>\n"), IsEmpty());
 }
 
 TEST(LayeringChecker, ReportsLibrariesOutOfTheirPlace) {
-  EXPECT_THAT(wrong_includes("results/tables.cpp", "#include <hdf5.h>\n"), ElementsAre(HasSubstr("results/hdf5 only")));
-  EXPECT_THAT(wrong_includes("verify/a_test.cpp", "#include <H5Cpp.h>\n"), ElementsAre(HasSubstr("results/hdf5 only")));
+  EXPECT_THAT(wrong_includes("results/tables.cpp", "#include <hdf5.h>\n"), ElementsAre(HasSubstr("results/file/hdf5 only")));
+  EXPECT_THAT(wrong_includes("verify/a_test.cpp", "#include <H5Cpp.h>\n"), ElementsAre(HasSubstr("results/file/hdf5 only")));
   for (const std::string header :
        {"cvode/cvode.h", "arkode/arkode_arkstep.h", "ida/ida.h", "kinsol/kinsol.h", "sundials/sundials_types.h",
         "nvector/nvector_serial.h", "sunmatrix/sunmatrix_sparse.h", "sunlinsol/sunlinsol_klu.h", "cvodes/cvodes.h",
         "idas/idas.h", "sunnonlinsol/sunnonlinsol_newton.h"}) {
-    EXPECT_THAT(wrong_includes("bench/main.cpp", "#include <" + header + ">\n"), ElementsAre(HasSubstr("reference/ only")));
+    EXPECT_THAT(wrong_includes("bench/main.cpp", "#include <" + header + ">\n"),
+                ElementsAre(HasSubstr("reference/sundials/ only")));
   }
   for (const std::string header : {"cholmod.h", "suitesparse/cholmod.h", "Eigen/CholmodSupport"}) {
-    EXPECT_THAT(wrong_includes("model/cloth.cpp", "#include <" + header + ">\n"), ElementsAre(HasSubstr("solver/ only")));
+    EXPECT_THAT(wrong_includes("model/cloth.cpp", "#include <" + header + ">\n"),
+                ElementsAre(HasSubstr("solver/linear/ only")));
   }
 }
 

@@ -4,13 +4,13 @@
 #include <cmath>
 #include <memory>
 
-#include "bench/cell.hpp"
 #include "bench/commands/commands.hpp"
+#include "bench/commands/help.hpp"
 #include "bench/commands/output.hpp"
-#include "bench/help.hpp"
-#include "bench/identity.hpp"
+#include "bench/runs/identity.hpp"
+#include "bench/runs/run.hpp"
+#include "bench/runs/table_jobs.hpp"
 #include "bench/studies/method_check.hpp"
-#include "bench/table_jobs.hpp"
 
 namespace drape::bench {
 namespace {

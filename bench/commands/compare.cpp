@@ -1,14 +1,14 @@
-#include "results/compare.hpp"
+#include "results/analysis/compare.hpp"
 
 #include <fmt/format.h>
 
 #include <memory>
 
 #include "bench/commands/commands.hpp"
+#include "bench/commands/help.hpp"
 #include "bench/commands/output.hpp"
-#include "bench/help.hpp"
-#include "results/run_file.hpp"
-#include "solver/printable.hpp"
+#include "results/file/run_file.hpp"
+#include "solver/base/printable.hpp"
 
 namespace drape::bench {
 namespace {
@@ -19,7 +19,7 @@ struct CompareArguments {
 };
 
 void print(const char* kind, const results::Judged& judged) {
-  fmt::print("{}: {} ({})\n", kind, to_string(judged.judgement), solver::printable(judged.reason));
+  fmt::print("{}: {} ({})\n", kind, to_string(judged.judgement), base::printable(judged.reason));
   if (!judged.worst.columns.empty()) fmt::print("\n{}\n", to_text(judged.worst));
 }
 

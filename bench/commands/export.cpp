@@ -1,16 +1,16 @@
-#include "bench/foreign/export.hpp"
+#include "bench/score/export.hpp"
 
 #include <fmt/format.h>
 
-#include "bench/argument_checks.hpp"
+#include "bench/commands/argument_checks.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/output.hpp"
 #include "bench/commands/scene_choice.hpp"
-#include "bench/progress.hpp"
-#include "bench/sweep.hpp"
-#include "bench/trajectory_record.hpp"
-#include "results/atomic_file.hpp"
-#include "solver/printable.hpp"
+#include "bench/runs/progress.hpp"
+#include "bench/runs/sweep.hpp"
+#include "bench/runs/trajectory_observer.hpp"
+#include "solver/base/atomic_file.hpp"
+#include "solver/base/printable.hpp"
 
 namespace drape::bench {
 namespace {
@@ -29,13 +29,12 @@ void export_scene(const ExportArguments& a) {
   if (times.empty())
     throw std::invalid_argument(fmt::format("--every: expected at most the scene's end, {:g} s, not {:g}", scene.end, a.every));
   times.insert(times.begin(), 0);
-  results::require_empty_folder(a.out, "the exported scene");
+  base::require_empty_folder(a.out, "the exported scene");
   Progress progress(1);
   const auto say = [&](const std::string& pace) { progress.report("reference of " + scene.name + ": " + pace); };
   const auto files = exported(true_motion(scene, times, a.agreement, {.say = say}), times);
-  results::publish_folder(a.out, files);
-  for (const auto& [name, content] : files)
-    fmt::print("{}\n", solver::printable((std::filesystem::path(a.out) / name).string()));
+  base::publish_folder(a.out, files);
+  for (const auto& [name, content] : files) fmt::print("{}\n", base::printable((std::filesystem::path(a.out) / name).string()));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "results/inspect.hpp"
+#include "results/analysis/inspect.hpp"
 
 #include <fmt/format.h>
 
@@ -7,13 +7,13 @@
 #include <optional>
 #include <stdexcept>
 
-#include "bench/argument_checks.hpp"
+#include "bench/commands/argument_checks.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/output.hpp"
-#include "results/run_file.hpp"
-#include "results/runs_table.hpp"
-#include "results/validate.hpp"
-#include "solver/printable.hpp"
+#include "results/analysis/runs_table.hpp"
+#include "results/file/run_file.hpp"
+#include "results/file/validate.hpp"
+#include "solver/base/printable.hpp"
 
 namespace drape::bench {
 namespace {
@@ -61,16 +61,16 @@ results::Table one_table(const std::string& file, const std::string& name) {
   if (std::ranges::count_if(all, begins) == 1) return std::move(*std::ranges::find_if(all, begins));
   std::vector<std::string> names;
   for (const results::Table& table : all) names.push_back(table.name);
-  throw std::invalid_argument(fmt::format(
-      "--table: expected a table of {} ({}), not '{}'", file,
-      names.empty() ? "it has none" : solver::quoted(fmt::format("{}", fmt::join(names, ", "))), solver::quoted(name)));
+  throw std::invalid_argument(
+      fmt::format("--table: expected a table of {} ({}), not '{}'", file,
+                  names.empty() ? "it has none" : base::quoted(fmt::format("{}", fmt::join(names, ", "))), base::quoted(name)));
 }
 
 /// Prints where a file departs from the specification. Returns the exit code: 1 if it does.
 int validate(const std::string& file) {
   const std::vector<std::string> deviations = results::validate(file);
-  for (const std::string& deviation : deviations) fmt::print("{}\n", solver::quoted(deviation));
-  if (deviations.empty()) fmt::print("{} is as results/README.md specifies\n", solver::printable(file));
+  for (const std::string& deviation : deviations) fmt::print("{}\n", base::quoted(deviation));
+  if (deviations.empty()) fmt::print("{} is as results/README.md specifies\n", base::printable(file));
   return deviations.empty() ? 0 : 1;
 }
 

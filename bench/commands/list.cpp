@@ -2,9 +2,9 @@
 
 #include <utility>
 
-#include "bench/choices.hpp"
+#include "bench/commands/choices.hpp"
 #include "bench/commands/commands.hpp"
-#include "solver/named.hpp"
+#include "solver/base/registry.hpp"
 
 namespace drape::bench {
 namespace {
@@ -22,7 +22,7 @@ void list(const std::string& kind) {
     for (const Kind& any : kinds) fmt::print("{}{}", std::exchange(separator, "\n"), paragraph(any.name, any.choices()));
     return;
   }
-  for (const Choice& choice : solver::find_named(std::span<const Kind>(kinds), "kind of names", kind).choices())
+  for (const Choice& choice : base::find_named(std::span<const Kind>(kinds), "kind of names", kind).choices())
     fmt::print("{}\n", choice.name);
 }
 

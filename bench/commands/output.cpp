@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
-#include "bench/argument_checks.hpp"
-#include "results/runs_table.hpp"
-#include "results/xdmf.hpp"
-#include "solver/printable.hpp"
+#include "bench/commands/argument_checks.hpp"
+#include "results/analysis/runs_table.hpp"
+#include "results/file/xdmf.hpp"
+#include "solver/base/printable.hpp"
 
 namespace drape::bench {
 
@@ -23,13 +23,13 @@ void print_tables(const std::vector<results::Table>& tables, const std::string& 
   for (const results::Table& table : tables) {
     if (format == "table" && std::ranges::all_of(table.columns, [](const auto& column) { return column.title.empty(); }))
       continue;  // for the file
-    fmt::print("{}{}\n", format == "csv" ? "# " : "\n", solver::printable(format == "csv" ? table.name : table.description));
+    fmt::print("{}{}\n", format == "csv" ? "# " : "\n", base::printable(format == "csv" ? table.name : table.description));
     print_table(table, format);
   }
 }
 
 void say_where(const std::filesystem::path& out, const std::string& format) {
-  if (format == "table") fmt::print("\nrecorded in {}\n", solver::printable(out.string()));
+  if (format == "table") fmt::print("\nrecorded in {}\n", base::printable(out.string()));
 }
 
 std::filesystem::path out_file(const Output& output, const std::string& job) {
@@ -41,7 +41,7 @@ std::filesystem::path sweep_and_print(const std::vector<Group>& groups, Output o
   print_table(results::to_table(sweep(groups, output.sweep)), output.format);
   say_where(output.sweep.out, output.format);
   if (output.sweep.frames_every && output.format == "table")
-    fmt::print("motion for ParaView: {}\n", solver::printable(results::xdmf_path(output.sweep.out).string()));
+    fmt::print("motion for ParaView: {}\n", base::printable(results::xdmf_path(output.sweep.out).string()));
   return output.sweep.out;
 }
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/sweep.hpp"
+#include "bench/runs/sweep.hpp"
 #include "results/table.hpp"
 
 namespace drape::bench {

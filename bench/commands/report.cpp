@@ -6,16 +6,16 @@
 #include <memory>
 #include <span>
 
-#include "bench/argument_checks.hpp"
+#include "bench/commands/argument_checks.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/output.hpp"
+#include "bench/report/browser.hpp"
 #include "bench/report/images.hpp"
 #include "bench/report/page.hpp"
-#include "results/atomic_file.hpp"
-#include "results/browser.hpp"
-#include "results/overview.hpp"
-#include "results/run_file.hpp"
-#include "solver/printable.hpp"
+#include "results/analysis/overview.hpp"
+#include "results/file/run_file.hpp"
+#include "solver/base/atomic_file.hpp"
+#include "solver/base/printable.hpp"
 
 namespace drape::bench {
 namespace {
@@ -31,7 +31,7 @@ void make_report(const ReportArguments& a) {
   if (!a.images) return;
   const std::filesystem::path folder = a.out;
   fmt::print("images: {} figures in {}\n", write_images(folder / "index.html", folder / "images"),
-             solver::printable((folder / "images").string()));
+             base::printable((folder / "images").string()));
 }
 
 }  // namespace
@@ -46,10 +46,10 @@ void report(const std::vector<std::filesystem::path>& files, const std::filesyst
   const std::vector<results::Table> overview = results::overview(recordings);
   const std::string page = report_page(names, recordings, overview);
   const std::filesystem::path file = folder / "index.html";
-  results::create_folder(folder);
-  results::publish(file, std::as_bytes(std::span(page)), results::Existing::replace);
+  base::create_folder(folder);
+  base::publish(file, std::as_bytes(std::span(page)), base::Existing::replace);
   print_tables(overview, "table");
-  fmt::print("\nreport: {}\n", solver::printable(file.string()));
+  fmt::print("\nreport: {}\n", base::printable(file.string()));
 }
 
 void add_report(CLI::App& app) {
@@ -63,9 +63,9 @@ void add_report(CLI::App& app) {
       ->required()
       ->type_name("DIR")
       ->check(output_name());
-  command.add_flag("--images", a->images,
-                   fmt::format("each figure also as SVG and PNG in DIR/images, drawn by Chromium in at most {:g} s",
-                               results::browsing_time));
+  command.add_flag(
+      "--images", a->images,
+      fmt::format("each figure also as SVG and PNG in DIR/images, drawn by Chromium in at most {:g} s", browsing_time));
   command.callback([=] { make_report(*a); });
 }
 

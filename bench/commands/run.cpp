@@ -3,15 +3,15 @@
 #include <functional>
 #include <optional>
 
-#include "bench/argument_checks.hpp"
-#include "bench/choices.hpp"
+#include "bench/commands/argument_checks.hpp"
+#include "bench/commands/choices.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/names_of.hpp"
 #include "bench/commands/output.hpp"
 #include "bench/commands/scene_choice.hpp"
-#include "bench/frames.hpp"
-#include "results/atomic_file.hpp"
-#include "solver/threads.hpp"
+#include "bench/runs/frames.hpp"
+#include "solver/base/atomic_file.hpp"
+#include "solver/base/threads.hpp"
 
 namespace drape::bench {
 namespace {
@@ -87,16 +87,16 @@ Group run_group(const RunArguments& a) {
 }
 
 void run(const RunArguments& a) {
-  solver::use_threads(a.threads);
+  base::use_threads(a.threads);
   const std::vector<Group> groups{run_group(a)};
   Output output = a.output;
   if (!a.frames.folder.empty()) {
     if (output.sweep.start == results::Start::resumed)
       throw std::invalid_argument("--frames: expected no --resume beside it, frames of finished runs are not written again");
     output.sweep.out = out_file(output, "run");
-    results::require_creatable(output.sweep.out);  // before a folder is made
-    results::create_folder(a.frames.folder);
-    results::require_empty_folder(a.frames.folder, "the frames");
+    base::require_creatable(output.sweep.out);  // before a folder is made
+    base::create_folder(a.frames.folder);
+    base::require_empty_folder(a.frames.folder, "the frames");
     output.sweep.look = [&](const Cell& cell) { return frame_writer(cell, a.frames); };
   }
   sweep_and_print(groups, output, "run");
@@ -143,7 +143,7 @@ void add_solver_options(CLI::App& command, RunArguments& a) {
 void add_thread_option(CLI::App& run, RunArguments& a) {
   run.add_option("--threads", a.threads, "that the linear algebra of large grids may use")
       ->type_name("N")
-      ->check(between(1, solver::max_threads))
+      ->check(between(1, base::max_threads))
       ->capture_default_str();
 }
 

@@ -4,10 +4,10 @@
 
 #include <cstdio>
 
-#include "bench/available_memory.hpp"
+#include "bench/runs/available_memory.hpp"
 #include "model/at_rest.hpp"
-#include "model/scene_file.hpp"
-#include "solver/printable.hpp"
+#include "model/scene_file/scene_file.hpp"
+#include "solver/base/printable.hpp"
 
 namespace drape::bench {
 
@@ -17,7 +17,7 @@ model::Scene SceneChoice::load() const {
   model::Scene loaded = model::load_scene(scene, overrides);
   require_memory(loaded);
   if (model::is_at_rest(loaded))
-    fmt::print(stderr, "note: in the scene {} {}\n", solver::printable(loaded.name), model::at_rest_remark);
+    fmt::print(stderr, "note: in the scene {} {}\n", base::printable(loaded.name), model::at_rest_remark);
   return loaded;
 }
 

@@ -1,16 +1,16 @@
-#include "bench/foreign/score.hpp"
+#include "bench/score/score.hpp"
 
 #include <fmt/format.h>
 
 #include <optional>
 
-#include "bench/argument_checks.hpp"
+#include "bench/commands/argument_checks.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/output.hpp"
 #include "bench/commands/scene_choice.hpp"
-#include "bench/foreign/ours.hpp"
-#include "bench/table_jobs.hpp"
-#include "solver/printable.hpp"
+#include "bench/runs/table_jobs.hpp"
+#include "bench/score/ours.hpp"
+#include "solver/base/printable.hpp"
 
 namespace drape::bench {
 namespace {
@@ -32,7 +32,7 @@ void score(const ScoreArguments& a) {
   sweep.out = out_file(a.output, "score");
   const std::vector<results::Table> tables =
       compute(score_jobs(scene, foreign, options), score_identity(scene, foreign, options), sweep);
-  if (a.output.format == "table") fmt::print("{}", solver::printable_lines(score_summary(tables)));
+  if (a.output.format == "table") fmt::print("{}", base::printable_lines(score_summary(tables)));
   print_tables(tables, a.output.format);
   say_where(sweep.out, a.output.format);
 }

@@ -7,17 +7,17 @@
 #include <functional>
 #include <optional>
 
-#include "bench/argument_checks.hpp"
-#include "bench/choices.hpp"
+#include "bench/commands/argument_checks.hpp"
+#include "bench/commands/choices.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/names_of.hpp"
 #include "bench/commands/output.hpp"
-#include "bench/identity.hpp"
-#include "bench/plot.hpp"
-#include "bench/studies.hpp"
-#include "bench/table_jobs.hpp"
-#include "model/scene_file.hpp"
-#include "solver/printable.hpp"
+#include "bench/commands/plot.hpp"
+#include "bench/runs/identity.hpp"
+#include "bench/runs/table_jobs.hpp"
+#include "bench/studies/studies.hpp"
+#include "model/scene_file/scene_file.hpp"
+#include "solver/base/printable.hpp"
 
 namespace drape::bench {
 namespace {
@@ -95,7 +95,7 @@ std::filesystem::path run_study(const StudyArguments& a) {
   say_where(options.out, a.output.format);
   if (chosen.plot.empty()) return options.out;
   const std::string said = plot(chosen.plot, options.out);
-  if (a.output.format == "table") fmt::print("{}", solver::printable_lines(said));
+  if (a.output.format == "table") fmt::print("{}", base::printable_lines(said));
   return options.out;
 }
 

@@ -8,20 +8,20 @@
 #include <string>
 #include <system_error>
 
-#include "bench/interruption.hpp"
 #include "bench/report/base64.hpp"
-#include "results/atomic_file.hpp"
-#include "results/browser.hpp"
-#include "results/temporary_folder.hpp"
+#include "bench/report/browser.hpp"
+#include "bench/runs/interruption.hpp"
+#include "solver/base/atomic_file.hpp"
+#include "solver/base/temporary_folder.hpp"
 
 namespace drape::bench {
 namespace {
 
 namespace fs = std::filesystem;
 
-results::Browsed draw(const fs::path& page) {
+Browsed draw(const fs::path& page) {
   try {
-    return results::browse(fs::absolute(page), "see(JSON.stringify(await allPictures()));", 1280);
+    return browse(fs::absolute(page), "see(JSON.stringify(await allPictures()));", 1280);
   } catch (const std::system_error& error) {
     check_interruption();
     if (error.code() == std::errc::no_such_file_or_directory)
@@ -29,13 +29,13 @@ results::Browsed draw(const fs::path& page) {
           "--images: there is no chromium on the PATH: install the Debian package chromium (apt-get install chromium)");
     if (error.code() == std::errc::timed_out)
       throw std::runtime_error(fmt::format("--images: Chromium has not drawn the figures of {} in {:g} s and was ended",
-                                           page.string(), results::browsing_time));
+                                           page.string(), browsing_time));
     throw;
   }
 }
 
 nlohmann::json pictures_of(const fs::path& page) {
-  const results::Browsed drawn = draw(page);
+  const Browsed drawn = draw(page);
   if (drawn.seen.starts_with('[')) return nlohmann::json::parse(drawn.seen);
   throw std::runtime_error(fmt::format("--images: Chromium has not drawn the figures of {}{}{}", page.string(),
                                        drawn.console.empty() ? "" : ": ", drawn.console.empty() ? "" : drawn.console.front()));
@@ -46,19 +46,19 @@ void require_only_pictures(const fs::path& folder) {
   std::error_code missing;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, missing))
     if (!entry.is_regular_file() || (entry.path().extension() != ".svg" && entry.path().extension() != ".png"))
-      throw results::FileError(fmt::format("{}: expected nothing but older pictures in {}, which is replaced",
-                                           entry.path().string(), folder.string()));
+      throw base::FileError(fmt::format("{}: expected nothing but older pictures in {}, which is replaced",
+                                        entry.path().string(), folder.string()));
 }
 
-void write(const fs::path& file, std::span<const std::byte> bytes) { results::publish(file, bytes, results::Existing::refuse); }
+void write(const fs::path& file, std::span<const std::byte> bytes) { base::publish(file, bytes, base::Existing::refuse); }
 
 }  // namespace
 
 std::size_t write_images(const fs::path& page, const fs::path& folder) {
   require_only_pictures(folder);
   const nlohmann::json pictures = pictures_of(page);
-  const results::TemporaryFolder made(page.parent_path());  // in the same file system, so that a rename does
-  results::create_folder(made / "new");
+  const base::TemporaryFolder made(page.parent_path());  // in the same file system, so that a rename does
+  base::create_folder(made / "new");
   for (const nlohmann::json& picture : pictures) {
     const std::string stem = "new/" + picture.at("name").get<std::string>(), svg = picture.at("svg");
     write(made / (stem + ".svg"), std::as_bytes(std::span(svg)));

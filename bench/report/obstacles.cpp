@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
-#include "bench/polygons.hpp"
 #include "bench/report/base64.hpp"
-#include "model/contacts.hpp"
-#include "model/scene_file.hpp"
+#include "model/obstacles/contacts.hpp"
+#include "model/obstacles/surface.hpp"
+#include "model/scene_file/scene_file.hpp"
 
 namespace drape::bench {
 namespace {
@@ -52,7 +52,7 @@ Readable read_obstacles(const results::RunRecord& run) {
 }
 
 /// Corners of triangles, polygons cut into fans.
-std::vector<int> triangles(const Polygons& polygons) {
+std::vector<int> triangles(const model::Polygons& polygons) {
   std::vector<int> corners;
   for (const std::vector<int>& face : polygons.faces)
     for (std::size_t k = 2; k < face.size(); ++k) corners.insert(corners.end(), {face[0], face[k - 1], face[k]});
@@ -65,7 +65,7 @@ std::string packed(const std::vector<Number>& numbers) {
 }
 
 Json page_surface(const model::ObstacleRule& rule, double plane_side) {
-  const Polygons polygons = obstacle_polygons(rule, plane_side);
+  const model::Polygons polygons = model::obstacle_polygons(rule, plane_side);
   std::vector<float> places;
   for (const Eigen::Vector3d& vertex : polygons.vertices)
     for (const double x : vertex) places.push_back(static_cast<float>(x));
@@ -116,7 +116,7 @@ Json page_obstacles(const results::RunRecord& run, Json& surfaces) {
     Json page{{"drawn", drawn_obstacles(read, *run.trajectory, surfaces)}, {"missing", read.missing}};
     if (!read.missing.empty() || read.scene.obstacles.empty()) return page;
     solver::Work work;
-    page["clearance"] = clearances(model::Contacts(read.scene, work), *run.trajectory);
+    page["clearance"] = clearances(model::contacts(read.scene, work), *run.trajectory);
     page["distance"] = read.scene.contact.distance;
     return page;
   } catch (const std::exception& error) {  // the record is of a program whose scenes were others

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "results/run_file.hpp"
+#include "results/file/run_file.hpp"
 
 namespace drape::bench {
 

@@ -7,8 +7,8 @@
 
 #include "bench/report/base64.hpp"
 #include "bench/report/obstacles.hpp"
-#include "results/runs_table.hpp"
-#include "results/schema.hpp"
+#include "results/analysis/runs_table.hpp"
+#include "results/file/schema.hpp"
 
 namespace drape::bench {
 namespace {

@@ -3,7 +3,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "results/run_file.hpp"
+#include "results/file/run_file.hpp"
 
 namespace drape::bench {
 

@@ -5,14 +5,14 @@
 #include <limits>
 #include <memory>
 
-#include "bench/studies.hpp"
+#include "bench/studies/studies.hpp"
 #include "model/cloth.hpp"
-#include "model/scene_file.hpp"
+#include "model/scene_file/scene_file.hpp"
 #include "reference/exact/bending.hpp"
 #include "reference/exact/shear.hpp"
 #include "reference/exact/tension.hpp"
-#include "reference/kinsol.hpp"
-#include "results/order_fit.hpp"
+#include "reference/sundials/kinsol.hpp"
+#include "results/analysis/order_fit.hpp"
 #include "results/table_builder.hpp"
 
 namespace drape::bench {

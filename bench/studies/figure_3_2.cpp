@@ -6,8 +6,8 @@
 #include <memory>
 #include <numbers>
 
-#include "bench/studies.hpp"
-#include "model/scene_file.hpp"
+#include "bench/studies/studies.hpp"
+#include "model/scene_file/scene_file.hpp"
 #include "results/table_builder.hpp"
 
 namespace drape::bench {

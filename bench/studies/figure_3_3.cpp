@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 
-#include "bench/studies.hpp"
-#include "model/scene_file.hpp"
+#include "bench/studies/studies.hpp"
+#include "model/scene_file/scene_file.hpp"
 #include "results/table_builder.hpp"
-#include "solver/decompositions.hpp"
+#include "solver/base/decompositions.hpp"
 
 namespace drape::bench {
 namespace {
@@ -86,11 +86,11 @@ Eigen::SparseMatrix<double> slow_inertia(const solver::SplitOde& ode) {
 
 /// The motion that SBDF(2) is predicted to compute. Its f̂ = f − K x − D v is extrapolated with the error h² f̂''; where f
 /// itself changes slowly that is −h² K x'', so (M − h² K) dv/dt = f: mode by mode the artificial inertia
-/// (1 − ω²/κ) ν of reference/amplification.hpp with ω² ≪ κ. Its first step is one of IMEX midpoint, which goes ahead with the
-/// true inertia: summing (3.29) from there gives the momentum −h K (x1 − x0) that the slow motion starts with.
+/// (1 − ω²/κ) ν of reference/theory/amplification.hpp with ω² ≪ κ. Its first step is one of IMEX midpoint, which goes ahead
+/// with the true inertia: summing (3.29) from there gives the momentum −h K (x1 − x0) that the slow motion starts with.
 model::Cloth predicted_sbdf2(model::Cloth cloth) {
   solver::SplitOde& ode = cloth.ode;
-  const auto reduce = [mass = ode.mass, pins = ode.pins, inverse = solver::lu_inverse(slow_inertia(ode))](Vectors& f) {
+  const auto reduce = [mass = ode.mass, pins = ode.pins, inverse = base::lu_inverse(slow_inertia(ode))](Vectors& f) {
     filter(pins, f);
     for (int c = 0; c < 3; ++c) f.col(c) = mass.cwiseProduct(inverse(f.col(c)));
   };

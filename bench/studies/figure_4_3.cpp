@@ -5,11 +5,12 @@
 #include <span>
 #include <tuple>
 
-#include "bench/draping.hpp"
-#include "bench/studies.hpp"
-#include "bench/timing.hpp"
-#include "model/scene_file.hpp"
-#include "results/runs_table.hpp"
+#include "bench/runs/timing.hpp"
+#include "bench/studies/draping.hpp"
+#include "bench/studies/studies.hpp"
+#include "model/scene_file/scene_file.hpp"
+#include "results/analysis/runs_table.hpp"
+#include "solver/base/statistics.hpp"
 
 namespace drape::bench {
 namespace {
@@ -96,7 +97,7 @@ void add_bar(results::TableBuilder& table, const RunRecord& run, const char* wha
 void add_bars(results::TableBuilder& table, const Group& group, int repetitions) {
   const RunRecord with = record(group[0]), without = record(group[1]);
   const auto times = time_group({as_far_as(group[0], with), as_far_as(group[1], without)}, repetitions, [] {});
-  const double time = results::quantile(times[0], 0.5) / results::quantile(times[1], 0.5);
+  const double time = base::quantile(times[0], 0.5) / base::quantile(times[1], 0.5);
   const Steps all = with.steps, rest = all.last(std::min(all.size(), at_rest));
   add_bar(table, with, "CG iterations a step, at rest over before the first contact",
           iterations(rest) / iterations(before_contact(with)), most_iterations);

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bench/errors.hpp"
+#include "bench/runs/certified_reference.hpp"
 #include "bench/studies/refinement.hpp"
-#include "bench/studies/stability.hpp"
-#include "bench/studies/work_precision.hpp"
-#include "model/scene_file.hpp"
-#include "reference/linear_prediction.hpp"
+#include "bench/studies/stability/stability.hpp"
+#include "bench/studies/work_precision/work_precision.hpp"
+#include "model/scene_file/scene_file.hpp"
+#include "reference/theory/linear_prediction.hpp"
 
 namespace drape::bench {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/studies.hpp"
+#include "bench/studies/studies.hpp"
 
 namespace drape::bench {
 

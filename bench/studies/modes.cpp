@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "bench/studies.hpp"
-#include "reference/amplification.hpp"
+#include "bench/studies/studies.hpp"
+#include "reference/theory/amplification.hpp"
 #include "results/table_builder.hpp"
 
 namespace drape::bench {

@@ -1,5 +1,5 @@
-#include "bench/studies.hpp"
-#include "model/scene_file.hpp"
+#include "bench/studies/studies.hpp"
+#include "model/scene_file/scene_file.hpp"
 
 namespace drape::bench {
 

@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
-#include "bench/errors.hpp"
-#include "bench/studies.hpp"
+#include "bench/runs/certified_reference.hpp"
+#include "bench/runs/sweep.hpp"
 #include "bench/studies/refinement.hpp"
-#include "bench/sweep.hpp"
-#include "model/scene_file.hpp"
+#include "bench/studies/studies.hpp"
+#include "model/scene_file/scene_file.hpp"
 
 namespace drape::bench {
 namespace {

@@ -1,25 +1,26 @@
+#include "bench/studies/work_precision/peers.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
 
-#include "bench/errors.hpp"
-#include "bench/studies.hpp"
-#include "bench/studies/work_precision_peers.hpp"
-#include "bench/timing.hpp"
-#include "model/scene_file.hpp"
+#include "bench/runs/certified_reference.hpp"
+#include "bench/runs/timing.hpp"
+#include "bench/studies/studies.hpp"
+#include "model/scene_file/scene_file.hpp"
 #include "reference/reference.hpp"
-#include "reference/sundials_build.hpp"
+#include "reference/sundials/sundials_build.hpp"
+#include "results/analysis/work_precision.hpp"
 #include "results/table_builder.hpp"
-#include "results/work_precision.hpp"
 
 namespace drape::bench {
 namespace {
 
 /// A setup of SUNDIALS with one value, and what an independent driver measured of it on the same forces with SUNDIALS built
 /// with our flags: the largest error at 0.7, 0.9 and 1 of the end, and the CPU time [ms].
-struct Row {
+struct PeerRow {
   const char* damping;
   PeerSetup setup;
   double value, their_error, their_ms;
@@ -28,14 +29,15 @@ struct Row {
 PeerSetup midpoint(double stage_tolerance, bool deduced = false) {
   return {"arkode-steps", "constant", 0, 100, 0.3, 0, "midpoint", stage_tolerance, deduced};
 }
-PeerSetup gmres(double velocity_weight) { return {"cvode-bdf", "constant-gmres", 5, velocity_weight, 0.3}; }
+PeerSetup with_gmres(double velocity_weight) { return {"cvode-bdf", "constant-gmres", 5, velocity_weight, 0.3}; }
 
-std::vector<Row> rows(bool quick) {
-  std::vector<Row> all{{"50", midpoint(1e-3, true), 0.1, 9.1e-3, 1.01}, {"50", midpoint(1e-3), 0.05, 5.5e-4, 1.52},
-                       {"50", midpoint(1e-2), 0.025, 8.5e-5, 2.16},     {"50", midpoint(1e-2), 1. / 60, 2.8e-6, 2.87},
-                       {"50", midpoint(1e-2), 0.01, 9.5e-7, 4.44},      {"50", midpoint(1e-3), 0.003125, 8.9e-8, 13.0},
-                       {"5", gmres(1000), 1e-5, 9.6e-5, 15.2},          {"5", gmres(1000), 1e-6, 8.1e-6, 18.4},
-                       {"0.5", gmres(100), 1e-4, 5.0e-3, 22.6},         {"0.5", gmres(1000), std::pow(10, -5.5), 8.2e-5, 45.7}};
+std::vector<PeerRow> rows(bool quick) {
+  std::vector<PeerRow> all{
+      {"50", midpoint(1e-3, true), 0.1, 9.1e-3, 1.01}, {"50", midpoint(1e-3), 0.05, 5.5e-4, 1.52},
+      {"50", midpoint(1e-2), 0.025, 8.5e-5, 2.16},     {"50", midpoint(1e-2), 1. / 60, 2.8e-6, 2.87},
+      {"50", midpoint(1e-2), 0.01, 9.5e-7, 4.44},      {"50", midpoint(1e-3), 0.003125, 8.9e-8, 13.0},
+      {"5", with_gmres(1000), 1e-5, 9.6e-5, 15.2},     {"5", with_gmres(1000), 1e-6, 8.1e-6, 18.4},
+      {"0.5", with_gmres(100), 1e-4, 5.0e-3, 22.6},    {"0.5", with_gmres(1000), std::pow(10, -5.5), 8.2e-5, 45.7}};
   if (quick) all.resize(2);
   return all;
 }
@@ -68,11 +70,11 @@ Case make_case(const std::string& damping, bool quick) {
   return result;
 }
 
-std::vector<solver::Vectors> solve(const Row& row, const Case& on) {
+std::vector<solver::Vectors> solve(const PeerRow& row, const Case& on) {
   return positions_of(solve_by_peer(row.setup, row.value, on.size, model::compile(on.scene), on.times));
 }
 
-results::Measured measure(const Row& row, const Case& on, Units& units) {
+results::Measured measure(const PeerRow& row, const Case& on, Units& units) {
   constexpr int repetitions = 15;
   const auto prepare = [&] {
     return [&, cloth = std::make_shared<model::Cloth>(model::compile(on.scene))] {
@@ -85,7 +87,7 @@ results::Measured measure(const Row& row, const Case& on, Units& units) {
           })[0]};
 }
 
-void add_row(results::TableBuilder& table, const Row& row, const Case& on, Units& units) {
+void add_row(results::TableBuilder& table, const PeerRow& row, const Case& on, Units& units) {
   const auto positions = solve(row, on);
   const auto q = results::quartiles(measure(row, on, units).times);
   table.row();
@@ -109,7 +111,7 @@ results::Table reproduce(bool quick, Units& units) {
                               fmt::format("SUNDIALS as an independent driver has set it up; {}", reference::sundials_build()));
   std::string damping;
   std::optional<Case> on;
-  for (const Row& row : rows(quick)) {
+  for (const PeerRow& row : rows(quick)) {
     units.show(fmt::format("d = {}, {}: {:g}", row.damping, row.setup.name(), row.value));
     if (row.damping != damping) on = make_case(damping = row.damping, quick);
     add_row(table, row, *on, units);

@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <chrono>
 
-#include "bench/studies.hpp"
 #include "bench/studies/references_growth.hpp"
+#include "bench/studies/studies.hpp"
 #include "model/cloth.hpp"
-#include "model/scene_file.hpp"
-#include "reference/families.hpp"
+#include "model/scene_file/scene_file.hpp"
 #include "reference/reference.hpp"
+#include "reference/sundials/families.hpp"
 #include "results/table_builder.hpp"
-#include "solver/largest.hpp"
+#include "solver/base/largest.hpp"
 
 namespace drape::bench {
 namespace {
@@ -21,7 +21,7 @@ constexpr int outputs = 10;
 
 const std::vector<std::string> family_names{"cvode-bdf", "arkode-esdirk", "ida-bdf"};
 const std::vector<std::string> reference_dampings{"50", "5", "0.5"};
-const std::vector<std::string> scenes{"hung-edge", "hung-corners"};
+const std::vector<std::string> reference_scenes{"hung-edge", "hung-corners"};
 
 /// What a family computes of a scene, what it counted, and how long it took [s].
 struct Solution {
@@ -51,7 +51,7 @@ Solution solve(const std::string& family, const model::Scene& scene) {
 double largest_distance(const Solution& a, const Solution& b, double size) {
   double largest = 0;
   for (std::size_t k = 0; k < a.positions.size(); ++k)
-    largest = solver::larger(largest, reference::rms_distance(a.positions[k], b.positions[k]) / size);
+    largest = base::larger(largest, reference::rms_distance(a.positions[k], b.positions[k]) / size);
   return largest;
 }
 
@@ -73,7 +73,7 @@ void add_row(results::TableBuilder& table, const model::Scene& scene, const std:
 results::Table compare(bool quick, Units& units) {
   results::TableBuilder table(
       "references", fmt::format("Three families of solvers on the same equation of motion, rtol = {:g}", reference_rtol));
-  for (const std::string& name : scenes)
+  for (const std::string& name : reference_scenes)
     for (const std::string& damping : reference_dampings) {
       std::vector<model::Override> overrides{{"material.damping", damping}};
       if (quick) overrides.insert(overrides.end(), {{"grid.n", "6"}, {"end.time", "0.2"}});
@@ -93,7 +93,7 @@ results::Table compare(bool quick, Units& units) {
 }  // namespace
 
 std::vector<TableJob> references(bool quick) {
-  const auto parts = static_cast<int>(scenes.size() * reference_dampings.size() * family_names.size());
+  const auto parts = static_cast<int>(reference_scenes.size() * reference_dampings.size() * family_names.size());
   return {{parts, [quick](Units& units) { return compare(quick, units); }},
           {growth_parts, [quick](Units& units) { return growth_of_perturbations(quick, units); }}};
 }

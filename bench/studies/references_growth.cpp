@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "model/cloth.hpp"
-#include "model/scene_file.hpp"
-#include "reference/cvode.hpp"
+#include "model/scene_file/scene_file.hpp"
 #include "reference/growth.hpp"
+#include "reference/sundials/cvode.hpp"
 
 namespace drape::bench {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bench/units.hpp"
+#include "bench/runs/checkpoint.hpp"
 
 namespace drape::bench {
 

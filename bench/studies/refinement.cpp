@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "bench/errors.hpp"
-#include "model/scene_file.hpp"
-#include "results/order_fit.hpp"
+#include "bench/runs/certified_reference.hpp"
+#include "model/scene_file/scene_file.hpp"
+#include "results/analysis/order_fit.hpp"
 
 namespace drape::bench {
 namespace {

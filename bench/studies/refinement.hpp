@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bench/cell.hpp"
+#include "bench/runs/run.hpp"
 #include "reference/reference.hpp"
 #include "results/table_builder.hpp"
 

@@ -3,9 +3,9 @@
 #include <array>
 #include <limits>
 
-#include "bench/draping.hpp"
-#include "bench/studies.hpp"
-#include "model/scene_file.hpp"
+#include "bench/studies/draping.hpp"
+#include "bench/studies/studies.hpp"
+#include "model/scene_file/scene_file.hpp"
 
 namespace drape::bench {
 namespace {

@@ -2,10 +2,10 @@
 
 #include <map>
 
-#include "bench/draping.hpp"
-#include "bench/studies.hpp"
-#include "bench/timing.hpp"
-#include "model/scene_file.hpp"
+#include "bench/runs/timing.hpp"
+#include "bench/studies/draping.hpp"
+#include "bench/studies/studies.hpp"
+#include "model/scene_file/scene_file.hpp"
 
 namespace drape::bench {
 namespace {

@@ -5,10 +5,10 @@
 #include <memory>
 #include <optional>
 
-#include "bench/errors.hpp"
-#include "bench/studies.hpp"
-#include "bench/sweep.hpp"
-#include "model/scene_file.hpp"
+#include "bench/runs/certified_reference.hpp"
+#include "bench/runs/sweep.hpp"
+#include "bench/studies/studies.hpp"
+#include "model/scene_file/scene_file.hpp"
 #include "solver/dense_output.hpp"
 
 namespace drape::bench {

@@ -1,6 +1,7 @@
 #include <cmath>
 
-#include "model/normals.hpp"
+#include "model/forces/term.hpp"
+#include "model/sheet/normals.hpp"
 
 namespace drape::model {
 namespace {

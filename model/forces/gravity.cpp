@@ -1,4 +1,4 @@
-#include "model/term.hpp"
+#include "model/forces/term.hpp"
 
 namespace drape::model {
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 
-#include "model/linear_operator.hpp"
+#include "model/forces/linear_operator.hpp"
+#include "model/forces/term.hpp"
 
 namespace drape::model {
 namespace {

@@ -1,4 +1,5 @@
-#include "model/linear_operator.hpp"
+#include "model/forces/linear_operator.hpp"
+#include "model/forces/term.hpp"
 
 namespace drape::model {
 namespace {

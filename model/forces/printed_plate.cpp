@@ -1,5 +1,6 @@
-#include "model/edges.hpp"
-#include "model/linear_operator.hpp"
+#include "model/forces/linear_operator.hpp"
+#include "model/forces/term.hpp"
+#include "model/sheet/edges.hpp"
 
 namespace drape::model {
 namespace {

@@ -1,8 +1,9 @@
 #include <algorithm>
 #include <memory>
 
-#include "model/cells.hpp"
-#include "model/edges.hpp"
+#include "model/forces/term.hpp"
+#include "model/sheet/cells.hpp"
+#include "model/sheet/edges.hpp"
 
 namespace drape::model {
 namespace {

@@ -1,6 +1,7 @@
 #include <memory>
 
-#include "model/edges.hpp"
+#include "model/forces/term.hpp"
+#include "model/sheet/edges.hpp"
 
 namespace drape::model {
 

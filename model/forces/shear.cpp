@@ -1,7 +1,8 @@
 #include <array>
 #include <memory>
 
-#include "model/cells.hpp"
+#include "model/forces/term.hpp"
+#include "model/sheet/cells.hpp"
 
 namespace drape::model {
 namespace {

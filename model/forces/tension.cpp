@@ -1,7 +1,8 @@
 #include <algorithm>
 #include <memory>
 
-#include "model/edges.hpp"
+#include "model/forces/term.hpp"
+#include "model/sheet/edges.hpp"
 
 namespace drape::model {
 

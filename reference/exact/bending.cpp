@@ -5,7 +5,7 @@
 #include <complex>
 
 #include "reference/exact/polynomials.hpp"
-#include "solver/largest.hpp"
+#include "solver/base/largest.hpp"
 
 namespace drape::reference {
 namespace {
@@ -92,7 +92,7 @@ BentStrip::BentStrip(const BentSheet& sheet) : BentStrip(sheet, refined(sheet, r
 BentStrip::BentStrip(const BentSheet& sheet, const PiecewisePolynomial& coarser)
     : solution_(refined(sheet, coarser, 16)), error_(0) {
   for (const double X : Eigen::VectorXd::LinSpaced(201, 0, 1))
-    error_ = solver::larger(error_, (solution_(X) - coarser(X)).head<2>().norm());
+    error_ = base::larger(error_, (solution_(X) - coarser(X)).head<2>().norm());
 }
 
 Eigen::Vector3d BentStrip::slope_curvature_tension(double X) const {

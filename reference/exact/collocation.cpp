@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "reference/exact/polynomials.hpp"
-#include "solver/decompositions.hpp"
+#include "solver/base/decompositions.hpp"
 
 namespace drape::reference {
 namespace {
@@ -99,7 +99,7 @@ void collocate(const BoundaryValueProblem& problem, PiecewisePolynomial& y) {
     add_pieces(problem, y, system);
     add_conditions(problem, y, system);
     jacobian.setFromTriplets(system.jacobian.begin(), system.jacobian.end());
-    const auto inverse = solver::lu_inverse(jacobian);
+    const auto inverse = base::lu_inverse(jacobian);
     if (!inverse) break;
     const Eigen::VectorXd update = inverse(system.residual);
     y.values().reshaped() -= update;

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "solver/decompositions.hpp"
+#include "solver/base/decompositions.hpp"
 
 namespace drape::reference {
 namespace {
@@ -23,7 +23,7 @@ Eigen::ArrayXd barycentric_weights(const Eigen::VectorXd& nodes) {
 Quadrature gauss(int n) {
   Eigen::MatrixXd jacobi = Eigen::MatrixXd::Zero(n, n);
   for (int k = 1; k < n; ++k) jacobi(k, k - 1) = k / std::sqrt(4.0 * k * k - 1);
-  const auto [values, vectors] = solver::symmetric_eigen(jacobi);
+  const auto [values, vectors] = base::symmetric_eigen(jacobi);
   return {(values.array() + 1) / 2, vectors.row(0).array().square().transpose()};
 }
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "reference/exact/polynomials.hpp"
-#include "solver/largest.hpp"
+#include "solver/base/largest.hpp"
 
 namespace drape::reference {
 namespace {
@@ -19,7 +19,7 @@ using Eigen::MatrixXd;
 using Eigen::Vector2d;
 using Eigen::Vector4d;
 using Eigen::VectorXd;
-using Surface = ShearedSheet::Surface;
+using Values = ShearedSheet::Surface;
 
 /// The energy density W = ½ k (|p| − 1)² + ½ k (|q| − 1)² + ½ G <p, q>² derived by (p, q) = (s_u, s_v).
 struct Density {
@@ -113,7 +113,7 @@ void add(const ElementEnergy& energy, const std::vector<int>& nodes, int lines, 
   }
 }
 
-System linearise(const SideloadedSheet& sheet, const Element& element, const Surface& surface) {
+System linearise(const SideloadedSheet& sheet, const Element& element, const Values& surface) {
   const int lines = surface.lines(), degree = static_cast<int>(surface.nodes.size()) - 1;
   System system{VectorXd::Zero(2 * (lines - 1) * lines), {}};
   const VectorXd lengths =
@@ -129,7 +129,7 @@ System linearise(const SideloadedSheet& sheet, const Element& element, const Sur
 }
 
 /// Newton's method.
-void minimise(const SideloadedSheet& sheet, Surface& surface) {
+void minimise(const SideloadedSheet& sheet, Values& surface) {
   const Element element(surface.nodes);
   const int lines = surface.lines();
   Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> cholesky;
@@ -155,14 +155,14 @@ void minimise(const SideloadedSheet& sheet, Surface& surface) {
 
 /// The surface with the values of another function of (u, v) at its nodes.
 template <class Function>
-void set_values(Surface& surface, const Function& function) {
+void set_values(Values& surface, const Function& function) {
   const VectorXd at = surface.coordinates();
   for (Eigen::Index j = 0; j < at.size(); ++j)
     for (Eigen::Index i = 0; i < at.size(); ++i) surface.values.row(i + at.size() * j) = function(at[i], at[j]).transpose();
 }
 
-Surface flat_minimised(const SideloadedSheet& sheet, int degree, int levels) {
-  Surface surface(degree, levels);
+Values flat_minimised(const SideloadedSheet& sheet, int degree, int levels) {
+  Values surface(degree, levels);
   set_values(surface, [&](double u, double v) -> Vector2d { return {sheet.side * u, sheet.side * v}; });
   minimise(sheet, surface);
   return surface;
@@ -176,11 +176,11 @@ Vector2d inextensible_position(const SideloadedSheet& sheet, double X, double Y)
   return {G / f * (primitive(f / G * L) - primitive(f / G * (L - X))), Y + f / G * (L * X - X * X / 2)};
 }
 
-Surface::Surface(int degree, int levels) : breaks(graded_breaks(levels, 0.4)), nodes(chebyshev(degree)) {
+ShearedSheet::Surface::Surface(int degree, int levels) : breaks(graded_breaks(levels, 0.4)), nodes(chebyshev(degree)) {
   values.resize(lines() * lines(), 2);
 }
 
-VectorXd Surface::coordinates() const {
+VectorXd ShearedSheet::Surface::coordinates() const {
   const Eigen::Index degree = nodes.size() - 1;
   VectorXd at(lines());
   for (Eigen::Index piece = 0; piece + 1 < breaks.size(); ++piece)
@@ -188,7 +188,7 @@ VectorXd Surface::coordinates() const {
   return at;
 }
 
-Vector2d Surface::operator()(double u, double v) const {
+Vector2d ShearedSheet::Surface::operator()(double u, double v) const {
   const Place a = place(breaks, u), b = place(breaks, v);
   const auto basis = [this](const Place& at) -> Eigen::RowVectorXd {
     return interpolation(nodes, VectorXd::Constant(1, at.point));
@@ -210,7 +210,7 @@ ShearedSheet::ShearedSheet(const SideloadedSheet& sheet, Surface surface, const 
   minimise(sheet, surface_);
   const VectorXd samples = VectorXd::LinSpaced(33, 0, 1);
   for (const double u : samples)
-    for (const double v : samples) error_ = solver::larger(error_, (surface_(u, v) - coarser(u, v)).norm());
+    for (const double v : samples) error_ = base::larger(error_, (surface_(u, v) - coarser(u, v)).norm());
 }
 
 }  // namespace drape::reference

@@ -1,0 +1,56 @@
+#include "bench/commands/choices.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "bench/runs/terminal.hpp"
+#include "bench/studies/studies.hpp"
+#include "model/scene_file/scene_file.hpp"
+#include "solver/methods.hpp"
+
+namespace drape::bench {
+namespace {
+
+template <class Table>
+Choices from_table(const Table& table) {
+  Choices choices;
+  for (const auto& row : table) choices.push_back({std::string(row.name), std::string(row.description)});
+  return choices;
+}
+
+}  // namespace
+
+Choices scene_choices() {
+  Choices choices;
+  for (const model::BuiltinScene& scene : model::builtin_scenes())
+    choices.push_back({std::string(scene.name), model::parse_scene(scene.toml, scene.name).description});
+  return choices;
+}
+
+Choices scene_key_choices() {
+  Choices choices;
+  for (const model::KeyHelp& key : model::scene_keys()) choices.push_back({key.path, key.description});
+  return choices;
+}
+
+Choices method_choices() { return from_table(solver::methods()); }
+
+Choices stage_solver_choices() { return from_table(solver::stage_kinds()); }
+
+Choices linear_solver_choices() { return from_table(solver::linear_solvers()); }
+
+Choices study_choices() { return from_table(studies()); }
+
+std::string paragraph(std::string_view title, const Choices& choices) {
+  const auto length = [](const Choice& choice) { return choice.name.size(); };
+  const std::size_t width = length(std::ranges::max(choices, {}, length));
+  const int indent = static_cast<int>(width) + 4, columns = columns_of(STDOUT_FILENO);
+  std::string text = fmt::format("{}:\n", title);
+  for (const Choice& choice : choices)
+    text += fmt::format("  {:<{}}  {}\n", choice.name, width, wrapped(choice.description, columns - indent, indent));
+  return text;
+}
+
+}  // namespace drape::bench

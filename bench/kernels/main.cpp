@@ -1,0 +1,150 @@
+// Costs of the pieces, for what a person asks before choosing a solver: ns per particle of the product with the constant
+// matrix beside the triad of the machine, of every force, and of a whole CG iteration.
+
+#include <benchmark/benchmark.h>
+#include <fmt/format.h>
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "model/cloth.hpp"
+#include "model/scene_file/scene_file.hpp"
+#include "solver/linear/conjugate_gradients.hpp"
+#include "solver/linear/kernels.hpp"
+
+namespace drape::bench {
+namespace {
+
+using solver::SparseMatrix;
+using solver::Vectors;
+
+/// The sheet of the main job with n × n particles and only the forces that the changes leave.
+model::Scene sheet(int n, std::vector<model::Override> changes) {
+  changes.push_back({"grid.n", std::to_string(n)});
+  return model::load_scene("hung-edge", changes);
+}
+
+/// Nobody's exact grid, so that no branch or cancellation is special.
+Vectors perturbed(const Vectors& x, double size) { return x + size * Vectors::Random(x.rows(), 3); }
+
+SparseMatrix stage_matrix(const solver::SplitOde& ode, double h) {
+  SparseMatrix A = SparseMatrix(ode.mass.asDiagonal()) - h * h * ode.stiffness - h * ode.damping;
+  A.makeCompressed();
+  return A;
+}
+
+/// Adds the time of an iteration over the number of particles as a column.
+void per_particle(benchmark::State& state, std::int64_t particles) {
+  state.counters["per_particle"] = benchmark::Counter(
+      static_cast<double>(particles), benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+void bytes(benchmark::State& state, std::int64_t bytes) {
+  state.counters["bytes_per_s"] = benchmark::Counter(static_cast<double>(bytes), benchmark::Counter::kIsIterationInvariantRate,
+                                                     benchmark::Counter::kIs1000);
+}
+
+void triad(benchmark::State& state) {
+  const auto n = state.range(0) * state.range(0);
+  const Vectors b = Vectors::Random(n, 3), c = Vectors::Random(n, 3);
+  Vectors a = b;
+  for (auto _ : state) {
+    a.noalias() = b + 3.0 * c;
+    benchmark::ClobberMemory();
+  }
+  per_particle(state, n);
+  bytes(state, solver::vector_bytes(n, 3));
+}
+
+void product(benchmark::State& state) {
+  const model::Cloth cloth = compile(sheet(static_cast<int>(state.range(0)), {}));
+  const SparseMatrix A = stage_matrix(cloth.ode, 0.01);
+  const Vectors x = perturbed(cloth.start.x, 0.01);
+  Vectors y = x;
+  for (auto _ : state) benchmark::DoNotOptimize(solver::multiply(A, x, y));
+  per_particle(state, A.rows());
+  bytes(state, solver::multiply_bytes(A));
+}
+
+void cg_iteration(benchmark::State& state, const solver::LinearSolver& linear_solver) {
+  constexpr int iterations = 10;
+  const model::Cloth cloth = compile(sheet(static_cast<int>(state.range(0)), {}));
+  const SparseMatrix A = stage_matrix(cloth.ode, 0.01);
+  solver::ConjugateGradients cg(linear_solver.make(), iterations, *cloth.ode.work);
+  cg.analyze(A);
+  if (cg.factor(A) != solver::Outcome::success) return state.SkipWithError("the matrix is not positive definite");
+  const Vectors b = perturbed(cloth.start.x, 1);
+  Vectors r = b, d = b;
+  for (auto _ : state) {
+    r = b;
+    benchmark::DoNotOptimize(cg.solve(A, {}, r, d, -std::numeric_limits<double>::infinity()));
+  }
+  // One if the factor is complete.
+  per_particle(state, A.rows() * (cloth.ode.work->count("preconditioner_applications") / state.iterations()));
+}
+
+void force(benchmark::State& state, const std::vector<model::Override>& changes) {
+  const model::Scene scene = sheet(static_cast<int>(state.range(0)), changes);
+  const model::Cloth cloth = compile(scene);
+  const Vectors x = perturbed(cloth.start.x, 0.2 * scene.sheet.grid.spacing_u());
+  const Vectors v = perturbed(cloth.start.v, 1);
+  Vectors f = x;
+  for (auto _ : state) {
+    cloth.ode.force(0, x, v, f);
+    benchmark::ClobberMemory();
+  }
+  per_particle(state, cloth.ode.particles());
+}
+
+/// Only this much of the material, and no weight.
+std::vector<model::Override> only(std::vector<model::Override> kept) {
+  std::vector<model::Override> changes{
+      {"material.tension", "0"}, {"material.damping", "0"}, {"material.shear", "0"}, {"forces.gravity", "[0, 0, 0]"}};
+  changes.insert(changes.end(), kept.begin(), kept.end());
+  return changes;
+}
+
+void register_all() {
+  const std::vector<std::int64_t> sizes{20, 100, 1000};
+  const auto add = [&](const std::string& name, auto function, const std::vector<std::int64_t>& some_sizes) {
+    for (const std::int64_t n : some_sizes) benchmark::RegisterBenchmark(name.c_str(), function)->Arg(n)->ArgName("n");
+  };
+  add("triad", triad, sizes);
+  add("product", product, sizes);
+  for (const solver::LinearSolver& linear_solver : solver::linear_solvers()) {
+    // The complete factor of a million particles takes minutes: not a kernel.
+    const bool complete = linear_solver.name == "cholesky";
+    add(
+        fmt::format("cg-iteration/{}", linear_solver.name),
+        [&](benchmark::State& state) { cg_iteration(state, linear_solver); },
+        complete ? std::vector<std::int64_t>{20, 100} : sizes);
+  }
+  const std::vector<std::pair<std::string, std::vector<model::Override>>> forces{
+      {"none", only({})},
+      {"tension", only({{"material.tension", "1e4"}})},
+      {"damping", only({{"material.damping", "50"}})},
+      {"projected-damping", only({{"material.damping", "50"}, {"material.damping_form", "projected"}})},
+      {"shear", only({{"material.shear", "100"}})},
+      {"shear-viscous", only({{"material.shear", "100"}, {"material.shear_damping", "1"}})},
+      {"printed-shear", only({{"material.shear", "100"}, {"material.shear_form", "printed"}})},
+      {"contraction", only({{"material.tension", "1e4"}, {"material.contraction", "1e3"}})},
+      {"membrane", only({{"material.bend", "1e-3"}, {"material.bend_form", "membrane"}})},
+      {"plate", only({{"material.bend", "1e-3"}})},
+      {"plate-unprojected", only({{"material.bend", "1e-3"}, {"material.bend_projected", "false"}})},
+      {"hung-sheet", {}},
+  };
+  for (const auto& [name, changes] : forces)
+    add(
+        "force/" + name, [changes = changes](benchmark::State& state) { force(state, changes); }, sizes);
+}
+
+}  // namespace
+}  // namespace drape::bench
+
+int main(int argc, char** argv) {
+  drape::bench::register_all();
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  benchmark::RunSpecifiedBenchmarks();
+}

@@ -1,0 +1,121 @@
+#include "bench/runs/certified_reference.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <ranges>
+
+#include "bench/runs/motion_error.hpp"
+#include "model/scene_file/scene_file.hpp"
+#include "reference/plausible.hpp"
+#include "solver/base/largest.hpp"
+#include "solver/base/printable.hpp"
+
+namespace drape::bench {
+namespace {
+
+using solver::State;
+
+double centre_distance(const model::Cloth& cloth, const State& a, const State& b) {
+  return (cloth.ode.mass.asDiagonal() * (a.x - b.x)).colwise().sum().norm() / cloth.ode.mass.sum();
+}
+
+constexpr double reference_tolerances[] = {1e-9, 1e-10, 1e-11, 1e-12};  ///< of references
+
+/// The loosest of them that promises an uncertainty, as it falls with the tolerance; at least the next.
+double tightened(double tolerance, double factor) {
+  for (const double next : reference_tolerances)
+    if (next < 0.99 * tolerance && next <= 1.01 * factor * tolerance) return next;
+  return reference_tolerances[std::size(reference_tolerances) - 1];
+}
+
+}  // namespace
+
+std::vector<double> compared_times(const model::Scene& scene) {
+  constexpr int count = 10;
+  std::vector<double> times;
+  for (int k = 1; k <= count; ++k) times.push_back(scene.end * k / count);
+  return times;
+}
+
+References::~References() {
+  for (const std::string& message : cache_.messages()) fmt::print(stderr, "note: {}\n", base::printable(message));
+}
+
+reference::Reference References::operator()(const model::Scene& scene, const model::Cloth& cloth) {
+  return (*this)(scene, cloth, compared_times(scene));
+}
+
+reference::Reference References::operator()(const model::Scene& scene, const model::Cloth& cloth,
+                                            const std::vector<double>& times) {
+  return certified(scene, cloth, times, agreement_);
+}
+
+reference::Reference References::resolving(const model::Scene& scene, const model::Cloth& cloth, double error) {
+  return certified(scene, cloth, compared_times(scene), std::min(agreement_, error / 10));
+}
+
+reference::Reference References::certified(const model::Scene& scene, const model::Cloth& cloth,
+                                           const std::vector<double>& times, double uncertainty) {
+  const double size = model::size(scene);
+  reference::Reference reference = tight(scene, cloth, times, uncertainty * size);
+  if (cloth.ode.contacts) return reference;  // of first order: its uncertainty decides what is shown
+  try {
+    reference::certify(reference, agreement_, results::comparable_growth, size);
+  } catch (const reference::NotCertified& error) {
+    throw reference::NotCertified(fmt::format("{}: {}; allow more by --agreement", scene.name, error.what()));
+  }
+  return reference;
+}
+
+reference::Reference References::tight(const model::Scene& scene, const model::Cloth& cloth, const std::vector<double>& times,
+                                       double uncertainty) {
+  const auto left = [&] { return watch_.seconds - std::chrono::duration<double>(Clock::now() - begin_).count(); };
+  reference::Reference best = at(rtol_, scene, cloth, times, left());
+  for (;;) {
+    const double worst = std::ranges::max(best.error), tightest = std::ranges::min(reference_tolerances);
+    const bool comparable = !cloth.ode.contacts && std::ranges::max(best.growth) <= results::comparable_growth;
+    if (!comparable || !(worst > uncertainty) || best.tolerance <= tightest) return best;
+    try {
+      best = at(tightened(best.tolerance, uncertainty / worst), scene, cloth, times, left());
+    } catch (const reference::ReferenceError&) {
+      return best;  // its uncertainty says what it is worth
+    }
+  }
+}
+
+reference::Reference References::at(double tolerance, const model::Scene& scene, const model::Cloth& cloth,
+                                    const std::vector<double>& times, double seconds) {
+  reference::SolveOptions options{.rtol = tolerance, .size = model::size(scene)};
+  const auto key = [&] { return reference::cache_key(model::to_toml(scene), 0, times, options); };
+  const auto check = [&](const reference::Reference& found) {
+    reference::require_plausible(found, cloth.ode, cloth.start, 0, times, options.size);
+  };
+  for (const double tighter : reference_tolerances | std::views::reverse) {
+    options.rtol = tighter;
+    if (tighter >= tolerance) break;
+    if (auto known = cache_.find(key(), check)) return *std::move(known);
+  }
+  options.rtol = tolerance;
+  return reference::cached(
+      cache_, key(), [&] { return compute_reference(scene, cloth, times, options, watch_, seconds); }, check);
+}
+
+results::ErrorRecord distance(const results::RunRecord& run, const reference::Reference& reference, const model::Scene& scene,
+                              const model::Cloth& cloth) {
+  const double size = model::size(scene), end = reference.trajectory.times.back();
+  const State &y = reference.trajectory.states.back(), &perturbed = reference.perturbed.states.back();
+  const double energy = total_energy(cloth, end, y), scale = motion_scale(cloth, reference.trajectory, size).energy;
+  return {.rms = reference::rms_distance(run.final_state.x, y.x) / size,
+          .maximum = (run.final_state.x - y.x).rowwise().norm().maxCoeff() / size,
+          .reference = fmt::format("{} + {}", reference.name, reference.witness),
+          .reference_tolerance = reference.tolerance,
+          .reference_error = base::largest(reference.error) / size,
+          .growth = base::largest(reference.growth),
+          .energy = std::abs(total_energy(cloth, end, run.final_state) - energy) / scale,
+          .energy_spread = std::abs(total_energy(cloth, end, perturbed) - energy) / scale,
+          .centre = centre_distance(cloth, run.final_state, y) / size,
+          .centre_spread = centre_distance(cloth, perturbed, y) / size};
+}
+
+}  // namespace drape::bench

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <string>
+#include <type_traits>
+
+#include "bench/runs/checkpoint_json.hpp"
+#include "bench/runs/interruption.hpp"
+#include "bench/runs/progress.hpp"
+#include "results/file/journal.hpp"
+#include "results/table_builder.hpp"
+
+namespace drape::bench {
+
+/// The units of work of a sweep, each with an id that stays the same from start to start: what a killed process has finished is
+/// not done again. And the progress of all that.
+class Units {
+ public:
+  /// `parts`: how often advance() will be called.
+  Units(results::Journal& journal, int parts) : journal_(journal), progress_(parts) {}
+
+  /// The ids that follow belong to this.
+  void begin(const std::string& part) { prefix_ = part + ": "; }
+
+  void show(const std::string& activity) { progress_.show(activity); }
+  void report(const std::string& activity) { progress_.report(activity); }
+  void note(const std::string& line) { progress_.note(line); }
+  void advance() { progress_.advance(); }
+
+  /// What compute() returns, or what it returned to a process before this one: something that json holds. A result during which
+  /// the sweep was interrupted is not kept: it may be cut short.
+  template <class Compute>
+  std::invoke_result_t<Compute> operator()(const std::string& id, const Compute& compute) {
+    using Result = std::invoke_result_t<Compute>;
+    if (const auto* known = journal_.find(prefix_ + id)) return nlohmann::json::from_cbor(*known).get<Result>();
+    check_interruption();
+    Result result = compute();
+    check_interruption();
+    journal_.add(prefix_ + id, nlohmann::json::to_cbor(nlohmann::json(result)));
+    return result;
+  }
+
+  /// Adds the rows that fill(table) adds to an empty table.
+  template <class Fill>
+  void rows(results::TableBuilder& table, const std::string& id, const Fill& fill) {
+    table.append((*this)(id, [&] {
+      results::TableBuilder part("", "");
+      fill(part);
+      return part.finish();
+    }));
+  }
+
+ private:
+  results::Journal& journal_;
+  Progress progress_;
+  std::string prefix_;
+};
+
+}  // namespace drape::bench

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <variant>
+
+#include "results/file/run_file.hpp"
+
+/// How units of work keep what nlohmann/json does not know by itself.
+namespace nlohmann {
+
+/// Rows, columns and the numbers as they are in memory.
+template <class Scalar, int rows, int columns, int options>
+struct adl_serializer<Eigen::Matrix<Scalar, rows, columns, options>> {
+  using Matrix = Eigen::Matrix<Scalar, rows, columns, options>;
+
+  static void to_json(json& j, const Matrix& m) {
+    j = {m.rows(), m.cols(), std::vector<Scalar>(m.data(), m.data() + m.size())};
+  }
+  static void from_json(const json& j, Matrix& m) {
+    const auto values = j.at(2).get<std::vector<Scalar>>();
+    m = Eigen::Map<const Matrix>(values.data(), j.at(0).get<Eigen::Index>(), j.at(1).get<Eigen::Index>());
+  }
+};
+
+/// A list of none or one.
+template <class Value>
+struct adl_serializer<std::optional<Value>> {
+  static void to_json(json& j, const std::optional<Value>& value) {
+    j = json::array();
+    if (value) j.push_back(*value);
+  }
+  static void from_json(const json& j, std::optional<Value>& value) {
+    value.reset();
+    if (!j.empty()) value = j.at(0).get<Value>();
+  }
+};
+
+/// As it would be in a file.
+template <>
+struct adl_serializer<drape::results::RunRecord> {
+  static void to_json(json& j, const drape::results::RunRecord& run) {
+    const auto bytes = drape::results::to_bytes(run);
+    const auto* first = reinterpret_cast<const std::uint8_t*>(bytes.data());  // NOLINT
+    j = json::binary(std::vector<std::uint8_t>(first, first + bytes.size()));
+  }
+  static void from_json(const json& j, drape::results::RunRecord& run) {
+    run = drape::results::run_of(std::as_bytes(std::span(j.get_binary())));
+  }
+};
+
+template <>
+struct adl_serializer<drape::results::Cell> {
+  static void to_json(json& j, const drape::results::Cell& cell) {
+    if (const auto* text = std::get_if<std::string>(&cell)) j = *text;
+    if (const auto* number = std::get_if<double>(&cell)) j = *number;
+    if (const auto* count = std::get_if<std::int64_t>(&cell)) j = *count;
+  }
+  static void from_json(const json& j, drape::results::Cell& cell) {
+    if (j.is_string()) cell = j.get<std::string>();
+    if (j.is_number_float()) cell = j.get<double>();
+    if (j.is_number_integer()) cell = j.get<std::int64_t>();
+  }
+};
+
+}  // namespace nlohmann
+
+namespace drape::results {
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Column, name, title, unit, description, cells, shown)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Table, name, description, columns)
+
+}  // namespace drape::results

@@ -1,0 +1,138 @@
+#include "bench/runs/energy_guard.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace drape::bench {
+namespace {
+
+using solver::State;
+using solver::Vectors;
+
+/// Strain, and part of a sum, that round-off and unfinished solves may leave in a sheet at rest.
+constexpr double strain_noise = 1e-9, round_off = 1e-12;
+
+State start_of(const model::Cloth& cloth) {
+  State start = cloth.start;
+  solver::prescribe(cloth.ode.pins, start.v);
+  return start;
+}
+
+Vectors weight_of(const model::Sheet& sheet) {
+  return sheet.material.density * sheet.grid.cell_areas() * sheet.gravity.transpose();
+}
+
+double noise_of(const model::Sheet& sheet, const Vectors& weight, const Vectors& x) {
+  const double k = std::max(sheet.material.tension.weft, sheet.material.tension.warp);
+  return k * strain_noise * strain_noise * sheet.grid.cell_areas().sum() + round_off * weight.cwiseProduct(x).cwiseAbs().sum();
+}
+
+/// What a sheet that falls freely has after a second, and that grows with the square of time [J/s²].
+double fall_of(const model::Sheet& sheet, const Vectors& weight) {
+  return 0.5 * sheet.gravity.norm() * weight.rowwise().norm().sum();
+}
+
+/// Ends a run from within its observer.
+struct Exceeded {
+  double t, last_good_time;
+};
+
+}  // namespace
+
+EnergyGuard::Work::Work(const solver::SplitOde::Force& given, const State& start, bool jumps) : given_(given), jumps_(jumps) {
+  if (!given_) return;
+  last_.x = start.x;
+  given_(0, start.x, start.v, last_.f);
+  pair_ = last_;
+}
+
+void EnergyGuard::Work::go_on(double t, const State& y) {
+  if (!given_) return;
+  now_.x = y.x;
+  given_(t, y.x, y.v, now_.f);
+  fine_ += last_.work_to(now_);
+  const Vectors difference = (now_.f - last_.f).cwiseProduct(now_.x - last_.x);
+  pending_ = halfway_ ? 0 : 0.5 * std::abs(difference.sum());
+  if (jumps_) doubt_ += 0.5 * difference.rowwise().sum().cwiseAbs().sum();
+  if (halfway_) {
+    coarse_ += pair_.work_to(now_);
+    doubt_ = std::max(doubt_, std::abs(fine_ - coarse_));
+    pair_ = now_;
+    paired_ = true;
+  }
+  halfway_ = !halfway_;
+  std::swap(last_, now_);
+}
+
+EnergyGuard::EnergyGuard(const model::Scene& scene, const model::Cloth& cloth)
+    : cloth_(cloth),
+      wind_(scene.sheet.wind),
+      areas_(scene.sheet.grid.cell_areas()),
+      weight_(weight_of(scene.sheet)),
+      x_(cloth.start.x),
+      start_(kinetic_and_elastic(0, start_of(cloth))),
+      noise_(noise_of(scene.sheet, weight_, x_)),
+      fall_(fall_of(scene.sheet, weight_)),
+      end_(scene.end),
+      most_given_(std::max(0.0, start_)),
+      work_(cloth.given, start_of(cloth), !scene.obstacles.empty() && scene.contact.response == model::ResponseKind::reaction) {
+}
+
+double EnergyGuard::kinetic_and_elastic(double t, const State& y) const {
+  const double gravity = -weight_.cwiseProduct(y.x).sum();
+  return solver::kinetic_energy(cloth_.ode, y.v) + cloth_.ode.potential_energy(t, y.x) - gravity;
+}
+
+/// What a wind may have done in a step that is longer than its swing [J].
+double EnergyGuard::unresolved(const solver::StepReport& step, const Vectors& moved) const {
+  if (!wind_.blows() || !(wind_.frequency * step.h > 1)) return 0;
+  const double load = (std::abs(wind_.constant) + 1) * wind_.load.norm() * std::max(std::abs(wind_.drag), std::abs(wind_.lift));
+  return load * areas_.dot(moved.rowwise().norm());
+}
+
+bool EnergyGuard::exceeded(const solver::StepReport& step) {
+  const Vectors moved = step.y.x - x_;
+  if (cloth_.ode.damping.nonZeros() > 0) damped_ -= moved.cwiseProduct(cloth_.ode.damping * moved).sum() / step.h;
+  contact_work_ += step.contacts.work;
+  work_.go_on(step.t, step.y);
+  unresolved_ += unresolved(step, moved);
+  x_ = step.y.x;
+  const double given = start_ + weight_.cwiseProduct(x_ - cloth_.start.x).sum() + work_.value() + contact_work_;
+  most_given_ = std::max(most_given_, given);
+  energy_ = kinetic_and_elastic(step.t, step.y);
+  const double first = std::min(first_steps * step.h, first_part * end_);
+  const double doubt = work_.doubt() + unresolved_, tolerance = tolerated * most_given_ + noise_;
+  limit_ = given - damped_ + tolerance + fall_ * first * first + doubt;
+  judges_ = work_.compared() && doubt <= tolerance;
+  return !(energy_ <= limit_);
+}
+
+std::string EnergyGuard::message(double t) const {
+  return fmt::format("at t = {:.4g} s its energy was {:.3g} J where the scene can have {:.3g} J", t, energy_, limit_);
+}
+
+solver::RunResult integrate(solver::Integrator& integrator, EnergyGuard& guard, double t_end, double h,
+                            const solver::Observer& observer) {
+  double good = integrator.time();
+  solver::RunResult run;
+  try {
+    run = solver::integrate(integrator, t_end, h, [&](const solver::StepReport& step) {
+      if (guard.exceeded(step)) throw Exceeded{step.t, good};
+      good = step.t;
+      ++run.steps;
+      if (observer) observer(step);
+    });
+  } catch (const Exceeded& e) {
+    run.outcome = solver::Outcome::unstable;
+    run.message = guard.message(e.t);
+    run.last_good_time = e.last_good_time;
+    return run;
+  }
+  if (run.outcome == solver::Outcome::success && !guard.judges())
+    run.message = "energy cannot be judged: work is too uncertain with such steps";
+  return run;
+}
+
+}  // namespace drape::bench

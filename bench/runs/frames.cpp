@@ -1,0 +1,68 @@
+#include "bench/runs/frames.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <fstream>
+
+#include "model/obstacles/surface.hpp"
+#include "solver/base/atomic_file.hpp"
+
+namespace drape::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A name for a run that any file system takes.
+std::string run_name(const Cell& cell) {
+  std::string name = fmt::format("{}-{}-{}", cell.scene.name, cell.method_name(), cell.step);
+  std::ranges::replace_if(
+      name, [](unsigned char c) { return !std::isalnum(c) && c != '.' && c != '_'; }, '-');
+  return name;
+}
+
+void write(const fs::path& file, double t, const model::Polygons& polygons) {
+  std::ofstream out(file);
+  fmt::print(out, "# t = {:g} s\n", t);
+  model::write_obj(out, polygons);
+  out.close();
+  if (!out) throw base::FileError(fmt::format("{}: cannot be written; choose another --frames", file.string()));
+}
+
+class Writer {
+ public:
+  Writer(const Cell& cell, const Frames& frames)
+      : folder_(frames.folder / run_name(cell)), every_(frames.every), grid_(cell.scene.sheet.grid) {
+    base::create_folder(folder_);
+    for (const model::ObstacleRule& rule : cell.scene.obstacles) obstacles_.emplace_back(rule, 4 * model::size(cell.scene));
+  }
+
+  void see(double t, const solver::State& y) {
+    const double periods = std::floor(t / every_ + 1e-9);  // times are sums of steps
+    if (periods < due_) return;
+    due_ = periods + 1;
+    write(folder_ / fmt::format("sheet-{:04}.obj", frame_), t, model::sheet_polygons(grid_, y.x));
+    for (std::size_t k = 0; k < obstacles_.size(); ++k)
+      write(folder_ / fmt::format("obstacle-{}-{:04}.obj", k, frame_), t, obstacles_[k].at(t));
+    ++frame_;
+  }
+
+ private:
+  fs::path folder_;
+  double every_;
+  model::Grid grid_;
+  std::vector<model::PosedObstacle> obstacles_;
+  double due_ = 0;
+  int frame_ = 0;
+};
+
+}  // namespace
+
+solver::Observer frame_writer(const Cell& cell, const Frames& frames) {
+  return [writer = Writer(cell, frames)](const solver::StepReport& step) mutable { writer.see(step.t, step.y); };
+}
+
+}  // namespace drape::bench

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <filesystem>
+
+#include "bench/runs/run.hpp"
+
+namespace drape::bench {
+
+/// Where runs are written as sequences of meshes that ParaView and Blender open, and how often.
+struct Frames {
+  std::filesystem::path folder;
+  double every = 0.04;  ///< [s] of simulated time, at most one frame a step
+};
+
+/// Writes the run that it observes to the folder `scene-method-step`: `sheet-0000.obj` at the start and so on, beside the
+/// k-th obstacle of the scene, where it is at that time, as `obstacle-k-0000.obj`. Each file begins with its time. Throws
+/// base::FileError where a file cannot be written.
+solver::Observer frame_writer(const Cell& cell, const Frames& frames);
+
+}  // namespace drape::bench

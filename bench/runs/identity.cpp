@@ -1,0 +1,44 @@
+#include "bench/runs/identity.hpp"
+
+#include <fmt/format.h>
+#include <xxhash.h>
+
+#include "model/scene_file/scene_file.hpp"
+#include "solver/base/threads.hpp"
+
+namespace drape::bench {
+namespace {
+
+std::string all_of(const solver::Options& o, int threads) {
+  return fmt::format("{} {} {} {} {} {} {}\n{} {} {}\n{} {} {} {} {}\n{} {}\n", o.loop_tolerance, o.cg_tolerance, o.max_updates,
+                     o.max_cg_iterations, o.verlet_fraction, o.stage_accuracy, threads, o.control.min_updates,
+                     o.control.max_updates, o.control.factor, o.error_control.tolerance, o.error_control.length,
+                     o.error_control.duration, o.error_control.global, o.error_control.most_steps, o.stage->name,
+                     o.linear_solver->name);
+}
+
+}  // namespace
+
+std::string hash_of(std::string_view text) {
+  const auto hash = XXH3_128bits(text.data(), text.size());
+  return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
+}
+
+std::string identity(const Cell& cell, const SweepOptions& options) {
+  const std::string errors = options.reference ? fmt::format("errors to {}", options.agreement) : "no errors";
+  const std::string frames = options.frames_every ? fmt::format("\nframes every {} s", *options.frames_every) : "";
+  return hash_of(fmt::format("{}\n{} {}\n{}{}{}", model::to_toml(cell.scene), cell.method->name, cell.step,
+                             all_of(cell.options, base::threads_for(cell.scene.sheet.grid.particles())), errors, frames));
+}
+
+std::string identity(const std::vector<Group>& groups, const SweepOptions& options) {
+  std::string all =
+      fmt::format("{} times, {} s, {} MB\n", options.repetitions, options.limits.seconds, options.limits.megabytes);
+  for (const Group& group : groups) {
+    for (const Cell& cell : group) all += identity(cell, options) + ' ';
+    all += '\n';
+  }
+  return hash_of(all);
+}
+
+}  // namespace drape::bench

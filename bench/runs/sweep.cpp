@@ -1,0 +1,212 @@
+#include "bench/runs/sweep.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <limits>
+#include <new>
+#include <utility>
+
+#include "bench/runs/certified_reference.hpp"
+#include "bench/runs/contact_observer.hpp"
+#include "bench/runs/identity.hpp"
+#include "bench/runs/motion_error.hpp"
+#include "bench/runs/recording.hpp"
+#include "bench/runs/timing.hpp"
+#include "bench/runs/trajectory_observer.hpp"
+#include "results/file/xdmf.hpp"
+#include "solver/base/largest.hpp"
+
+namespace drape::bench {
+namespace {
+
+std::string title(const Cell& cell) {
+  return fmt::format("{} {} h = {} {}", cell.scene.name, cell.method_name(), cell.step, cell.overrides);
+}
+
+/// A run with its states at the compared times, which its error is found from when the reference is there.
+struct MeasuredRun {
+  results::RunRecord run;
+  std::vector<solver::Vectors> positions, velocities;  ///< none if nothing is compared
+
+  std::vector<solver::State> states() const {
+    std::vector<solver::State> all;
+    for (std::size_t k = 0; k < positions.size(); ++k) all.push_back({positions[k], velocities[k]});
+    return all;
+  }
+};
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(MeasuredRun, run, positions, velocities)
+
+/// The times of repetitions [ms] of a run, and the steps that each took.
+struct TimedRun {
+  std::vector<double> times;
+  std::int64_t steps = 0;
+};
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TimedRun, times, steps)
+
+MeasuredRun measure(const Cell& cell, const SweepOptions& options) {
+  const solver::Observer look = options.look ? options.look(cell) : solver::Observer();
+  if (!options.reference) return {record(cell, look, options.frames_every, options.limits), {}, {}};
+  Samples samples(compared_times(cell.scene));
+  const auto see = [&](const solver::StepReport& step) {
+    samples.see(step);
+    if (look) look(step);
+  };
+  MeasuredRun measured{record(cell, see, options.frames_every, options.limits), {}, {}};
+  if (measured.run.outcome != to_string(solver::Outcome::success)) return measured;
+  for (const solver::State& y : samples.states()) {
+    measured.positions.push_back(y.x);
+    measured.velocities.push_back(y.v);
+  }
+  return measured;
+}
+
+void compare(MeasuredRun& measured, const reference::Reference& reference, const model::Scene& scene,
+             const model::Cloth& cloth) {
+  results::RunRecord& run = measured.run;
+  run.error = distance(run, reference, scene, cloth);
+  run.motion_error = motion_error(measured.states(), reference, scene, cloth);
+  const reference::Trajectory& truth = reference.trajectory;
+  if (run.contact) run.contact->reference_area = contact_area(scene, cloth, truth.times.back(), truth.states.back().x);
+}
+
+/// Compares all runs that succeeded; returns the smallest of their errors, over the size.
+double compare_all(std::vector<MeasuredRun>& runs, const reference::Reference& reference, const model::Scene& scene,
+                   const model::Cloth& cloth) {
+  double smallest = std::numeric_limits<double>::infinity();
+  for (MeasuredRun& measured : runs) {
+    if (measured.run.outcome != to_string(solver::Outcome::success)) continue;
+    compare(measured, reference, scene, cloth);
+    smallest = std::min(smallest, measured.run.error->rms);
+  }
+  return smallest;
+}
+
+/// Measures the runs of a group by the reference of their common scene, which is as tight as the smallest error needs, or says
+/// with each why there is none.
+void measure_errors(const model::Scene& scene, std::vector<MeasuredRun>& runs, References& references) {
+  const auto remark = [&](const char* why) {
+    for (MeasuredRun& measured : runs)
+      measured.run.message += fmt::format("{}no reference: {}", measured.run.message.empty() ? "" : "; ", why);
+  };
+  try {
+    const model::Cloth cloth = model::compile(scene);
+    const reference::Reference first = references(scene, cloth);
+    const double smallest = compare_all(runs, first, scene, cloth);
+    if (cloth.ode.contacts || 10 * base::largest(first.error) <= smallest * model::size(scene)) return;
+    compare_all(runs, references.resolving(scene, cloth, smallest), scene, cloth);
+  } catch (const reference::ReferenceError& error) {
+    remark(error.what());
+  } catch (const std::bad_alloc&) {
+    remark("it needs more memory than the machine has");
+  }
+}
+
+/// Before anything is computed.
+void require_trajectories(const std::vector<Group>& groups, const SweepOptions& options) {
+  for (const Group& group : groups) check_frames("--trajectory", *options.frames_every, group.front().scene.end);
+  if (options.start == results::Start::fresh) base::require_creatable(results::xdmf_path(options.out));
+}
+
+/// Times those runs of a group that have kept their limits, as far as they went; the others have no times.
+std::vector<TimedRun> time_all(const Group& group, int repetitions, const std::vector<MeasuredRun>& runs, Units& units) {
+  Group timed;
+  std::vector<std::size_t> places;
+  for (std::size_t k = 0; k < group.size(); ++k) {
+    const results::RunRecord& run = runs[k].run;
+    if (run.outcome == out_of_time || run.outcome == out_of_memory) continue;
+    timed.push_back(as_far_as(group[k], run));
+    places.push_back(k);
+  }
+  std::vector<std::size_t> steps;
+  auto times = time_group(
+      timed, repetitions, [&] { units.advance(); }, &steps);
+  std::vector<TimedRun> all(group.size());
+  for (std::size_t k = 0; k < timed.size(); ++k) all[places[k]] = {std::move(times[k]), static_cast<std::int64_t>(steps[k])};
+  return all;
+}
+
+/// What is known of a run before its error is.
+std::string preview(const results::RunRecord& run) {
+  std::string line = fmt::format("{} {} h = {}: {}", run.scene, run.method, run.step, run.outcome);
+  if (!run.times_ms.empty()) line += fmt::format(", {:.4g} ms", std::ranges::min(run.times_ms));
+  return line + "; its error follows";
+}
+
+void add_errors(const model::Scene& scene, std::vector<MeasuredRun>& runs, const SweepOptions& options, Units& units) {
+  units.show("reference of " + scene.name);
+  bool previewed = false;
+  References references(options.agreement, {options.limits.seconds, [&](const std::string& pace) {
+                                              if (!std::exchange(previewed, true))
+                                                for (const MeasuredRun& measured : runs) units.note(preview(measured.run));
+                                              units.report("reference of " + scene.name + ": " + pace);
+                                            }});
+  measure_errors(scene, runs, references);
+  check_interruption();
+  units.advance();
+}
+
+/// Runs a group and records it as a whole: each cell is a unit of work, and so are their repetitions together, which must be
+/// interleaved. The reference comes last, since it may take longer than all the rest.
+void run_group(const Group& group, const SweepOptions& options, results::RunFile& file, Units& units) {
+  const model::Scene& scene = group.front().scene;
+  std::vector<MeasuredRun> measured;
+  std::string ids;
+  for (const Cell& cell : group) {
+    const std::string id = identity(cell, options);
+    ids += id;
+    measured.push_back(units(id, [&] {
+      units.show(title(cell));
+      MeasuredRun one = measure(cell, options);
+      one.run.cell = id;
+      return one;
+    }));
+    units.advance();
+  }
+  units.show("timing " + scene.name);
+  auto timed = units("times " + hash_of(ids), [&] { return time_all(group, options.repetitions, measured, units); });
+  for (std::size_t k = 0; k < measured.size(); ++k) {
+    if (timed[k].times.empty()) continue;
+    measured[k].run.times_ms = std::move(timed[k].times);
+    measured[k].run.work.push_back({"timed_steps", "accepted steps of a repetition that was timed", timed[k].steps});
+  }
+  if (options.reference) add_errors(scene, measured, options, units);
+  std::vector<results::RunRecord> runs;
+  for (MeasuredRun& one : measured) runs.push_back(std::move(one.run));
+  file.add(runs);
+}
+
+}  // namespace
+
+std::vector<results::RunRecord> sweep(const std::vector<Group>& groups, const SweepOptions& options) {
+  if (options.frames_every) require_trajectories(groups, options);
+  const auto parts_of = [&](const Group& group) {
+    return static_cast<int>(group.size()) * (1 + options.repetitions) + (options.reference ? 1 : 0);
+  };
+  int parts = 0;
+  for (const Group& group : groups) parts += parts_of(group);
+  record_in_file(options, identity(groups, options), parts, [&](results::RunFile& file, Units& units) {
+    const std::size_t recorded = file.run_count();
+    std::size_t before = 0;  // runs of the groups before this one
+    for (const Group& group : groups) {
+      if (before >= recorded)
+        run_group(group, options, file, units);
+      else
+        for (int k = 0; k < parts_of(group); ++k) units.advance();
+      before += group.size();
+    }
+  });
+  std::vector<results::RunRecord> all = results::read_runs(options.out);
+  if (options.frames_every) results::write_xdmf(options.out, all);
+  return all;
+}
+
+std::filesystem::path default_out(const std::string& job) {
+  const std::filesystem::path folder = std::filesystem::path("results") / "runs";
+  base::create_folder(folder, "; choose a file by --out");
+  return folder / fmt::format("{:%Y-%m-%dT%H-%M-%SZ}-{}-{}.h5", fmt::gmtime(std::time(nullptr)), job, getpid());
+}
+
+}  // namespace drape::bench

@@ -1,0 +1,102 @@
+#include "bench/runs/timing.hpp"
+
+#include <benchmark/benchmark.h>
+
+#include <string>
+
+#include "bench/runs/interruption.hpp"
+
+namespace drape::bench {
+namespace {
+
+/// Collects the times of single repetitions; the name of a benchmark is its place in the group.
+class Collector : public benchmark::BenchmarkReporter {
+ public:
+  Collector(std::vector<std::vector<double>>& times, TimeOf time_of) : times_(times), time_of_(time_of) {}
+
+  bool ReportContext(const Context&) override { return true; }
+
+  void ReportRuns(const std::vector<Run>& runs) override {
+    for (const Run& run : runs)
+      if (run.run_type == Run::RT_Iteration)
+        times_[std::stoul(run.run_name.function_name)].push_back(
+            1e3 * (time_of_ == TimeOf::wall ? run.real_accumulated_time : run.cpu_accumulated_time));
+  }
+
+ private:
+  std::vector<std::vector<double>>& times_;
+  TimeOf time_of_;
+};
+
+/// Ends a repetition from within its observer.
+struct Ended {};
+
+Prepare prepared(const Cell& cell, std::size_t& steps) {
+  return [&cell, &steps] {
+    return [&cell, &steps, cloth = model::compile(cell.scene)] {
+      solver::Integrator integrator(cloth.ode, *cell.method, cell.options, cloth.start);
+      steps = 0;
+      try {
+        integrate(integrator, cell.scene.end, cell.step, [&](const solver::StepReport&) {
+          check_interruption();
+          if (++steps >= cell.most_steps) throw Ended();
+        });
+      } catch (const Ended&) {
+      }
+    };
+  };
+}
+
+void interleave_repetitions() {
+  static const bool initialized = [] {
+    char program[] = "bench_integrators", flag[] = "--benchmark_enable_random_interleaving=true";
+    char* arguments[] = {program, flag, nullptr};
+    int count = 2;
+    benchmark::Initialize(&count, arguments);
+    return true;
+  }();
+  (void)initialized;
+}
+
+}  // namespace
+
+std::vector<std::vector<double>> time_runs(const std::vector<Repeated>& runs, const std::function<void()>& done,
+                                           TimeOf time_of) {
+  if (runs.empty()) return {};
+  interleave_repetitions();
+  std::vector<std::vector<double>> times(runs.size());
+  benchmark::ClearRegisteredBenchmarks();
+  for (std::size_t k = 0; k < runs.size(); ++k)
+    benchmark::RegisterBenchmark(std::to_string(k).c_str(),
+                                 [&prepare = runs[k].prepare, &done](benchmark::State& state) {
+                                   check_interruption();
+                                   const std::function<void()> run = prepare();
+                                   for (auto _ : state) run();
+                                   done();
+                                 })
+        ->Iterations(1)
+        ->Repetitions(runs[k].repetitions)
+        ->MeasureProcessCPUTime()
+        ->UseRealTime();
+  Collector collector(times, time_of);
+  benchmark::RunSpecifiedBenchmarks(&collector);
+  return times;
+}
+
+/// A run that the energy guard ended went one step further than it has recorded.
+Cell as_far_as(Cell cell, const results::RunRecord& run) {
+  cell.most_steps = run.steps.size() + (run.outcome == to_string(solver::Outcome::unstable) ? 1 : 0);
+  return cell;
+}
+
+std::vector<std::vector<double>> time_group(const Group& group, int repetitions, const std::function<void()>& done,
+                                            std::vector<std::size_t>* steps) {
+  std::vector<Repeated> runs;
+  std::vector<std::size_t> taken(group.size());
+  for (std::size_t k = 0; k < group.size(); ++k) runs.push_back({prepared(group[k], taken[k]), repetitions});
+  auto times = time_runs(runs, done);
+  if (steps != nullptr) *steps = std::move(taken);
+  return times;
+}
+
+}  // namespace drape::bench

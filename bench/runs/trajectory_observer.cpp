@@ -1,0 +1,72 @@
+#include "bench/runs/trajectory_observer.hpp"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+#include "bench/runs/contact_observer.hpp"
+#include "model/sheet/edges.hpp"
+#include "reference/sundials/coordinates.hpp"
+
+namespace drape::bench {
+namespace {
+
+/// Of the edges that meet in each particle.
+Eigen::VectorXd mean_strain(const std::vector<model::Edge>& edges, const solver::Vectors& x) {
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(x.rows()), count = sum;
+  for (const model::Edge& edge : edges) {
+    const double strain = (x.row(edge.i) - x.row(edge.j)).norm() / edge.length - 1;
+    for (const int end : {edge.i, edge.j}) sum[end] += strain, count[end] += 1;
+  }
+  return sum.cwiseQuotient(count);
+}
+
+std::vector<int> constraints(const model::Scene& scene, const model::Cloth& cloth, double t, const solver::Vectors& x) {
+  std::vector<int> kinds(static_cast<std::size_t>(cloth.ode.particles()), int(results::Constraint::free));
+  const std::vector<bool> touching = in_contact(scene, cloth, t, x);
+  for (std::size_t i = 0; i < touching.size(); ++i)
+    if (touching[i]) kinds[i] = int(results::Constraint::in_contact);
+  for (const solver::Pin& pin : cloth.ode.pins)
+    kinds[static_cast<std::size_t>(pin.particle)] = int(results::Constraint::pinned);
+  return kinds;
+}
+
+}  // namespace
+
+void check_frames(const char* option, double every, double end) {
+  constexpr double most = 1e5;
+  if (!(end / every <= most))
+    throw std::invalid_argument(
+        fmt::format("{}: expected at most {:g} frames to t = {:g} s, so every {:g} s at least, not {:g}", option, most, end,
+                    end / most, every));
+}
+
+std::vector<double> frame_times(double every, double end) {
+  std::vector<double> times;
+  const double last = end / every * (1 + 1e-9);  // round-off, not intention
+  for (int k = 1; k <= last; ++k) times.push_back(k * every);
+  return times;
+}
+
+TrajectoryWatch::TrajectoryWatch(const model::Scene& scene, const model::Cloth& cloth, double every)
+    : scene_(scene),
+      cloth_(cloth),
+      start_(reference::prescribed_start(cloth.ode, cloth.start)),
+      times_(frame_times(every, scene.end)),
+      output_(times_, 0, start_) {}
+
+results::TrajectoryRecord TrajectoryWatch::result() const {
+  const model::Grid& grid = scene_.sheet.grid;
+  const std::vector<model::Edge> edges = model::edges(grid);
+  results::TrajectoryRecord record{
+      .nu = grid.nu, .nv = grid.nv, .times = {0}, .states = {start_}, .stretch = {}, .constraint = {}};
+  record.times.insert(record.times.end(), times_.begin(), times_.begin() + std::ssize(output_.states));
+  record.states.insert(record.states.end(), output_.states.begin(), output_.states.end());
+  for (std::size_t k = 0; k < record.times.size(); ++k) {
+    record.stretch.push_back(mean_strain(edges, record.states[k].x));
+    record.constraint.push_back(constraints(scene_, cloth_, record.times[k], record.states[k].x));
+  }
+  return record;
+}
+
+}  // namespace drape::bench

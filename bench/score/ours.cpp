@@ -1,0 +1,90 @@
+#include "bench/score/ours.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "bench/runs/run.hpp"
+#include "solver/base/largest.hpp"
+
+namespace drape::bench {
+namespace {
+
+constexpr double well = 4;  ///< so many times below an error or beyond a cost
+
+Problem problem_of(const TrueMotion& truth, const std::vector<FrameScore>& frames) {
+  Problem problem{truth.scene.name, truth.scene, model::size(truth.scene)};
+  problem.scene.end = frames.back().t;
+  for (std::size_t k = 1; k < frames.size(); ++k) {
+    problem.times.push_back(frames[k].t);
+    problem.truth.push_back(state_at(truth.motion, frames[k].t).x);
+    problem.uncertainty = base::larger(problem.uncertainty, frames[k].uncertainty / problem.length);
+  }
+  problem.growth = truth.growth;
+  return problem;
+}
+
+double time_of(const Trial& trial) {
+  return trial.measured.times.empty() ? INFINITY : results::quartiles(trial.measured.times).median;
+}
+
+/// `longest` [ms]: NaN if it is not known.
+void take_in(Answers& answers, const Trial& trial, double error, double longest) {
+  if (trial.measured.error <= error && (answers.as_right == nullptr || time_of(trial) < time_of(*answers.as_right)))
+    answers.as_right = &trial;
+  if (time_of(trial) <= longest && (answers.at_cost == nullptr || trial.measured.error < answers.at_cost->measured.error))
+    answers.at_cost = &trial;
+}
+
+std::vector<Answers> answers_of(const Ours& ours, double error, double longest) {
+  std::vector<Answers> all;
+  for (const Family& family : ours.families) {
+    Answers& answers = all.emplace_back();
+    for (const Trial& trial : ours.trials)
+      if (trial.family == &family) take_in(answers, trial, error, longest);
+  }
+  return all;
+}
+
+}  // namespace
+
+double known_error(const std::vector<FrameScore>& frames) {
+  return std::max(std::ranges::max(frames, {}, &FrameScore::rms).rms,
+                  std::ranges::max(frames, {}, &FrameScore::uncertainty).uncertainty);
+}
+
+Ours try_ours(const TrueMotion& truth, const std::vector<FrameScore>& frames, const std::vector<std::string>& methods,
+              std::optional<double> cost, int repetitions, Units& units) {
+  Problem problem = problem_of(truth, frames);
+  const double error = known_error(frames) / problem.length;
+  Effort effort{.repetitions = repetitions, .time_of = TimeOf::wall};  // as the other simulator's
+  if (cost)
+    effort.cap = std::max(effort.cap, well * *cost);
+  else
+    problem.enough = error / well;
+  Ours ours;
+  for (const std::string& method : methods) ours.families.push_back(ladder(problem.scene, method));
+  ours.trials = try_all(problem, ours.families, effort, units);
+  const double longest = cost ? 1e3 * *cost : NAN;
+  problem.asked = {error};
+  for (const Answers& answers : answers_of(ours, error, longest))  // by a first run each, to know what to time
+    if (answers.at_cost != nullptr) problem.asked.push_back(answers.at_cost->measured.error);
+  units.show("timing " + problem.name);
+  time_fronts(problem, ours.trials, effort, {}, units);
+  ours.answers = answers_of(ours, error, longest);
+  for (const Trial& trial : ours.trials) take_in(ours.best, trial, error, longest);
+  return ours;
+}
+
+void check_methods(const std::vector<std::string>& methods, const model::Scene& scene) {
+  for (const std::string& name : methods) {
+    Cell cell{scene, "", nullptr, scene.end, {}};
+    choose_method(cell, name);
+    if (!scene.obstacles.empty() && !cell.method->meets_obstacles)
+      throw std::invalid_argument(fmt::format("method '{}': expected one that meets obstacles, as the scene has some", name));
+  }
+}
+
+}  // namespace drape::bench

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/runs/table_jobs.hpp"
+#include "bench/score/external_motion.hpp"
+
+namespace drape::bench {
+
+/// What a foreign motion is measured by.
+struct ScoreOptions {
+  std::optional<double> cost;        ///< what it took on this machine [s]
+  std::vector<std::string> methods;  ///< of ours, to stand beside it
+  double agreement;                  ///< as References has it
+  int repetitions;                   ///< of those of ours that are timed
+};
+
+/// The tables `score` (over time), `score-summary`, `score-ours` and, for files, `score-trials`.
+std::vector<TableJob> score_jobs(const model::Scene& scene, const ForeignMotion& foreign, const ScoreOptions& options);
+
+/// Of all that determines them.
+std::string score_identity(const model::Scene& scene, const ForeignMotion& foreign, const ScoreOptions& options);
+
+/// These tables in a few lines, for people.
+std::string score_summary(const std::vector<results::Table>& tables);
+
+}  // namespace drape::bench

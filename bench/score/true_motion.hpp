@@ -1,0 +1,44 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bench/runs/reference_work.hpp"
+#include "model/cloth.hpp"
+#include "reference/trajectory.hpp"
+
+namespace drape::bench {
+
+/// How a scene really moves: its certified reference at the times asked for and at many between them, from the start to the
+/// end.
+struct TrueMotion {
+  model::Scene scene;
+  model::Cloth cloth;
+  std::string families;             ///< the two that agree: "cvode-bdf + arkode-esdirk"
+  double growth = 0;                ///< largest growth of a small perturbation of the start
+  reference::Trajectory motion;     ///< the first state is the start
+  reference::Trajectory witness;    ///< the same as the other family has it
+  std::vector<double> uncertainty;  ///< [m], root mean square over the particles, at these times
+};
+
+/// `times` [s] ascend from 0 to at most the scene's end. `agreement`: as References has it. Throws reference::NotCertified
+/// where the families disagree by more, or, as with contact, by more than errors can be measured by; and
+/// reference::ReferenceError.
+TrueMotion true_motion(const model::Scene& scene, std::span<const double> times, double agreement, const ReferenceWatch& watch);
+
+/// The state of a motion at a time: between its times by cubic Hermite interpolation, before the start as at the start, but at
+/// rest.
+solver::State state_at(const reference::Trajectory& motion, double t);
+
+/// States at times that the motion has, or between them.
+std::vector<solver::State> states_at(const reference::Trajectory& motion, std::span<const double> times);
+
+/// The uncertainty at a time [m]: that of the next time that the motion has.
+double uncertainty_at(const TrueMotion& truth, double t);
+
+/// Error of positions between the times, root mean square over time and particles [m], estimated by what leaving out every
+/// other time would change: the interpolation is of fourth order.
+double interpolation_error(const reference::Trajectory& motion);
+
+}  // namespace drape::bench

@@ -1,0 +1,14 @@
+#include "bench/studies/bar.hpp"
+
+#include <fmt/format.h>
+
+namespace drape::bench {
+
+std::string to_string(const Bar& bar) { return fmt::format("{} {:g}", bar.at_least ? ">=" : "<=", bar.wanted); }
+
+std::string verdict(const Bar& bar, double value) {
+  const double by = bar.at_least ? bar.wanted / value : value / bar.wanted;
+  return by <= 1 ? "met" : fmt::format("NOT met by {:.2f}", by);
+}
+
+}  // namespace drape::bench

@@ -1,0 +1,75 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <deque>
+
+#include "bench/studies/bar.hpp"
+#include "bench/studies/scaling/scaling.hpp"
+#include "results/analysis/runs_table.hpp"
+#include "solver/base/statistics.hpp"
+
+namespace drape::bench::scaling_study {
+namespace {
+
+/// What a BDF(2) step of the large sheet costs a particle over what the same step of the small one costs. The small one is run
+/// several times over, for its steps are short, and both in turns, because the machine's speed drifts.
+std::vector<double> growth(int large, int small) {
+  constexpr int copies = 5, steps = 5;
+  Run big(large, "bdf2");
+  std::deque<Run> little;
+  for (int k = 0; k < copies; ++k) little.emplace_back(small, "bdf2");
+  std::vector<double> ratios;
+  for (int k = 0; k < steps; ++k) {
+    std::vector<double> times;
+    const double time = big.advance() / big.particles();
+    for (Run& run : little) times.push_back(run.advance() / run.particles());
+    ratios.push_back(time / base::quantile(times, 0.5));
+  }
+  return ratios;
+}
+
+/// What the forces of the sheet (tension, damping, shear, weight) cost a particle [ns].
+std::vector<double> force_times(int n) {
+  constexpr int turns = 21;
+  const model::Cloth cloth = hung_sheet(n);
+  solver::Vectors f(cloth.ode.particles(), 3);
+  std::vector<double> times;
+  for (int k = 0; k < turns; ++k) {
+    const double time = seconds([&] { cloth.ode.force(0, cloth.start.x, cloth.start.v, f); });
+    times.push_back(1e9 * time / cloth.ode.particles());
+  }
+  return times;
+}
+
+void add_bar(results::TableBuilder& table, const std::string& what, const Bar& bar, const std::vector<double>& values) {
+  const double value = base::quantile(values, 0.5);
+  table.row();
+  table.text("what", "asked for", "what is compared", what);
+  table.text("bar", "bar", "what it may be", to_string(bar));
+  table.number("value", "value", "1", "median of turns", value);
+  table.number("lowest", "from", "1", "lowest of turns", *std::ranges::min_element(values));
+  table.number("highest", "to", "1", "highest of turns", *std::ranges::max_element(values));
+  table.text("verdict", "verdict", "whether the bar is met", verdict(bar, value));
+}
+
+}  // namespace
+
+results::Table bars(bool quick, Units& units) {
+  const int large = sizes(quick).back(), small = quick ? 20 : 100;
+  results::TableBuilder table("scaling-bars", "What was asked for, one thread");
+  units.show("bars: a step");
+  add_bar(table, fmt::format("BDF(2) step: time per particle, {0} x {0} over {1} x {1}", large, small), {3, false},
+          units("step", [&] { return growth(large, small); }));
+  units.advance();
+  units.show("bars: conjugate gradients");
+  add_bar(table, fmt::format("fused CG and stencil: bandwidth over the triad's, {0} x {0}", large), {0.6, true},
+          units("iteration", [&] { return bandwidth_of_bare_iterations(large, 31); }));
+  units.advance();
+  units.show("bars: forces");
+  add_bar(table, fmt::format("forces: ns per particle, {0} x {0}", large), {8, false},
+          units("forces", [&] { return force_times(large); }));
+  units.advance();
+  return table.finish();
+}
+
+}  // namespace drape::bench::scaling_study

@@ -1,0 +1,153 @@
+#include "bench/studies/scaling/scaling.hpp"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <cmath>
+
+#include "model/scene_file/scene_file.hpp"
+#include "solver/base/threads.hpp"
+
+namespace drape::bench {
+namespace scaling_study {
+
+std::vector<int> sizes(bool quick) {
+  if (quick) return {20, 40};
+  return {20, 50, 100, 200, 316, 500, 1000};
+}
+
+model::Cloth hung_sheet(int n) {
+  const model::Override size[] = {{"grid.n", std::to_string(n)}};
+  return model::compile(model::load_scene("hung-edge", size));
+}
+
+void add_size(results::TableBuilder& table, int n, int threads) {
+  table.row();
+  table.count("n", "n", "particles a side", n);
+  table.count("threads", "threads", "that the linear solver may use; forces use one", threads);
+}
+
+void with_threads(int n, const std::function<void(int threads)>& f) {
+  for (const int threads : {1, 2}) {
+    if (threads > 1 && n < 200) continue;
+    base::use_threads(threads);
+    f(threads);
+  }
+  base::use_threads(1);
+}
+
+Run::Run(int n, const std::string& method)
+    : method_(method), cloth_(hung_sheet(n)), integrator_(cloth_.ode, solver::method(method), {}, cloth_.start) {
+  constexpr int first_steps = 2;  // they make the matrices
+  for (int k = 0; k < first_steps; ++k) advance();
+}
+
+double Run::advance() {
+  solver::StageResult result;
+  const double time = seconds([&] { result = integrator_.step(step); });
+  if (result.outcome != solver::Outcome::success)
+    throw std::runtime_error(fmt::format("a step of {} failed: {}", method_, solver::to_string(result.outcome)));
+  return time;
+}
+
+namespace {
+
+const std::vector<std::string> methods{"bdf2", "sbdf2"};
+
+double peak_memory_mb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024;
+}
+
+/// The exponent p in time ~ particles^p by least squares; sizes are particles a side.
+double exponent(const std::vector<int>& sides, const std::vector<double>& times) {
+  Eigen::ArrayXd x(sides.size()), y(sides.size());
+  for (std::size_t k = 0; k < sides.size(); ++k) {
+    x[k] = 2 * std::log(sides[k]);
+    y[k] = std::log(times[k]);
+  }
+  x -= x.mean();
+  return (x * y).sum() / x.square().sum();
+}
+
+std::string_view linear_solver_of(const Run& run) {
+  std::string_view used;
+  for (const solver::LinearSolver& kind : solver::linear_solvers())
+    if (run.count(fmt::format("linear_solver/{}", kind.name)) > 0) used = kind.name;
+  return used;
+}
+
+/// What some steps cost on average, and what the run did in all.
+struct StepCost {
+  double seconds = 0, updates = 0, iterations = 0;  ///< a step
+  int particles = 0;
+  std::string linear_solver = {};
+  std::int64_t escalations = 0;
+  double memory = 0;  ///< [MB]
+};
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(StepCost, seconds, updates, iterations, particles, linear_solver, escalations, memory)
+
+StepCost time_steps(int n, const std::string& method) {
+  constexpr int timed = 3;
+  Run run(n, method);
+  const auto updates_before = run.count("updates"), iterations_before = run.count("cg_iterations");
+  double time = 0;
+  for (int k = 0; k < timed; ++k) time += run.advance() / timed;
+  return {.seconds = time,
+          .updates = static_cast<double>(run.count("updates") - updates_before) / timed,
+          .iterations = static_cast<double>(run.count("cg_iterations") - iterations_before) / timed,
+          .particles = run.particles(),
+          .linear_solver = std::string(linear_solver_of(run)),
+          .escalations = run.count("escalations"),
+          .memory = peak_memory_mb()};
+}
+
+void add_steps(results::TableBuilder& table, int n, int threads, const std::string& method, const StepCost& cost) {
+  const double per_particle = 1e9 * cost.seconds / cost.particles;
+  add_size(table, n, threads);
+  table.text("method", "method", "time integrator", method);
+  table.text("linear_solver", "chosen", "the linear solver that auto chose", cost.linear_solver);
+  table.number("step", "step", "ms", "mean wall time of a step", 1e3 * cost.seconds);
+  table.number("per_particle", "/particle", "ns", "the same, over the number of particles", per_particle);
+  table.number("updates", "updates", "1", "linear systems a step", cost.updates);
+  table.number("per_update", "/update", "ns", "time over the number of particles and updates", per_particle / cost.updates);
+  table.number("cg_iterations", "CG", "1", "iterations of conjugate gradients a step", cost.iterations);
+  table.count("escalations", "to Newton", "stages that auto gave to Newton's matrix", cost.escalations);
+  table.number("memory", "memory", "MB", "most memory that the process had until then", cost.memory);
+}
+
+}  // namespace
+
+results::Table steps(bool quick, Units& units) {
+  results::TableBuilder table("scaling",
+                              fmt::format("A step of {:g} s of the sheet hung by its edge, by size; all solvers: auto", step));
+  std::vector<std::vector<double>> times(methods.size());
+  for (const int n : sizes(quick))
+    for (std::size_t k = 0; k < methods.size(); ++k) {
+      units.show(fmt::format("{} x {}, {}", n, n, methods[k]));
+      with_threads(n, [&](int threads) {
+        const StepCost cost = units(fmt::format("{} {} {}", n, methods[k], threads), [&] { return time_steps(n, methods[k]); });
+        add_steps(table, n, threads, methods[k], cost);
+        if (threads == 1) times[k].push_back(cost.seconds);
+      });
+      units.advance();
+    }
+  for (std::size_t k = 0; k < methods.size(); ++k) {
+    table.row();
+    table.text("method", "method", "time integrator", methods[k]);
+    table.number("exponent", "exponent", "1", "p in time ~ particles^p, one thread", exponent(sizes(quick), times[k]));
+  }
+  return table.finish();
+}
+
+}  // namespace scaling_study
+
+std::vector<TableJob> scaling(bool quick) {
+  const int count = static_cast<int>(scaling_study::sizes(quick).size());
+  return {{2 * count, [quick](Units& units) { return scaling_study::steps(quick, units); }},
+          {count, [quick](Units& units) { return scaling_study::iterations(quick, units); }},
+          {3, [quick](Units& units) { return scaling_study::bars(quick, units); }}};
+}
+
+}  // namespace drape::bench

@@ -1,0 +1,267 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <memory>
+#include <optional>
+#include <tuple>
+
+#include "bench/studies/stability/stability.hpp"
+#include "reference/theory/linear_prediction.hpp"
+
+namespace drape::bench {
+namespace {
+
+using solver::Method;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double visible_growth = 10;  ///< of an amplitude in a run: its energy is then out of bounds
+
+/// A part of the atlas: one mesh and one time step.
+struct Sheet {
+  int n;
+  double step;  ///< [s]
+  std::vector<double> stiffnesses, ratios;
+  double effort = 1;        ///< part of the usual budgets
+  bool spot_check = false;  ///< only what the bar is about
+};
+
+std::vector<double> decades(int from, int to, int stride = 1) {
+  std::vector<double> all;
+  for (int k = from; k <= to; k += stride) all.push_back(std::pow(10, k));
+  return all;
+}
+
+/// h k/d, without damping at the end.
+std::vector<double> ratios(int from, int to, int stride = 1) {
+  std::vector<double> all = decades(from, to, stride);
+  all.push_back(infinity);
+  return all;
+}
+
+std::vector<Sheet> sheets(bool quick) {
+  if (quick) return {{6, 0.02, {1, 1e5}, {1, 1e4}}};
+  return {{10, 0.01, decades(0, 7), ratios(-2, 6)},
+          {20, 0.01, decades(1, 7, 2), ratios(-2, 6, 2), 0.5},
+          {10, 0.04, decades(1, 7, 3), ratios(-2, 6, 2)},
+          {10, 0.0025, decades(1, 7, 3), ratios(-2, 6, 2)},
+          {40, 0.01, {1e3, 1e7}, {1, 1e3, infinity}, 1, true}};
+}
+
+/// A method with its stage solver as it stands in the atlas.
+struct Row {
+  std::string name;
+  const Method* method;
+  solver::Options options;
+  std::int64_t budget;
+};
+
+constexpr const char* bar_methods[] = {"implicit-euler", "bdf2", "midpoint"};
+
+bool is_bar_method(std::string_view name) { return std::ranges::find(bar_methods, name) != std::end(bar_methods); }
+
+bool tries(const Sheet& sheet, const Row& row) { return !sheet.spot_check || is_bar_method(row.name); }
+
+/// What a run may cost. A sub-step of an explicit method is far cheaper than an update of an implicit one.
+std::int64_t budget(const Method& method) {
+  if (method.sub_steps) return 100'000;
+  return is_bar_method(method.name) ? 20'000 : 4'000;
+}
+
+/// All methods, and the thesis' loop where a method has one.
+std::vector<Row> rows(const Methods& methods) {
+  std::vector<Row> all;
+  for (const Method* method : methods) all.push_back({std::string(method->name), method, {}, budget(*method)});
+  for (const Method* method : methods)
+    if (is_bar_method(method->name))
+      all.push_back({fmt::format("{}/fixed-point", method->name), method, solver::thesis_options(), budget(*method)});
+  return all;
+}
+
+/// What linear theory leads one to expect of a run.
+struct Expected {
+  double growth;  ///< of the fastest growing mode in the run
+  double loop;    ///< contraction of the thesis' loop; 0: there is none
+  bool stable, converges;
+
+  bool good() const { return stable && converges; }
+};
+
+struct AtlasCell {
+  const Sheet* sheet;
+  const Row* row;
+  double stiffness, ratio;
+  std::optional<Expected> expected;  ///< nothing where there is no theory
+  Judged judged;
+
+  bool is_as_predicted() const { return expected && expected->good() == judged.stable(); }
+};
+
+/// The atlas as the jobs share it.
+struct Atlas {
+  std::vector<Sheet> sheets;
+  std::vector<Row> rows;
+  std::vector<AtlasCell> cells;
+};
+
+class Predictions {
+ public:
+  std::optional<Expected> operator()(const Row& row, const Sheet& sheet, double stiffness, double ratio) {
+    const auto key = std::tuple(row.method, stiffness, ratio);
+    auto known = known_.find(key);
+    if (known == known_.end()) known = known_.emplace(key, reference::predict(*row.method, stiffness, ratio)).first;
+    if (!known->second) return std::nullopt;
+    const reference::LinearPrediction& linear = *known->second;
+    const double growth = std::pow(linear.radius, std::round(horizon / sheet.step));
+    const bool thesis_loop = !row.options.stage->accelerated && row.method->nonlinear();
+    const double loop = thesis_loop ? linear.loop : 0;
+    return Expected{growth, loop, growth < visible_growth,
+                    std::pow(loop, row.options.max_updates) < row.options.loop_tolerance};
+  }
+
+ private:
+  std::map<std::tuple<const Method*, double, double>, std::optional<reference::LinearPrediction>> known_;
+};
+
+std::string_view describe(const std::optional<Expected>& expected) {
+  if (!expected) return "no theory known";
+  if (!expected->stable) return "unstable";
+  return expected->converges ? "stable" : "loop too slow";
+}
+
+void add_cell(results::TableBuilder& table, const AtlasCell& cell, bool shown) {
+  const auto title = [shown](const char* text) { return shown ? text : ""; };
+  table.row();
+  table.count("n", title("n"), "particles a side", cell.sheet->n);
+  table.number("step", title("h"), "s", "time step", cell.sheet->step);
+  table.text("method", title("method"), "time integrator, with its stage solver if that is not auto", cell.row->name);
+  table.number("nu", title("ν_h"), "1", "numerical stiffness h² k/(ρ l²)", cell.stiffness);
+  table.number("to_damping", title("h k/d"), "1", "infinite without damping", cell.ratio);
+  table.text("predicted", title("predicted"), "by the amplification of linear modes and the contraction of the thesis' loop",
+             std::string(describe(cell.expected)));
+  if (cell.expected) {
+    table.number("growth", "", "1", "of the fastest growing linear mode in the run", cell.expected->growth);
+    table.number("loop", "", "1", "contraction of the thesis' loop, 0 if there is none", cell.expected->loop);
+  }
+  add_verdict(table, cell.judged, shown);
+}
+
+/// All methods that are tried on a sheet of one stiffness and one damping.
+std::vector<Judged> try_rows(const std::vector<Row>& rows, const Sheet& sheet, double nu, double ratio) {
+  const double l = 0.8 / (sheet.n - 1), h = sheet.step, k = nu * l * l / (h * h);
+  const Specimen specimen = hung_by_corners(sheet.n, k, h * k / ratio);
+  const Yardstick yardstick(specimen, horizon, sheet.effort);
+  std::vector<Judged> runs;
+  for (const Row& row : rows)
+    if (tries(sheet, row))
+      runs.push_back(judged(attempt(specimen, {row.method, row.options, h, horizon,
+                                               static_cast<std::int64_t>(sheet.effort * static_cast<double>(row.budget))}),
+                            yardstick));
+  return runs;
+}
+
+/// All runs: for the file.
+results::Table explore(Atlas& atlas, Units& units) {
+  results::TableBuilder table("stability-atlas", "Every run of the atlas");
+  Predictions predict;
+  for (const Sheet& sheet : atlas.sheets)
+    for (const double nu : sheet.stiffnesses)
+      for (const double ratio : sheet.ratios) {
+        units.show(fmt::format("{0} x {0}, h = {1}, ν = {2:g}, h k/d = {3:g}", sheet.n, sheet.step, nu, ratio));
+        const auto runs = units(fmt::format("{} {} {} {}", sheet.n, sheet.step, nu, ratio),
+                                [&] { return try_rows(atlas.rows, sheet, nu, ratio); });
+        for (std::size_t k = 0, run = 0; k < atlas.rows.size(); ++k) {
+          const Row& row = atlas.rows[k];
+          if (!tries(sheet, row)) continue;
+          atlas.cells.push_back({&sheet, &row, nu, ratio, predict(row, sheet, nu, ratio), runs[run++]});
+          add_cell(table, atlas.cells.back(), false);
+        }
+        units.advance();
+      }
+  return table.finish();
+}
+
+results::Table count_verdicts(const Atlas& atlas) {
+  static constexpr const char* columns[verdicts] = {"accurate", "wrong",         "bounded",
+                                                    "unstable", "not_converged", "not_finished"};
+  results::TableBuilder table("stability-verdicts", "How many runs of the atlas end how, method by method");
+  for (const Sheet& sheet : atlas.sheets)
+    for (const Row& row : atlas.rows) {
+      if (!tries(sheet, row)) continue;
+      std::array<int, verdicts> counts{};
+      int total = 0, predicted = 0, as_predicted = 0;
+      for (const AtlasCell& cell : atlas.cells) {
+        if (cell.sheet != &sheet || cell.row != &row) continue;
+        ++total;
+        ++counts[static_cast<std::size_t>(cell.judged.verdict)];
+        predicted += cell.expected.has_value();
+        as_predicted += cell.is_as_predicted();
+      }
+      table.row();
+      table.count("n", "n", "particles a side", sheet.n);
+      table.number("step", "h", "s", "time step", sheet.step);
+      table.text("method", "method", "time integrator, with its stage solver if that is not auto", row.name);
+      for (int k = 0; k < verdicts; ++k) {
+        const std::string title(to_string(static_cast<Verdict>(k)));
+        table.count(columns[k], title.c_str(), "runs", counts[static_cast<std::size_t>(k)]);
+      }
+      table.count("total", "of", "runs", total);
+      if (predicted > 0)
+        table.count("as_predicted", "as predicted", "runs that are stable and converge just where linear theory says so",
+                    as_predicted);
+    }
+  return table.finish();
+}
+
+/// The bar: what is predicted stable converges with the default solvers. A run that ends since its energy rose has converged in
+/// every step: the midpoint rule doubles what an edge turns by, so that a chord that turns by φ in half a step is stretched
+/// by φ², and linear theory knows nothing of turning.
+results::Table check_bar(const Atlas& atlas) {
+  results::TableBuilder table("stability-bar", "Runs that are predicted stable and do converge, with the default solvers");
+  for (const Row& row : atlas.rows) {
+    if (!is_bar_method(row.name)) continue;
+    int stable = 0, converge = 0, rise = 0;
+    for (const AtlasCell& cell : atlas.cells) {
+      if (cell.row != &row || !cell.expected->good()) continue;
+      ++stable;
+      const Attempt& attempt = cell.judged.trial;
+      const bool rises = attempt.finished && attempt.run.outcome == solver::Outcome::unstable;
+      if (rises) ++rise;
+      if (rises || attempt.succeeded()) ++converge;
+    }
+    table.row();
+    table.text("method", "method", "time integrator", row.name);
+    table.count("stable", "predicted stable", "runs", stable);
+    table.count("converge", "converge", "of these: the equations of every step were solved", converge);
+    table.count("rise", "energy rises", "of these: the solution of the method's equations gains energy", rise);
+    table.text("verdict", "verdict", "whether all of them do", converge == stable ? "all converge" : "NOT all converge");
+  }
+  return table.finish();
+}
+
+/// Runs that are not what linear theory says.
+results::Table list_surprises(const Atlas& atlas) {
+  results::TableBuilder table("stability-surprises",
+                              "Runs of the atlas that are stable and converge where linear theory does not expect it, or not "
+                              "where it does");
+  for (const AtlasCell& cell : atlas.cells)
+    if (cell.expected && !cell.is_as_predicted()) add_cell(table, cell, true);
+  return table.finish();
+}
+
+}  // namespace
+
+std::vector<TableJob> stability_atlas(bool quick, const Methods& methods) {
+  const auto atlas = std::make_shared<Atlas>(Atlas{sheets(quick), rows(all_or(methods)), {}});
+  int cells = 0;
+  for (const Sheet& sheet : atlas->sheets) cells += static_cast<int>(sheet.stiffnesses.size() * sheet.ratios.size());
+  std::vector<TableJob> jobs{{cells, [=](Units& units) { return explore(*atlas, units); }}};
+  for (auto* summarise : {count_verdicts, check_bar, list_surprises})
+    jobs.push_back({0, [=](Units&) { return summarise(*atlas); }});
+  return jobs;
+}
+
+}  // namespace drape::bench

@@ -1,0 +1,196 @@
+#include "bench/studies/work_precision/candidates.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "bench/runs/run.hpp"
+#include "bench/studies/work_precision/energy.hpp"
+#include "bench/studies/work_precision/peers.hpp"
+#include "solver/dense_output.hpp"
+
+namespace drape::bench {
+namespace {
+
+using solver::Vectors;
+
+/// The methods of the thesis with a loop.
+constexpr const char* looped[] = {"implicit-euler", "bdf2", "midpoint"};
+
+/// What is tried of the implicit methods where not all are.
+constexpr const char* few[] = {"bdf2", "midpoint", "sbdf2", "imex-midpoint"};
+
+/// Stage and linear solvers other than the program's choice that are tried where much is.
+constexpr const char* other_solvers[] = {"bdf2/anderson", "midpoint/anderson", "bdf3/anderson",   "bdf4/anderson",
+                                         "bdf5/anderson", "bdf2/newton",       "midpoint/newton", "bdf2/mic0"};
+
+bool tries_few(Search search) { return search == Search::quick || search == Search::large; }
+
+std::vector<Vectors> solve_ours(const Cell& cell, const model::Cloth& cloth, std::span<const double> times) {
+  solver::Integrator integrator(cloth.ode, *cell.method, cell.options, cloth.start);
+  solver::DenseOutput output(times, integrator.time(), integrator.state());
+  solver::Observer observer;
+  if (times.size() > 1) observer = [&](const solver::StepReport& report) { output.see(report.t, report.y); };
+  const solver::RunResult run = integrate(integrator, times.back(), cell.step, observer);
+  if (run.outcome != solver::Outcome::success) throw std::runtime_error(run.message);
+  if (!observer) output.states.push_back(integrator.state());
+  return positions_of(std::move(output.states));
+}
+
+Candidate ours(const Cell& cell, double value) {
+  return {value, [cell](const model::Cloth& cloth, std::span<const double> times) { return solve_ours(cell, cloth, times); },
+          [cell] { return energy_fault(cell); }};
+}
+
+Cell cell(const model::Scene& scene, const std::string& name, const solver::Options& options = {}) {
+  Cell result{scene, "", nullptr, scene.end / 10, options};
+  choose_method(result, name);
+  return result;
+}
+
+bool by_default(const Cell& cell) {
+  const solver::Options usual, &options = cell.options;
+  return options.stage == usual.stage && options.linear_solver == usual.linear_solver &&
+         options.stage_accuracy == usual.stage_accuracy;
+}
+
+Family by_steps(Cell cell, const std::string& code, int parts) {
+  Family family{cell.method_name() + " by steps", code, "step", by_default(cell) ? std::string(cell.method->name) : "", {}};
+  for (const double h : divided_steps(cell.scene.end, parts)) {
+    cell.step = h;
+    family.candidates.push_back(ours(cell, h));
+  }
+  return family;
+}
+
+Family by_tolerance(Cell cell) {
+  Family family{cell.method_name() + " by tolerance", "drape", "tolerance", std::string(cell.method->name), {}};
+  for (const double tolerance : tolerances(9)) {
+    cell.options.error_control = {tolerance, model::size(cell.scene), cell.scene.end};
+    family.candidates.push_back(ours(cell, tolerance));
+  }
+  return family;
+}
+
+/// Explicit sub-steps follow the stability limit, however long the step.
+Family by_fraction(Cell cell, int halvings) {
+  Family family{cell.method_name() + " by fraction", "explicit", "fraction", std::string(cell.method->name), {}};
+  for (int k = 0; k <= 2 * halvings; ++k) {
+    cell.options.verlet_fraction = 0.9 * std::pow(2.0, -0.5 * k);
+    family.candidates.push_back(ours(cell, cell.options.verlet_fraction));
+  }
+  return family;
+}
+
+/// The loop of the thesis with another linear solver, to so many digits; and stages that end as far off as the time step.
+void add_loose(std::vector<Family>& all, const model::Scene& scene, const std::string& method, int parts) {
+  solver::Options options;
+  for (const double tolerance : {0.1, 0.01}) {
+    options.loop_tolerance = tolerance;
+    all.push_back(by_steps(cell(scene, method + "/fixed-point/cholesky", options), "drape", parts));
+    all.back().name += fmt::format(" to {:.0e}", tolerance);
+  }
+  options = {};
+  options.stage_accuracy = 1;
+  all.push_back(by_steps(cell(scene, method, options), "drape", parts));
+  all.back().name += fmt::format(" to {:g}", options.stage_accuracy);
+}
+
+/// Why a method is not tried; empty if it is. `named`: it was asked for by its name.
+std::string reason_against(const solver::Method& method, const model::Scene& scene, Search search, bool named) {
+  if (!scene.obstacles.empty() && !method.meets_obstacles) return "meets no obstacles";
+  if (named || method.sub_steps || !tries_few(search) || std::ranges::find(few, method.name) != std::end(few)) return "";
+  return search == Search::quick ? "--quick: few methods; name it by --method"
+                                 : "large sheet: few methods; name it by --method";
+}
+
+void add_ours(std::vector<Family>& all, const model::Scene& scene, Search search, const Methods& methods) {
+  const int parts = finest_parts(search);
+  for (const solver::Method* chosen : all_or(methods)) {
+    const solver::Method& method = *chosen;
+    const std::string name(method.name);
+    if (!reason_against(method, scene, search, !methods.empty()).empty()) continue;
+    if (method.sub_steps) {
+      all.push_back(by_fraction(cell(scene, name), tries_few(search) ? 3 : 10));
+      continue;
+    }
+    all.push_back(by_steps(cell(scene, name), "drape", parts));
+    all.push_back(by_tolerance(cell(scene, name)));
+    if (search == Search::full && std::ranges::find(looped, name) != std::end(looped)) add_loose(all, scene, name, parts);
+  }
+  if (search != Search::full || !methods.empty()) return;
+  for (const char* name : other_solvers) all.push_back(by_steps(cell(scene, name), "drape", parts));
+}
+
+std::vector<int> loop_digits(Search search) {
+  if (tries_few(search)) return {3};
+  return {2, 4};
+}
+
+/// The fixed-point loop with IC(0)   [Etzmuß 2002, 3.4].
+void add_thesis(std::vector<Family>& all, const model::Scene& scene, Search search, const Methods& methods) {
+  for (const char* method : looped) {
+    if (!methods.empty() && std::ranges::find(methods, method, &solver::Method::name) == methods.end()) continue;
+    for (const int digits : loop_digits(search)) {
+      solver::Options options = solver::thesis_options();
+      options.loop_tolerance = std::pow(10.0, -digits);
+      Family family = by_steps(cell(scene, fmt::format("{}/fixed-point/ic0", method), options), "thesis", finest_parts(search));
+      family.name += fmt::format(" to {:.0e}", options.loop_tolerance);
+      all.push_back(std::move(family));
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<Vectors> positions_of(std::vector<solver::State> states) {
+  std::vector<Vectors> positions;
+  for (solver::State& state : states) positions.push_back(std::move(state.x));
+  return positions;
+}
+
+std::vector<double> tolerances(int finest) {
+  std::vector<double> all;
+  for (int k = 2; k <= 2 * finest; ++k) all.push_back(std::pow(10.0, -0.5 * k));
+  return all;
+}
+
+int finest_parts(Search search) { return tries_few(search) ? 16 : 512; }
+
+std::vector<double> divided_steps(double end, int parts) {
+  std::vector<double> steps{end / 5};
+  for (int k = 0, last = 0;; ++k) {
+    const int m = static_cast<int>(std::lround(std::pow(2.0, 0.5 * k)));
+    if (m > parts) return steps;
+    if (m != last) steps.push_back(end / 10 / m);
+    last = m;
+  }
+}
+
+Family ladder(const model::Scene& scene, const std::string& method) {
+  const Cell chosen = cell(scene, method);
+  return chosen.method->sub_steps ? by_fraction(chosen, 10) : by_steps(chosen, "drape", finest_parts(Search::usual));
+}
+
+bool is_ours(std::string_view code) { return code == "drape" || code == "explicit" || code == "thesis"; }
+
+std::vector<LeftOut> left_out(const model::Scene& scene, Search search, const Methods& methods) {
+  std::vector<LeftOut> all;
+  for (const solver::Method* method : all_or(methods))
+    if (std::string reason = reason_against(*method, scene, search, !methods.empty()); !reason.empty())
+      all.push_back({method, std::move(reason)});
+  return all;
+}
+
+std::vector<Family> families(const model::Scene& scene, Search search, const Methods& methods) {
+  std::vector<Family> all;
+  add_ours(all, scene, search, methods);
+  add_thesis(all, scene, search, methods);
+  if (scene.obstacles.empty() && search != Search::large) add_peers(all, scene, search);  // they have no contacts
+  for (Family& family : all) family.advised = family.name == advised_ours || family.name == advised_peer();
+  return all;
+}
+
+}  // namespace drape::bench

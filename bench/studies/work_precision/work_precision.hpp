@@ -1,0 +1,11 @@
+#pragma once
+
+#include "bench/studies/work_precision/runs.hpp"
+
+namespace drape::bench {
+
+/// A scene with its positions at all tenths of its end, from the two families that certify a reference. Throws what References
+/// does.
+Problem certified_problem(const std::string& name, const model::Scene& scene, Units& units);
+
+}  // namespace drape::bench

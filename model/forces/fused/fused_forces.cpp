@@ -1,0 +1,141 @@
+#include "model/forces/fused/fused_forces.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace drape::model {
+namespace {
+
+using solver::Vectors;
+
+/// Columns at a time: so many of two lines fit into a cache of 32 KB. If x, v and f do not stay in a cache, fewer, so that
+/// what comes next can be fetched meanwhile: more than a dozen cache lines at once and the processor would wait for them.
+constexpr int long_block = 128, short_block = 32;
+constexpr int cached_particles = 20'000;
+
+/// Where there is no column, coordinates are so far apart that no edge has the length 0.
+constexpr double far = 1e100;
+
+/// Places arrays one after the other, such that the same columns of all lie in different sets of a cache.
+class Allocator {
+ public:
+  Allocator(double* memory, std::ptrdiff_t stride) : next_(memory + lanes), stride_(stride) {}
+
+  double* row() { return std::exchange(next_, next_ + stride_); }
+  Field field() { return {std::exchange(next_, next_ + 3 * stride_), stride_}; }
+
+ private:
+  double* next_;
+  std::ptrdiff_t stride_;
+};
+
+/// Edges look at the next column: what they look at, and what overwrites what others look at, is one step ahead.
+Columns ahead(Columns columns, int end) {
+  return {columns.begin == 0 ? 0 : columns.begin + lanes, std::min(columns.end + lanes, end)};
+}
+
+/// Lets the next block come into the cache while this one is worked on.
+void fetch(const double* data) {
+  for (int i = 0; i < 3 * short_block; i += lanes) __builtin_prefetch(data + i);
+}
+
+Vec scaled(double s, const Eigen::Vector3d& a) { return {s * a[0], s * a[1], s * a[2]}; }
+
+}  // namespace
+
+GridSweep::GridSweep(const Grid& grid, const GridLaw& law)
+    : grid_(grid),
+      law_(law),
+      length_((grid.nu + lanes) / lanes * lanes),
+      fetches_(grid.particles() > cached_particles),
+      weft_width_(Eigen::ArrayXd::Zero(length_)),
+      warp_width_(Eigen::ArrayXd::Zero(length_)) {
+  weft_width_.head(grid.nu - 1) = 1;
+  for (int a = 0; a < grid.nu; ++a) warp_width_[a] = grid.cell_width_u(a);
+  const std::ptrdiff_t stride = ((length_ / lanes + 2) | 1) * lanes;  // loops look at the columns before and behind, too
+  memory_.setZero(50 * stride);
+  Allocator allocate(memory_.data(), stride);
+  double distance = 0;
+  for (Line& line : lines_) {
+    line.x = allocate.field();
+    line.v = allocate.field();
+    for (Edges* edges : {&line.weft, &line.warp}) *edges = {allocate.field(), allocate.field(), allocate.row(), allocate.row()};
+    line.pull_right = allocate.field();
+    for (int k = -lanes; k < length_ + lanes; ++k) line.x.set(k, {distance += far, 0, 0});
+  }
+}
+
+void GridSweep::read(int b, Columns columns, const Vectors& from, const Field& to) const {
+  part(from.data() + 3 * static_cast<std::ptrdiff_t>(grid_.index(0, b)), ahead(columns, grid_.nu), to);
+}
+
+void GridSweep::pull_weft(int b, Columns columns, const Line& line) const {
+  const Ends x{line.x, line.x.next()}, v{line.v, line.v.next()};
+  pull_edges(law_.weft * grid_.cell_width_v(b), x, v, weft_width_.data(), columns, line.weft);
+  if (law_.cell.contracts()) strain_edges(law_.cell, grid_.spacing_u(), v, columns, line.weft);
+}
+
+void GridSweep::pull_warp(Columns columns, const Line& before, const Line& line) const {
+  const Ends x{before.x, line.x}, v{before.v, line.v};
+  const Columns warp = ahead(columns, length_);
+  pull_edges(law_.warp, x, v, warp_width_.data(), warp, line.warp);
+  if (law_.cell.contracts()) strain_edges(law_.cell, grid_.spacing_v(), v, warp, line.warp);
+}
+
+void GridSweep::pull_cells(Columns columns, const Line& before, const Line& line) const {
+  const Edges& left = line.warp;
+  const CellEdges cells{.lower = before.weft,
+                        .upper = line.weft,
+                        .left = left,
+                        .right = left.along.next(),
+                        .v00 = before.v,
+                        .v10 = before.v.next(),
+                        .v01 = line.v,
+                        .v11 = line.v.next(),
+                        .right_inverse = left.inverse + 1,
+                        .right_stress = left.stress + 1,
+                        .pull_right = line.pull_right};
+  shear_cells(law_.cell, weft_width_.data(), columns, cells);
+  if (law_.cell.contracts()) contract_cells(grid_.spacing_u(), grid_.spacing_v(), weft_width_.data(), columns, cells);
+}
+
+void GridSweep::write(int b, Columns columns, const Line& line, const Line& next, Vectors& f) const {
+  gather(scaled(grid_.cell_width_v(b), law_.load), warp_width_.data(), {line.weft.pull.before(), line.weft.pull},
+         {line.warp.pull, next.warp.pull}, {line.pull_right.before(), next.pull_right.before()}, ahead(columns, grid_.nu),
+         f.data() + 3 * static_cast<std::ptrdiff_t>(grid_.index(0, b)));
+}
+
+void GridSweep::clear_warp(const Line& line) const {
+  for (int k = 0; k < length_; ++k) {
+    line.warp.pull.set(k, {});
+    line.pull_right.set(k, {});
+  }
+}
+
+void GridSweep::operator()(const Vectors& x, const Vectors& v, Vectors& f) {
+  const bool velocities = law_.needs_velocities();
+  clear_warp(lines_[0]);
+  // Forces of a line are written when the second line after it has been read: then its pulls have arrived in the cache, and
+  // they have not been overwritten yet.
+  for (int b = 0; b < grid_.nv + 2; ++b) {
+    const Line &line = lines_[b % 2], &before = lines_[1 - b % 2];
+    if (b == grid_.nv + 1) clear_warp(before);
+    for (Columns columns{0, 0}; columns.end < length_; columns.begin = columns.end) {
+      columns.end = std::min(columns.begin + (fetches_ ? short_block : long_block), length_);
+      const std::ptrdiff_t next = 3 * (grid_.index(0, b) + static_cast<std::ptrdiff_t>(columns.end) + lanes);
+      if (b < grid_.nv) read(b, columns, x, line.x);
+      if (b < grid_.nv && velocities) read(b, columns, v, line.v);
+      if (b > 1) write(b - 2, columns, line, before, f);
+      if (b >= grid_.nv) continue;
+      if (fetches_) fetch(x.data() + next);
+      pull_weft(b, columns, line);
+      if (b == 0) continue;
+      if (fetches_ && velocities) fetch(v.data() + next);
+      pull_warp(columns, before, line);
+      if (fetches_ && b > 1) fetch(f.data() + next - 6 * static_cast<std::ptrdiff_t>(grid_.nu));
+      if (law_.cell.acts()) pull_cells(columns, before, line);
+    }
+  }
+}
+
+}  // namespace drape::model

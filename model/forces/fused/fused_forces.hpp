@@ -1,0 +1,50 @@
+#pragma once
+
+#include <array>
+
+#include "model/forces/fused/kernels.hpp"
+#include "model/sheet/grid.hpp"
+
+namespace drape::model {
+
+/// Evaluates a law in one pass over memory, line by line: reads x and v once and writes f once.
+///
+/// A line's coordinates are parted into three arrays that stay in a near cache. Edges and their pulls are loops over these
+/// without branches, and a particle gets the difference of its edges' pulls: f = div σ. Borders are nothing special: edges and
+/// cells that do not exist have the width 0.
+class GridSweep {
+ public:
+  GridSweep(const Grid& grid, const GridLaw& law);
+  GridSweep(const GridSweep&) = delete;
+  GridSweep& operator=(const GridSweep&) = delete;
+
+  /// Sets f to the law's forces [N]; x, v, f: N × 3. Velocities are not read unless the law asks for them.
+  void operator()(const solver::Vectors& x, const solver::Vectors& v, solver::Vectors& f);
+
+ private:
+  /// Particles of a line and the weft edges between them; the warp edges that lead to them from the line before, and what
+  /// the cells between the lines add to the warp edge on their right.
+  struct Line {
+    Field x, v;
+    Edges weft, warp;
+    Field pull_right;
+  };
+
+  void read(int b, Columns columns, const solver::Vectors& from, const Field& to) const;
+  void pull_weft(int b, Columns columns, const Line& line) const;
+  void pull_warp(Columns columns, const Line& before, const Line& line) const;
+  void pull_cells(Columns columns, const Line& before, const Line& line) const;
+  void write(int b, Columns columns, const Line& line, const Line& next, solver::Vectors& f) const;
+  void clear_warp(const Line& line) const;
+
+  Grid grid_;
+  GridLaw law_;
+  int length_;                 ///< of the loops over columns
+  bool fetches_;               ///< whether x, v and f come from memory
+  Eigen::ArrayXd weft_width_;  ///< 1 where the edge and the cell towards the next column exist, else 0
+  Eigen::ArrayXd warp_width_;  ///< of the edges along v [m], 0 where there is no column
+  Eigen::ArrayXd memory_;      ///< of the lines
+  std::array<Line, 2> lines_;  ///< with even and with odd b
+};
+
+}  // namespace drape::model

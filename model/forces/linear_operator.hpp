@@ -1,0 +1,31 @@
+#pragma once
+
+#include <initializer_list>
+#include <memory>
+
+#include "model/forces/term.hpp"
+
+namespace drape::model {
+
+/// One entry of a difference stencil.
+struct StencilEntry {
+  int particle;
+  double coefficient;
+};
+using Stencil = std::initializer_list<StencilEntry>;
+
+/// Adds the matrix of the force −∇(½ w |Σ c x|²).
+void add_quadratic(std::vector<Eigen::Triplet<double>>& entries, Stencil stencil, double weight);
+
+/// The elastic operator B on positions and the viscous one on velocities; both scalar, N × N, [N/m] and [N s/m].
+struct LinearOperators {
+  SparseMatrix elastic, viscous;
+};
+
+/// The force B x + B_d v in all directions.
+Term unprojected(LinearOperators operators);
+
+/// The force <B x + B_d v, N> N along the vertex normals.
+Term projected(const Grid& grid, LinearOperators operators);
+
+}  // namespace drape::model

@@ -1,0 +1,54 @@
+#include "model/jacobian/newton.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace drape::model {
+namespace {
+
+/// Each once, or on large sheets the entries of all of them would take many times the memory of the matrix.
+Blocks distinct(Blocks blocks, const Blocks& more) {
+  blocks.insert(blocks.end(), more.begin(), more.end());
+  const auto before = [](const Eigen::Vector2i& a, const Eigen::Vector2i& b) {
+    return std::pair(a[0], a[1]) < std::pair(b[0], b[1]);
+  };
+  std::ranges::sort(blocks, before);
+  blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
+  return blocks;
+}
+
+}  // namespace
+
+NewtonMatrix::NewtonMatrix(Curvature curvature, const Eigen::VectorXd& mass, const std::vector<solver::Pin>& pins)
+    : curvature_(curvature), mass_(solver::thrice(mass)), pinned_(mass_.size(), false) {
+  for (const solver::Pin& pin : pins)
+    for (int a = 0; a < 3; ++a) pinned_[3 * pin.particle + a] = pin.fixed[a];
+}
+
+void NewtonMatrix::analyse(const VisitBlocks& visit) {
+  Blocks dx, dv;
+  visit({curvature_, recorder(dx), recorder(dv)});
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int i = 0; i < mass_.size(); ++i) entries.emplace_back(i, i, 1);
+  for (const Eigen::Vector2i& block : distinct(dx, dv))
+    for_entries(block[0], block[1], [&](int row, int column, int) {
+      if (kept(row, column)) entries.emplace_back(row, column, 1);
+    });
+  pattern_.resize(mass_.size(), mass_.size());
+  pattern_.setFromTriplets(entries.begin(), entries.end());
+  diagonal_.assign(pattern_.outerIndexPtr(), pattern_.outerIndexPtr() + mass_.size());  // the first of each row
+  const auto is_kept = [this](int row, int column) { return kept(row, column); };
+  dx_.find(dx, pattern_, is_kept);
+  dv_.find(dv, pattern_, is_kept);
+}
+
+void NewtonMatrix::assemble(const VisitBlocks& visit, double gamma, SparseMatrix& J) {
+  if (pattern_.size() == 0) analyse(visit);
+  if (J.nonZeros() != pattern_.nonZeros()) J = pattern_;
+  double* const values = J.valuePtr();
+  std::fill_n(values, J.nonZeros(), 0.0);
+  for (int i = 0; i < mass_.size(); ++i) values[diagonal_[i]] = mass_[i];
+  visit({curvature_, dx_.adder(values, -gamma * gamma), dv_.adder(values, -gamma)});
+}
+
+}  // namespace drape::model

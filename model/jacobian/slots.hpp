@@ -1,0 +1,39 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "model/forces/term.hpp"
+
+namespace drape::model {
+
+/// Hands the blocks of a configuration to the entries, always in the same order.
+using VisitBlocks = std::function<void(const JacobianEntries& entries)>;
+
+/// Blocks (i, j) in the order of a visit.
+using Blocks = std::vector<Eigen::Vector2i>;
+
+/// What records the blocks of a visit instead of adding them up.
+JacobianEntries::Add recorder(Blocks& blocks);
+
+/// Calls each(row, column, k) for the nine entries of a block, row by row.
+template <class Each>
+void for_entries(int i, int j, const Each& each) {
+  for (int a = 0; a < 3; ++a)
+    for (int b = 0; b < 3; ++b) each(3 * i + a, 3 * j + b, 3 * a + b);
+}
+
+/// Where the blocks of every visit go in a matrix whose pattern never changes.
+class BlockSlots {
+ public:
+  /// `kept`: whether the matrix has an entry for (row, column).
+  void find(const Blocks& blocks, const SparseMatrix& pattern, const std::function<bool(int row, int column)>& kept);
+
+  /// Adds `weight` times each block of one visit to the values of the matrix. Valid as long as this object.
+  JacobianEntries::Add adder(double* values, double weight) const;
+
+ private:
+  std::vector<int> slots_;  ///< nine a block, -1 for entries that are not kept
+};
+
+}  // namespace drape::model

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "model/obstacles/obstacle.hpp"
+#include "model/sheet/grid.hpp"
+#include "solver/split_ode.hpp"
+
+namespace drape::model {
+
+enum class ResponseKind {
+  constraint,  ///< velocities of colliding particles are constrained in the step's linear systems [Etzmuß 2002, 4.4]
+  reaction,    ///< forces on colliding particles are replaced by a damped spring [Etzmuß 2002, 4.3]
+};
+
+/// How particles and obstacles meet.
+struct ContactRule {
+  double distance = 5e-3;   ///< d: what is nearer than this is in the collision area [m]
+  double relaxation = 0.5;  ///< ω: part of its depth in the collision area that a particle loses in a step (4.4)
+  ResponseKind response = ResponseKind::constraint;
+  double reaction_time = 0.02;  ///< τ [s]: the springs of reaction constraints have k = m/τ² and d = 2m/τ
+};
+
+/// A particle in the collision area of an obstacle.
+struct Depth {
+  int particle;
+  Eigen::Vector3d normal;    ///< n, unit
+  double depth;              ///< distance from the border of the area [m], positive
+  Eigen::Vector3d velocity;  ///< w of the obstacle's surface [m/s]
+  double friction;           ///< η
+};
+
+/// Which particles may touch which obstacles in a step.
+///
+/// Every particle is asked for the nearest point of every obstacle at the begin of the step; the half-space behind that point
+/// moves with the obstacle and must not be left by the end of the step. A convex obstacle is thereby never tunnelled, however
+/// long the step: it lies on one side of the half-space. Limits: particles are not watched that would have to go more than d
+/// and twice as far as the fastest one and gravity go in a step; one obstacle gives a particle one half-space, so in hollows
+/// narrower than the way of a step the other wall is seen a step later; edges and faces of the sheet between particles are not
+/// tested (chapter 5).
+class Contacts {
+ public:
+  /// Of so many particles under this acceleration [m/s²]. Throws std::invalid_argument if the mesh of an obstacle cannot be
+  /// read.
+  Contacts(std::span<const ObstacleRule> obstacles, const ContactRule& rule, double gravity, int particles, solver::Work& work);
+
+  /// Appends the contacts, ordered by particle.
+  void find(double t, double h, const solver::State& y, std::vector<solver::Contact>& found);
+
+  /// Sets `found` to the particles that are in a collision area.
+  void inside(double t, const Vectors& x, std::vector<Depth>& found) const;
+
+  /// Distance of each particle from the nearest obstacle, N, negative inside [m].
+  Eigen::VectorXd distances(double t, const Vectors& x) const;
+
+  std::span<const Obstacle> obstacles() const { return obstacles_; }
+
+ private:
+  /// An answer that bounds later ones: distances change at most as far as the particle moves in the obstacle's frame.
+  struct Answer {
+    Eigen::Vector3d p;
+    Nearest nearest{0, Eigen::Vector3d::Zero()};
+    bool known = false;
+  };
+
+  std::vector<Obstacle> obstacles_;
+  double distance_, relaxation_, gravity_;
+  std::vector<std::vector<Answer>> answers_;  ///< for each obstacle and particle
+  std::int64_t& queries_;
+};
+
+}  // namespace drape::model

@@ -1,0 +1,149 @@
+#include "model/obstacles/triangle_mesh.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <tuple>
+#include <utility>
+
+namespace drape::model {
+namespace {
+
+using Eigen::Vector3d;
+
+[[noreturn]] void fail(const TriangleMesh& mesh, const std::string& what) {
+  throw std::invalid_argument(fmt::format("{}: {}", mesh.name, what));
+}
+
+/// A side of a triangle, from corner `side` to the next.
+struct HalfEdge {
+  int low, high;  ///< its vertices
+  bool upward;    ///< from low to high
+  int triangle, side;
+
+  bool same_edge(const HalfEdge& other) const { return low == other.low && high == other.high; }
+};
+
+/// All half-edges; those of one edge are neighbours.
+std::vector<HalfEdge> half_edges(const TriangleMesh& mesh) {
+  std::vector<HalfEdge> all;
+  for (int t = 0; t < std::ssize(mesh.triangles); ++t) {
+    for (int k = 0; k < 3; ++k) {
+      const int from = mesh.triangles[t][k], to = mesh.triangles[t][(k + 1) % 3];
+      all.push_back({std::min(from, to), std::max(from, to), from < to, t, k});
+    }
+  }
+  std::ranges::sort(all, {}, [](const HalfEdge& e) { return std::tuple(e.low, e.high, e.triangle); });
+  return all;
+}
+
+/// After this, half-edges 2k and 2k + 1 are the two sides of an edge.
+void check_closed(const TriangleMesh& mesh, const std::vector<HalfEdge>& all) {
+  std::ptrdiff_t open = 0, branching = 0, twisted = 0;
+  for (auto first = all.begin(); first != all.end();) {
+    const auto end = std::find_if(first, all.end(), [&](const HalfEdge& e) { return !e.same_edge(*first); });
+    open += end - first == 1;
+    branching += end - first > 2;
+    twisted += end - first == 2 && first->upward == (first + 1)->upward;
+    first = end;
+  }
+  const std::size_t triangles = mesh.triangles.size();
+  if (open > 0) fail(mesh, fmt::format("expected a closed mesh, {} edges of its {} triangles are open", open, triangles));
+  if (branching > 0) fail(mesh, fmt::format("expected edges of two triangles each, {} have more", branching));
+  if (twisted > 0)
+    fail(mesh, fmt::format("expected triangles that agree on which side is outside, across {} edges they do not", twisted));
+}
+
+/// Six times the enclosed volume, and the sum of its parts' magnitudes: all seen from the first vertex.
+std::pair<double, double> six_volumes(const TriangleMesh& mesh) {
+  double sum = 0, magnitude = 0;
+  for (const std::array<int, 3>& triangle : mesh.triangles) {
+    Corners c = corners(mesh, triangle);
+    for (Vector3d& corner : c) corner -= mesh.vertices.front();
+    const double part = c[0].cross(c[1]).dot(c[2]);
+    sum += part;
+    magnitude += std::abs(part);
+  }
+  return {sum, magnitude};
+}
+
+Vector3d face_normal(const TriangleMesh& mesh, const std::array<int, 3>& triangle) {
+  const auto [a, b, c] = corners(mesh, triangle);
+  const Vector3d ab = b - a, ac = c - a, n = ab.cross(ac);
+  if (n.norm() <= 8 * std::numeric_limits<double>::epsilon() * ab.norm() * ac.norm())
+    fail(mesh, fmt::format("expected triangles with an area, the one at ({}, {}, {}) has none", a.x(), a.y(), a.z()));
+  return n.normalized();
+}
+
+double angle(const Vector3d& a, const Vector3d& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
+
+/// n/|n|; where faces cancel, that of one of them.
+Vector3d unit(const Vector3d& n, const Vector3d& of_face) {
+  constexpr double cancelled = 1e-12;
+  return n.norm() > cancelled ? Vector3d(n.normalized()) : of_face;
+}
+
+}  // namespace
+
+Corners corners(const TriangleMesh& mesh, const std::array<int, 3>& triangle) {
+  return {mesh.vertices[triangle[0]], mesh.vertices[triangle[1]], mesh.vertices[triangle[2]]};
+}
+
+void turn_outward(TriangleMesh& mesh) {
+  if (six_volumes(mesh).first >= 0) return;
+  for (std::array<int, 3>& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
+}
+
+std::vector<std::array<Vector3d, parts_of_triangle>> pseudo_normals(const TriangleMesh& mesh) {
+  const std::vector<HalfEdge> edges = half_edges(mesh);
+  check_closed(mesh, edges);
+  std::vector<std::array<Vector3d, parts_of_triangle>> normals(mesh.triangles.size());
+  std::vector<Vector3d> of_vertices(mesh.vertices.size(), Vector3d::Zero());
+  for (std::size_t t = 0; t < normals.size(); ++t) {
+    const Vector3d n = normals[t][face_part] = face_normal(mesh, mesh.triangles[t]);
+    const Corners c = corners(mesh, mesh.triangles[t]);
+    for (int k = 0; k < 3; ++k) of_vertices[mesh.triangles[t][k]] += angle(c[(k + 1) % 3] - c[k], c[(k + 2) % 3] - c[k]) * n;
+  }
+  if (const auto [volume, magnitude] = six_volumes(mesh); volume <= 1e-12 * magnitude)
+    fail(mesh, "expected a mesh that encloses a volume");
+
+  for (std::size_t e = 0; e < edges.size(); e += 2) {
+    const Vector3d &n1 = normals[edges[e].triangle][face_part], &n2 = normals[edges[e + 1].triangle][face_part];
+    for (const HalfEdge& side : {edges[e], edges[e + 1]})
+      normals[side.triangle][first_edge_part + side.side] = unit(n1 + n2, n1);
+  }
+  for (std::size_t t = 0; t < normals.size(); ++t)
+    for (int k = 0; k < 3; ++k)
+      normals[t][first_corner_part + k] = unit(of_vertices[mesh.triangles[t][k]], normals[t][face_part]);
+  return normals;
+}
+
+TrianglePoint nearest_on_triangle(const Corners& corners, const Vector3d& p) {
+  const auto& [a, b, c] = corners;
+  const auto corner = [&](int k) { return TrianglePoint{corners[k], first_corner_part + k}; };
+  const auto edge = [&](int k, double part) {
+    return TrianglePoint{corners[k] + part * (corners[(k + 1) % 3] - corners[k]), first_edge_part + k};
+  };
+  const Vector3d ab = b - a, ac = c - a;
+  const double a_ab = ab.dot(p - a), a_ac = ac.dot(p - a);
+  if (a_ab <= 0 && a_ac <= 0) return corner(0);
+  const double b_ab = ab.dot(p - b), b_ac = ac.dot(p - b);
+  if (b_ab >= 0 && b_ac <= b_ab) return corner(1);
+  const double c_ab = ab.dot(p - c), c_ac = ac.dot(p - c);
+  if (c_ac >= 0 && c_ab <= c_ac) return corner(2);
+  // Barycentric coordinates, times a positive number: beyond an edge that of the corner opposite to it is negative.
+  const double wc = a_ab * b_ac - b_ab * a_ac;
+  if (wc <= 0 && a_ab >= 0 && b_ab <= 0) return edge(0, a_ab / (a_ab - b_ab));
+  const double wa = b_ab * c_ac - c_ab * b_ac;
+  const double b_bc = b_ac - b_ab, c_cb = c_ab - c_ac;
+  if (wa <= 0 && b_bc >= 0 && c_cb >= 0) return edge(1, b_bc / (b_bc + c_cb));
+  const double wb = c_ab * a_ac - a_ab * c_ac;
+  if (wb <= 0 && a_ac >= 0 && c_ac <= 0) return edge(2, c_ac / (c_ac - a_ac));
+  return {a + (wb * ab + wc * ac) / (wa + wb + wc), face_part};
+}
+
+}  // namespace drape::model

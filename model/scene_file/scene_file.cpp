@@ -1,0 +1,185 @@
+#include "model/scene_file/scene_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <map>
+
+#include "model/scene_file/keys.hpp"
+#include "model/scene_file/toml_nesting.hpp"
+#include "solver/base/input_file.hpp"
+#include "solver/base/printable.hpp"
+#include "solver/base/registry.hpp"
+
+namespace drape::model {
+namespace {
+
+/// Origins of the keys that did not come from the file.
+using Origins = std::map<std::string, std::string>;
+
+/// Limits of files, so that no file takes long or much memory to be refused.
+constexpr std::uintmax_t most_scene_bytes = 4 << 20;
+constexpr int most_levels = 16;
+
+toml::table parse(std::string_view text, std::string_view origin) {
+  if (const int line = line_nested_deeper(text, most_levels))
+    throw SceneError(
+        fmt::format("{}:{}: nested deeper than {} levels: expected a scene, whose keys have two parts and whose "
+                    "lists have at most five levels",
+                    origin, line, most_levels));
+  try {
+    return toml::parse(text);
+  } catch (const toml::parse_error& error) {
+    throw SceneError(fmt::format("{}:{}: {}", origin, error.source().begin.line, error.description()));
+  }
+}
+
+/// The value of an override: TOML if it is TOML, else a bare word.
+toml::table parse_value(const Override& change) {
+  if (line_nested_deeper(change.value, most_levels) > 0)
+    throw SceneError(fmt::format("--set {}: nested deeper than {} levels", change.key, most_levels));
+  try {
+    return toml::parse("value = " + change.value);
+  } catch (const toml::parse_error&) {
+    toml::table table;
+    table.insert("value", change.value);
+    return table;
+  }
+}
+
+void apply(toml::table& root, const Override& change) {
+  toml::table* table = &root;
+  std::string_view rest = change.key;
+  for (auto dot = rest.find('.'); dot != std::string_view::npos; dot = rest.find('.')) {
+    const std::string_view section = rest.substr(0, dot);
+    if (!table->contains(section)) table->insert(section, toml::table{});
+    table = table->get_as<toml::table>(section);
+    if (table == nullptr) throw SceneError(fmt::format("--set {}: '{}' is not a section", change.key, section));
+    rest.remove_prefix(dot + 1);
+  }
+  table->insert_or_assign(rest, *parse_value(change).get("value"));
+}
+
+/// All keys that stand in the file, as paths. Sections are opened, other tables are values.
+void collect(const toml::table& table, const std::string& prefix, std::map<std::string, const toml::node*>& found) {
+  for (const auto& [key, node] : table) {
+    const std::string path = prefix + std::string(key.str());
+    const bool section =
+        std::ranges::any_of(scene_key_table(), [&](const SceneKey& known) { return known.path.starts_with(path + "."); });
+    if (section && node.is_table())
+      collect(*node.as_table(), path + ".", found);
+    else
+      found.emplace(path, &node);
+  }
+}
+
+/// `where`: the file and line of the key, or the override.
+void check_known(const std::string& path, const std::string& where) {
+  if (std::ranges::find(scene_key_table(), path, &SceneKey::path) != scene_key_table().end()) return;
+  const std::string section = path.substr(0, path.find('.') + 1);
+  std::vector<std::string_view> choices;
+  for (const SceneKey& known : scene_key_table())
+    if (section.empty() || known.path.starts_with(section)) choices.push_back(known.path);
+  if (choices.empty())
+    for (const SceneKey& known : scene_key_table()) choices.push_back(known.path);
+  throw SceneError(fmt::format("{}: {}", where, base::unknown_name("key", path, choices)));
+}
+
+/// Rules that no single key can break.
+void check_together(const Scene& scene, const std::string& origin) {
+  const Material& m = scene.sheet.material;
+  const Grid& grid = scene.sheet.grid;
+  const auto fail = [&](std::string_view what) { throw SceneError(fmt::format("{}: {}", origin, what)); };
+  if (m.contraction * m.contraction >= m.tension.weft * m.tension.warp && m.contraction > 0)
+    fail("material.contraction: expected C12² below k1 k2, or the material would collapse");
+  const bool bends = m.bend.any() || m.bend_damping.any();
+  if (bends && m.bend_form == BendForm::membrane && !m.bend_projected)
+    fail("material.bend_projected = false: expected true, the membrane acts along the normal only");
+  if (bends && m.bend_projected && (grid.nu < 2 || grid.nv < 2))
+    fail("material.bend: expected bend_form = \"plate\" with bend_projected = false, a chain has no normals");
+  if (scene.sheet.wind.needs_normals() && (grid.nu < 2 || grid.nv < 2))
+    fail("forces.wind: expected forces.drag = forces.lift, a chain has no normals");
+  if (scene.sheet.air != 0 && (grid.nu < 2 || grid.nv < 2)) fail("forces.air: expected 0, a chain has no normals");
+  constexpr double most_compared = 1e8;  // a second
+  if (static_cast<double>(scene.pins.size()) * grid.particles() > most_compared)
+    fail(fmt::format("pins: expected at most {:g} on a grid of {} particles, not {}",
+                     std::floor(most_compared / grid.particles()), grid.particles(), scene.pins.size()));
+  const std::vector<solver::Pin> all = pins(scene);
+  if (std::ssize(all) == grid.particles() && std::ranges::all_of(all, &solver::Pin::all))
+    fail("pins: expected at least one coordinate that is free to move");
+}
+
+std::string read_file(const std::filesystem::path& path) {
+  try {
+    return base::content_of(path, most_scene_bytes);
+  } catch (const base::UnreadableFile& error) {
+    throw SceneError(fmt::format("{}: {}: expected a scene file of at most {}", path.string(), error.what(),
+                                 base::in_megabytes(most_scene_bytes)));
+  }
+}
+
+}  // namespace
+
+Override parse_override(std::string_view text) {
+  const auto equals = text.find('=');
+  if (equals == std::string_view::npos || equals == 0 || equals + 1 == text.size())
+    throw SceneError(fmt::format("--set {}: expected key=value, for example material.damping=0.5", base::quoted(text)));
+  return {std::string(text.substr(0, equals)), std::string(text.substr(equals + 1))};
+}
+
+Scene parse_scene(std::string_view toml, std::string_view origin, std::span<const Override> overrides) {
+  const std::string file(origin);
+  toml::table root = parse(toml, origin);
+  Origins origins;
+  for (const Override& change : overrides) {
+    origins[change.key] = "--set " + base::quoted(change.key);
+    check_known(change.key, origins[change.key]);
+    apply(root, change);
+  }
+  std::map<std::string, const toml::node*> found;
+  collect(root, "", found);
+  for (const auto& [path, node] : found) check_known(path, place(file, *node));
+
+  Scene scene;
+  for (const SceneKey& key : scene_key_table()) {
+    const auto node = found.find(std::string(key.path));
+    if (node == found.end()) continue;
+    const auto changed = origins.find(node->first);
+    key.read(Value(*node->second, node->first, changed == origins.end() ? file : changed->second), scene);
+  }
+  if (!found.contains("name")) scene.name = file.ends_with(".toml") ? std::filesystem::path(file).stem().string() : "";
+  if (scene.name.empty()) throw SceneError(fmt::format("{}: name: expected a name for the scene", origin));
+  check_together(scene, file);
+  return scene;
+}
+
+Scene load_scene(const std::string& name_or_file, std::span<const Override> overrides) {
+  if (name_or_file.ends_with(".toml")) return parse_scene(read_file(name_or_file), name_or_file, overrides);
+  try {
+    return parse_scene(base::find_named(builtin_scenes(), "scene", name_or_file).toml, name_or_file, overrides);
+  } catch (const std::invalid_argument& error) {
+    throw SceneError(fmt::format("{}, or a file ending in .toml", error.what()));
+  }
+}
+
+std::string to_toml(const Scene& scene) {
+  std::string text;
+  for (const SceneKey& key : scene_key_table()) text += fmt::format("{} = {}\n", key.path, key.write(scene));
+  return text;
+}
+
+std::vector<KeyHelp> scene_keys() {
+  std::vector<KeyHelp> keys;
+  for (const SceneKey& key : scene_key_table()) keys.push_back({std::string(key.path), std::string(key.description)});
+  return keys;
+}
+
+std::map<std::string, std::string> key_values(const Scene& scene) {
+  std::map<std::string, std::string> values;
+  for (const SceneKey& key : scene_key_table()) values[std::string(key.path)] = key.write(scene);
+  return values;
+}
+
+}  // namespace drape::model

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <toml++/toml.h>
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "model/scene_file/scene_file.hpp"
+
+namespace drape::model {
+
+/// A TOML node that knows where it came from, read with checks. Every function throws SceneError with the place, the key and
+/// what would be right.
+class Value {
+ public:
+  Value(const toml::node& node, std::string key, std::string origin)
+      : node_(node), key_(std::move(key)), origin_(std::move(origin)) {}
+
+  const std::string& key() const { return key_; }
+  [[noreturn]] void fail(const std::string& what_is_right) const;
+
+  std::string text() const;
+  bool flag() const;
+  double number() const;        ///< finite
+  double positive() const;      ///< > 0
+  double non_negative() const;  ///< ≥ 0
+  int count() const;            ///< a whole number ≥ 1
+  Eigen::Vector3d vector() const;
+  std::vector<Value> list(std::size_t size) const;  ///< an array of so many values
+  std::vector<Value> list() const;                  ///< an array
+  const toml::table& table() const;
+
+  /// The folder of the scene's file; of overrides and built-in scenes the working folder.
+  std::filesystem::path folder() const;
+
+  bool is_list() const { return node_.is_array(); }
+
+  /// A node inside this one, called "key.name".
+  Value child(std::string_view name, const toml::node& node) const { return {node, key_ + "." + std::string(name), origin_}; }
+
+  /// One value for weft and warp, or an array of two; each read by `part`.
+  WeftWarp weft_warp(double (Value::*part)() const) const;
+
+  /// The place of a text among the names.
+  std::size_t one_of(std::span<const std::string_view> names) const;
+
+ private:
+  std::string shown() const;
+
+  const toml::node& node_;
+  std::string key_, origin_;
+};
+
+/// "file.toml:12" for a node, or the origin alone if it has no line.
+std::string place(const std::string& origin, const toml::node& node);
+
+}  // namespace drape::model

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "model/sheet/edges.hpp"
+
+namespace drape::model {
+
+/// A cell of the grid: its corners and its four edges, lower and upper along u, left and right along v.
+struct Cell {
+  int corner[2][2];  ///< [a][b]: steps in u, steps in v
+
+  EdgeEnds lower() const { return {corner[0][0], corner[1][0]}; }
+  EdgeEnds upper() const { return {corner[0][1], corner[1][1]}; }
+  EdgeEnds left() const { return {corner[0][0], corner[0][1]}; }
+  EdgeEnds right() const { return {corner[1][0], corner[1][1]}; }
+};
+
+/// All cells, line by line.
+inline std::vector<Cell> cells(const Grid& grid) {
+  std::vector<Cell> all;
+  for (int b = 0; b + 1 < grid.nv; ++b)
+    for (int a = 0; a + 1 < grid.nu; ++a)
+      all.push_back({{{grid.index(a, b), grid.index(a, b + 1)}, {grid.index(a + 1, b), grid.index(a + 1, b + 1)}}});
+  return all;
+}
+
+inline Eigen::Vector3d difference(const Vectors& x, EdgeEnds edge) { return x.row(edge.end) - x.row(edge.begin); }
+
+}  // namespace drape::model

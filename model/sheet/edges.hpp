@@ -1,0 +1,43 @@
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "model/sheet/grid.hpp"
+#include "model/sheet/material.hpp"
+
+namespace drape::model {
+
+/// An edge of the grid from particle i to particle j, in the u or the v direction.
+struct Edge {
+  int i, j;
+  bool weft;      ///< along u
+  double length;  ///< rest length l [m]
+  double width;   ///< width of the strip the edge stands for [m]: the other spacing, half of it on a border
+};
+
+/// All edges: weft first, then warp.
+std::vector<Edge> edges(const Grid& grid);
+
+/// The value of a modulus along an edge.
+inline double along(const WeftWarp& modulus, const Edge& edge) { return edge.weft ? modulus.weft : modulus.warp; }
+
+/// Adds a matrix of springs: weight at (i, j) and (j, i), −weight on their diagonals.
+void add_spring(std::vector<Eigen::Triplet<double>>& entries, int i, int j, double weight);
+
+/// The ends of an edge vector x_end − x_begin.
+struct EdgeEnds {
+  int begin, end;
+};
+
+/// For an energy gradient g = ∂E/∂p of the edge vector p that depends on the edge vector r: adds the blocks of the forces
+/// −g on the end and +g on the begin of p, derived by the ends of r. block = ∂g/∂r.
+template <class Add>
+void add_edge_pair(const Add& add, EdgeEnds p, EdgeEnds r, const Eigen::Matrix3d& block) {
+  add(p.end, r.end, -block);
+  add(p.end, r.begin, block);
+  add(p.begin, r.end, block);
+  add(p.begin, r.begin, -block);
+}
+
+}  // namespace drape::model

@@ -1,0 +1,41 @@
+#include "model/sheet/normals.hpp"
+
+#include <algorithm>
+
+namespace drape::model {
+namespace {
+
+/// The matrix of a × ·.
+Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& a) {
+  Eigen::Matrix3d C;
+  C << 0, -a[2], a[1], a[2], 0, -a[0], -a[1], a[0], 0;
+  return C;
+}
+
+}  // namespace
+
+Normals::Neighbours Normals::neighbours(int i) const {
+  const int a = i % grid_.nu, b = i / grid_.nu;
+  return {grid_.index(std::max(a - 1, 0), b), grid_.index(std::min(a + 1, grid_.nu - 1), b), grid_.index(a, std::max(b - 1, 0)),
+          grid_.index(a, std::min(b + 1, grid_.nv - 1))};
+}
+
+void Normals::evaluate(const Vectors& x, Vectors& n) const {
+  for (int i = 0; i < grid_.particles(); ++i) {
+    const auto [left, right, lower, upper] = neighbours(i);
+    const Eigen::RowVector3d cross = (x.row(right) - x.row(left)).cross(x.row(upper) - x.row(lower));
+    n.row(i) = cross / cross.norm();
+  }
+}
+
+std::array<std::pair<int, Eigen::Matrix3d>, 4> Normals::derivative(const Vectors& x, int i) const {
+  const auto [left, right, lower, upper] = neighbours(i);
+  const Eigen::Vector3d tu = x.row(right) - x.row(left), tv = x.row(upper) - x.row(lower);
+  const Eigen::Vector3d cross = tu.cross(tv);
+  const Eigen::Vector3d N = cross.normalized();
+  const Eigen::Matrix3d P = (Eigen::Matrix3d::Identity() - N * N.transpose()) / cross.norm();
+  const Eigen::Matrix3d by_tu = -P * cross_matrix(tv), by_tv = P * cross_matrix(tu);
+  return {{{left, -by_tu}, {right, by_tu}, {lower, -by_tv}, {upper, by_tv}}};
+}
+
+}  // namespace drape::model

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <array>
+#include <utility>
+
+#include "model/sheet/grid.hpp"
+
+namespace drape::model {
+
+/// Vertex normals N = (t_u × t_v)° of a grid, the tangents being differences of the neighbours, one-sided on borders.
+class Normals {
+ public:
+  explicit Normals(const Grid& grid) : grid_(grid) {}
+
+  /// Sets n (N × 3). NaN where the tangents are parallel.
+  void evaluate(const Vectors& x, Vectors& n) const;
+
+  /// The four blocks ∂N_i/∂x_j of particle i with the particles j they belong to.
+  std::array<std::pair<int, Eigen::Matrix3d>, 4> derivative(const Vectors& x, int i) const;
+
+ private:
+  struct Neighbours {
+    int left, right, lower, upper;
+  };
+  Neighbours neighbours(int i) const;
+
+  Grid grid_;
+};
+
+/// The derivative of <q, N> N, a projection onto a normal, by that normal.
+inline Eigen::Matrix3d projection_by_normal(const Eigen::Vector3d& q, const Eigen::Vector3d& N) {
+  return N.dot(q) * Eigen::Matrix3d::Identity() + N * q.transpose();
+}
+
+}  // namespace drape::model

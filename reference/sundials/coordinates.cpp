@@ -1,0 +1,30 @@
+#include "reference/sundials/coordinates.hpp"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+namespace drape::reference {
+
+Coordinates::Coordinates(const solver::SplitOde& ode) : unknown(3 * ode.mass.size(), -1), place(3 * ode.mass.size(), -1) {
+  solver::Vectors moves = solver::Vectors::Ones(ode.particles(), 3);
+  solver::filter(ode.pins, moves);
+  for (int i = 0; i < moves.size(); ++i) {
+    const bool is_free = moves.data()[i] != 0;
+    std::vector<int>& kind = is_free ? free : pinned;
+    (is_free ? unknown : place)[i] = static_cast<int>(kind.size());
+    kind.push_back(i);
+  }
+  if (free.empty()) throw std::invalid_argument("every coordinate is pinned: there is no equation of motion to integrate");
+}
+
+solver::State prescribed_start(const solver::SplitOde& ode, const solver::State& start) {
+  if (start.x.rows() != ode.particles() || start.v.rows() != ode.particles())
+    throw std::invalid_argument(fmt::format("the start has {} positions and {} velocities, the equation of motion {} particles",
+                                            start.x.rows(), start.v.rows(), ode.particles()));
+  solver::State result = start;
+  solver::prescribe(ode.pins, result.v);
+  return result;
+}
+
+}  // namespace drape::reference

@@ -1,0 +1,207 @@
+#include "reference/theory/amplification.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "solver/base/decompositions.hpp"
+#include "solver/stage/stage_solver.hpp"
+
+namespace drape::reference {
+namespace {
+
+// Neither is 1, so that nothing can leave them out.
+constexpr double h = 0.125, mass = 0.7;
+
+/// Whether the fixed-point loop comes down to round-off in some 10⁵ updates. Where W > ν the error changes its sign with every
+/// update, and close to −1 the right-hand side vanishes to which tolerances are relative. Not known without a theory of the
+/// method.
+bool loop_converges(const solver::Method& method, const Mode& mode) {
+  if (!method.nonlinear()) return true;
+  return has_theory(method.name) && loop_contraction(method.name, mode) <= (mode.W > mode.nu ? 0.9 : 0.9995);
+}
+
+solver::Options exact_options() {
+  solver::Options options = solver::thesis_options();
+  options.loop_tolerance = 1e-14;
+  options.cg_tolerance = 1e-15;
+  options.max_updates = 1'000'000;
+  options.verlet_fraction = 1;
+  return options;
+}
+
+/// What a method takes from step to step, as a vector: of each of its last states, the newest first, x, h v and h² times the
+/// rows that it keeps in `Point::f`, all in the first coordinate.
+struct Lags {
+  Eigen::Index states, kept;
+
+  Eigen::Index entries() const { return 2 + kept; }
+  Eigen::Index size() const { return states * entries(); }
+};
+
+/// The second coordinate is displaced, or tolerances would be relative to nothing where u is but a velocity in the past.
+solver::Point point(const Eigen::Ref<const Eigen::VectorXd>& u) {
+  const Eigen::Index kept = u.size() - 2;
+  solver::Point p{{solver::Vectors::Zero(1, 3), solver::Vectors::Zero(1, 3)},
+                  solver::Vectors::Zero(std::max<Eigen::Index>(kept, 1), 3)};
+  p.y.x(0) = u[0];
+  p.y.x(1) = 1;
+  p.y.v(0) = u[1] / h;
+  p.has_f = kept > 0;
+  if (p.has_f) p.f.col(0) = u.tail(kept) / (h * h);
+  return p;
+}
+
+/// The states, the newest at time 0.
+solver::History history(const solver::Method& method, const Lags& memory, const Eigen::VectorXd& u) {
+  solver::History states(method.past_states);
+  for (Eigen::Index k = memory.states; k-- > 0 && method.past_states > 0;)
+    states.push(-static_cast<double>(k) * h, point(u.segment(k * memory.entries(), memory.entries())).y);
+  return states;
+}
+
+/// One step on the mode: the point at which it ends.
+solver::Point advance(const solver::Method& method, const solver::SplitOde& ode, const solver::Options& options,
+                      solver::StageSolver* stage, const Lags& memory, const Eigen::VectorXd& u) {
+  const Eigen::Index n = memory.entries();
+  const solver::Vectors none = solver::Vectors::Zero(1, 3);
+  std::int64_t substeps = 0, limits = 0;
+  solver::Step step{.ode = ode,
+                    .options = options,
+                    .stage = stage,
+                    .h = h,
+                    .w = method.two_step ? 1.0 : 0.0,
+                    .before = point(u.segment(memory.states > 1 ? n : 0, n)),
+                    .now = point(u.head(n)),
+                    .next = point(Eigen::VectorXd::Zero(2)),
+                    .history = history(method, memory, u),
+                    .ax = none,
+                    .av = none,
+                    .f_hat = none,
+                    .explicit_limit = h,
+                    .substeps = substeps,
+                    .limits = limits,
+                    .result = {}};
+  method.step(step);
+  if (step.result.outcome != solver::Outcome::success)
+    throw std::runtime_error("a step of " + std::string(method.name) +
+                             " on a linear mode failed: " + std::string(to_string(step.result.outcome)));
+  return step.next;
+}
+
+/// The same as a vector, which the memory before it follows.
+Eigen::VectorXd remembered(const solver::Point& end, const Lags& memory, const Eigen::VectorXd& u) {
+  Eigen::VectorXd u1(memory.size());
+  u1.head(2) << end.y.x(0), h * end.y.v(0);
+  u1.segment(2, memory.kept) = h * h * end.f.col(0).head(memory.kept);
+  u1.tail(memory.size() - memory.entries()) = u.head(memory.size() - memory.entries());
+  return u1;
+}
+
+}  // namespace
+
+Mode at_step(const LinearMode& mode, double step) {
+  return {step * step * mode.kappa, step * step * mode.omega_squared, step * mode.damping};
+}
+
+solver::SplitOde mode_ode(const LinearMode& mode) {
+  const auto times = [](double a) -> solver::SparseMatrix { return Eigen::MatrixXd::Constant(1, 1, a * mass).sparseView(); };
+  solver::SplitOde ode;
+  ode.mass = Eigen::VectorXd::Constant(1, mass);
+  ode.stiffness = times(-mode.kappa);
+  ode.damping = times(-mode.damping);
+  ode.force = [mode](double, const solver::Vectors& x, const solver::Vectors& v, solver::Vectors& f) {
+    f = -mass * (mode.omega_squared * x + mode.damping * v);
+  };
+  ode.explicit_force = [mode](double, const solver::Vectors& x, const solver::Vectors&, solver::Vectors& f) {
+    f = mass * (mode.kappa - mode.omega_squared) * x;
+  };
+  ode.jacobian = [mode](double, const solver::Vectors&, const solver::Vectors&, solver::SparseMatrix& df_dx,
+                        solver::SparseMatrix& df_dv) {
+    df_dx = (-mass * mode.omega_squared * Eigen::Matrix3d::Identity()).sparseView();
+    df_dv = (-mass * mode.damping * Eigen::Matrix3d::Identity()).sparseView();
+  };
+  return ode;
+}
+
+Eigen::MatrixXd amplification_matrix(const solver::Method& method, const Mode& mode) {
+  LinearMode linear{mode.nu / (h * h), mode.W / (h * h), mode.s / h};
+  if (!loop_converges(method, mode)) linear.kappa = linear.omega_squared;
+  const solver::SplitOde ode = mode_ode(linear);
+  const solver::Options options = exact_options();
+  std::optional<solver::StageSolver> stage;
+  if (method.implicit()) stage.emplace(ode, options);
+  const auto end = [&](const Lags& memory, const Eigen::VectorXd& u) {
+    return advance(method, ode, options, stage ? &*stage : nullptr, memory, u);
+  };
+
+  Lags memory{std::max(method.two_step ? 2 : 1, method.past_states), 0};
+  if (const solver::Point first = end(memory, Eigen::VectorXd::Unit(memory.size(), 0)); first.has_f)
+    memory.kept = first.f.rows();
+  Eigen::MatrixXd G(memory.size(), memory.size());
+  for (Eigen::Index j = 0; j < memory.size(); ++j) {
+    const auto u = Eigen::VectorXd::Unit(memory.size(), j);
+    G.col(j) = remembered(end(memory, u), memory, u);
+  }
+  return G;
+}
+
+std::vector<std::complex<double>> amplification_factors(const solver::Method& method, const Mode& mode) {
+  const Eigen::MatrixXd G = amplification_matrix(method, mode);
+  // Velocities in units of ω, so that the entries are less unequal: the factors are the same with fewer roundings.
+  const double omega = std::sqrt(1 + mode.W);
+  const Eigen::Index entries = G.rows() / std::max(method.two_step ? 2 : 1, method.past_states);
+  const auto unit = [&](Eigen::Index i) { return i % entries == 1 ? omega : 1; };
+  const Eigen::MatrixXd scaled =
+      Eigen::MatrixXd::NullaryExpr(G.rows(), G.cols(), [&](auto i, auto j) { return G(i, j) * unit(j) / unit(i); });
+  const Eigen::VectorXcd eigenvalues = base::eigenvalues(scaled);
+  std::vector<std::complex<double>> factors(eigenvalues.begin(), eigenvalues.end());
+  std::ranges::sort(factors, std::ranges::greater{}, [](const std::complex<double>& factor) { return std::abs(factor); });
+  return factors;
+}
+
+double distance_from_theory(const solver::Method& method, const Mode& mode, const Mode& theory) {
+  Eigen::VectorXcd measured = Eigen::VectorXcd::Ones(1);  // Π (z − factor), the constant first
+  for (const std::complex<double>& factor : amplification_factors(method, mode)) {
+    Eigen::VectorXcd next = Eigen::VectorXcd::Zero(measured.size() + 1);
+    next.tail(measured.size()) = measured;
+    next.head(measured.size()) -= factor * measured;
+    measured = next;
+  }
+  const Eigen::VectorXd exact = characteristic_polynomial(method.name, theory);
+  if (measured.size() != exact.size()) return std::numeric_limits<double>::infinity();
+  return (measured - exact).cwiseAbs().maxCoeff<Eigen::PropagateNaN>() / exact.cwiseAbs().maxCoeff();
+}
+
+double spectral_radius(const solver::Method& method, const Mode& mode) {
+  return std::abs(amplification_factors(method, mode).front());
+}
+
+double stability_limit(const solver::Method& method, const LinearMode& mode) {
+  // Double factors, as at a limit, are known to half the digits only.
+  const auto stable = [&](double step) { return spectral_radius(method, at_step(mode, step)) <= 1 + 1e-7; };
+  const double rate = std::max(std::sqrt(mode.omega_squared), mode.damping);
+  double below = 0, above = 0.1 / rate;
+  if (!stable(above)) return 0;
+  while (stable(above)) {
+    below = above;
+    above *= 2;
+    if (above * rate >= 1600) return std::numeric_limits<double>::infinity();
+  }
+  while (above - below > 1e-10 * above) {
+    const double middle = (below + above) / 2;
+    (stable(middle) ? below : above) = middle;
+  }
+  return below;
+}
+
+ModeBehaviour measured_behaviour(const solver::Method& method, const Mode& mode) {
+  const std::complex<double> factor = amplification_factors(method, mode).front();
+  return {std::abs(std::arg(factor)), -std::log(std::abs(factor))};
+}
+
+}  // namespace drape::reference

@@ -1,0 +1,124 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "reference/theory/amplification.hpp"
+#include "solver/base/registry.hpp"
+
+namespace drape::reference {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
+
+/// Polynomials of degree 4, coefficients from the lowest.
+struct Polynomial {
+  Eigen::Vector<double, 5> c = Eigen::Vector<double, 5>::Zero();
+
+  friend Polynomial operator+(const Polynomial& p, const Polynomial& q) { return {p.c + q.c}; }
+  friend Polynomial operator+(const Polynomial& p, double a) { return p + Polynomial{{a, 0, 0, 0, 0}}; }
+  friend Polynomial operator*(double a, const Polynomial& p) { return {a * p.c}; }
+  friend Polynomial operator*(const Polynomial& p, const Polynomial& q) {
+    Polynomial product;
+    for (int i = 0; i < 5; ++i)
+      for (int j = 0; i + j < 5; ++j) product.c[i + j] += p.c[i] * q.c[j];
+    return product;
+  }
+};
+
+/// What is known of a method on a linear mode.
+struct Theory {
+  std::string_view name;
+  double stage;  ///< γ/h of the fixed-point loop, 0 if there is none
+  Polynomial (*characteristic)(const Mode&);
+  double (*stability_bound)(double nu, double s);
+  Artificial (*artificial)(const Mode&);
+};
+
+const Polynomial z{{0, 1, 0, 0, 0}};
+const Polynomial dz = z + -1, delta = 0.5 * (3 * z + -1) * dz;
+
+// With z = exp(μ), each polynomial divided by a power of z is (1 + inertia) μ² + (s + damping) μ + W up to relative O(μ²):
+// 1 − 1/z = μ − μ²/2 + …, δ/z² = μ − μ³/3 + …, and μ³ is reduced by the equation itself.
+const Theory theories[] = {
+    {"imex-euler", 0,  //
+     [](const Mode& m) { return dz * dz + (m.nu + m.s) * z * dz + m.W * z; },
+     [](double nu, double s) { return 4 + 2 * nu + 2 * s; },
+     [](const Mode& m) {
+       return Artificial{(m.nu + m.s) / 2, m.nu};
+     }},
+    {"implicit-euler", 1,  //
+     [](const Mode& m) { return dz * dz + m.s * z * dz + m.W * z * z; }, [](double, double) { return infinity; },
+     [](const Mode& m) {
+       return Artificial{m.s / 2, m.W};
+     }},
+    {"sbdf2", 0,
+     [](const Mode& m) { return delta * delta + m.s * z * z * delta + m.nu * z * z * dz * dz + m.W * z * z * (2 * z + -1); },
+     [](double nu, double s) { return s > 0 ? not_known : std::min(nu * (nu + 2), (16 + 4 * nu) / 3); },
+     [](const Mode& m) {
+       const double explicit_part = m.nu - m.W, b = explicit_part / (1 + explicit_part);
+       return Artificial{explicit_part + b * m.s, b * m.W};
+     }},
+    {"bdf2", 2.0 / 3,  //
+     [](const Mode& m) { return delta * delta + m.s * z * z * delta + m.W * z * z * z * z; },
+     [](double, double) { return infinity; },
+     [](const Mode&) {
+       return Artificial{0, 0};
+     }},
+    {"midpoint", 0.5,  //
+     [](const Mode& m) { return dz * dz + m.s / 2 * (z * z + -1) + m.W / 4 * (z + 1) * (z + 1); },
+     [](double, double) { return infinity; },
+     [](const Mode&) {
+       return Artificial{0, 0};
+     }},
+    {"imex-midpoint", 0,
+     [](const Mode& m) { return (1 + m.s / 2 + m.nu / 4) * z * z + -(2 + m.nu / 2 - m.W) * z + (1 - m.s / 2 + m.nu / 4); },
+     [](double nu, double) { return 4 + nu; },
+     [](const Mode& m) {
+       return Artificial{m.nu / 4, 0};
+     }},
+    {"verlet", 0,  //
+     [](const Mode& m) { return z * dz * dz + m.s * delta + m.W * z * z; },
+     [](double, double s) { return std::max(0.0, 4 - 4 * s); },
+     [](const Mode&) {
+       return Artificial{0, 0};
+     }},
+};
+
+const Theory& theory(std::string_view method) { return base::find_named<Theory>(theories, "method with a theory", method); }
+
+/// The slower root of (inertia) μ² + (damping) μ + W = 0.
+ModeBehaviour oscillator(double inertia, double damping, double W) {
+  const double discriminant = damping * damping - 4 * inertia * W;
+  if (discriminant < 0) return {std::sqrt(-discriminant) / (2 * inertia), damping / (2 * inertia)};
+  return {0, 2 * W / (damping + std::sqrt(discriminant))};
+}
+
+}  // namespace
+
+ModeBehaviour exact_behaviour(const Mode& mode) { return oscillator(1, mode.s, mode.W); }
+
+bool has_theory(std::string_view method) { return std::ranges::find(theories, method, &Theory::name) != std::end(theories); }
+
+Eigen::VectorXd characteristic_polynomial(std::string_view method, const Mode& mode) {
+  const Eigen::VectorXd c = theory(method).characteristic(mode).c;
+  Eigen::Index degree = c.size() - 1;
+  while (c[degree] == 0) --degree;
+  return c.head(degree + 1) / c[degree];
+}
+
+double loop_contraction(std::string_view method, const Mode& mode) {
+  const double c = theory(method).stage;
+  return c * c * std::abs(mode.nu - mode.W) / (1 + c * c * mode.nu + c * mode.s);
+}
+
+double stability_bound(std::string_view method, double nu, double s) { return theory(method).stability_bound(nu, s); }
+
+Artificial artificial(std::string_view method, const Mode& mode) { return theory(method).artificial(mode); }
+
+ModeBehaviour predicted_behaviour(std::string_view method, const Mode& mode) {
+  const auto [inertia, damping] = artificial(method, mode);
+  return oscillator(1 + inertia, mode.s + damping, mode.W);
+}
+
+}  // namespace drape::reference

@@ -1,0 +1,63 @@
+#include "results/analysis/order_fit.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "results/run_record.hpp"
+
+namespace drape::results {
+namespace {
+
+constexpr int fewest = 4;
+constexpr double steadiness = 0.1, tolerance = 0.1;
+
+/// Least squares on logarithms of the places first … last.
+double slope(std::span<const double> h, std::span<const double> errors, int first, int last) {
+  const double n = last - first + 1;
+  double x = 0, y = 0, xx = 0, xy = 0;
+  for (int k = first; k <= last; ++k) {
+    const double p = std::log(h[k]), q = std::log(errors[k]);
+    x += p, y += q, xx += p * p, xy += p * q;
+  }
+  return (n * xy - x * y) / (n * xx - x * x);
+}
+
+}  // namespace
+
+std::optional<OrderFit> fit_order(std::span<const double> h, std::span<const double> errors, double uncertainty) {
+  const int n = static_cast<int>(errors.size());
+  const auto usable = [&](int k) { return std::isfinite(errors[k]) && errors[k] > 0 && errors[k] >= resolution * uncertainty; };
+  std::optional<OrderFit> best;
+  for (int first = 0; first + fewest <= n; ++first) {
+    double lowest = INFINITY, highest = -INFINITY;
+    for (int last = first; last < n && usable(last); ++last) {
+      if (last == first) continue;
+      const double local = std::log(errors[last - 1] / errors[last]) / std::log(h[last - 1] / h[last]);
+      lowest = std::min(lowest, local), highest = std::max(highest, local);
+      if (!(highest - lowest <= steadiness)) break;
+      const int count = last - first + 1;
+      if (count >= fewest && (!best || count >= best->last - best->first + 1))
+        best = OrderFit{slope(h, errors, first, last), lowest, highest, first, last};
+    }
+  }
+  return best;
+}
+
+std::string verdict(const std::optional<OrderFit>& fit, double declared) {
+  if (!fit) return "no order to be seen";
+  if (std::abs(fit->order - declared) <= tolerance) return fmt::format("{:g} as declared", declared);
+  return fmt::format("NOT {:g}", declared);
+}
+
+void add_fit(TableBuilder& table, const std::optional<OrderFit>& fit, const std::string& verdict) {
+  table.text("verdict", "verdict", "whether the order is the declared one", verdict);
+  if (!fit) return;
+  table.number("fitted_order", "fitted", "1", "order by least squares over the window that the program found", fit->order);
+  table.text("spread", "between", "lowest and highest order between neighbours in the window",
+             fmt::format("{:.3f} … {:.3f}", fit->lowest, fit->highest));
+}
+
+}  // namespace drape::results

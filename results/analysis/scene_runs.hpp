@@ -1,0 +1,38 @@
+#pragma once
+
+#include <limits>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "results/analysis/work_precision.hpp"
+#include "results/file/run_file.hpp"
+
+namespace drape::results {
+
+/// The runs of all files by the name of their scene and what is set in it.
+using RunsOfScene = std::map<std::string, std::vector<const RunRecord*>>;
+RunsOfScene by_scene(std::span<const Recording> recordings);
+
+bool ended_well(const RunRecord& run);
+
+/// Times and error of a run, no smaller than its reference resolves; NaN where it has no error that can be compared.
+Measured measured(const RunRecord& run);
+
+/// Curves of a table of orders, and those whose order is as declared.
+struct OrderCount {
+  int curves = 0, as_declared = 0;
+};
+bool is_as_declared(std::string_view verdict);
+OrderCount count_orders(const Table& table);
+
+/// The quickest solver of SUNDIALS in a row of a table of winners; without a ratio if none reaches the error.
+struct Peer {
+  std::string name;
+  double ratio = std::numeric_limits<double>::quiet_NaN();  ///< of its time to that of our quickest
+};
+Peer quickest_peer(const Table& winners, std::size_t row);
+
+}  // namespace drape::results

@@ -1,0 +1,87 @@
+#include "results/file/table_in_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <sstream>
+
+namespace drape::results {
+namespace {
+
+using hdf5::Handle;
+
+template <class Value>
+bool is(const Cell& cell) {
+  return std::holds_alternative<Value>(cell);
+}
+
+double number(const Cell& cell) {
+  if (const auto* value = std::get_if<double>(&cell)) return *value;
+  if (const auto* value = std::get_if<std::int64_t>(&cell)) return static_cast<double>(*value);
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+/// A column has one type in the file: text, whole numbers if all its cells are such, else real numbers, NaN for none.
+void write_column(const Handle& group, const Column& column) {
+  const auto& [name, title, unit, description, cells, shown] = column;
+  if (unit.empty()) {
+    std::vector<std::string> texts;
+    for (const Cell& cell : cells) texts.push_back(is<std::string>(cell) ? std::get<std::string>(cell) : "");
+    hdf5::write_texts(group, name, texts, description);
+  } else if (!cells.empty() && std::ranges::all_of(cells, is<std::int64_t>)) {
+    std::vector<std::int64_t> counts;
+    for (const Cell& cell : cells) counts.push_back(std::get<std::int64_t>(cell));
+    hdf5::write_numbers(group, name, counts.data(), {counts.size()}, unit, description);
+  } else {
+    std::vector<double> numbers;
+    std::ranges::transform(cells, std::back_inserter(numbers), number);
+    hdf5::write_numbers(group, name, numbers.data(), {numbers.size()}, unit, description);
+  }
+  hdf5::write_text(group, name + ".title", title);
+}
+
+std::vector<Cell> read_cells(const Handle& group, const std::string& name, const std::string& unit) {
+  if (unit.empty()) {
+    const auto texts = hdf5::read_texts(group, name);
+    return {texts.begin(), texts.end()};
+  }
+  const auto numbers = hdf5::read_numbers<double>(group, name);
+  std::vector<Cell> cells;
+  for (const double value : numbers) cells.push_back(value == value ? Cell(value) : Cell());
+  return cells;
+}
+
+}  // namespace
+
+void write_table(const Handle& tables, const Table& table) {
+  const Handle group = hdf5::create_group(tables, table.name, table.description);
+  std::vector<std::string> names;
+  for (const Column& column : table.columns) {
+    write_column(group, column);
+    names.push_back(column.name);
+  }
+  hdf5::write_described_text(group, "columns", fmt::format("{}", fmt::join(names, " ")), "the columns in their order");
+}
+
+Table read_table(const Handle& tables, const std::string& name) {
+  const Handle group = hdf5::open_group(tables, name);
+  Table table{name, hdf5::read_text(group, "description"), {}};
+  const auto infos = hdf5::datasets(group);
+  std::istringstream names(hdf5::read_text(group, "columns"));
+  for (std::string column; names >> column;) {
+    const auto info = std::ranges::find(infos, column, &hdf5::DatasetInfo::name);
+    if (info == infos.end()) throw hdf5::Error(fmt::format("the column {} of the table {} is missing", column, name));
+    table.columns.push_back({column,
+                             hdf5::read_text(group, column + ".title"),
+                             info->unit,
+                             info->description,
+                             read_cells(group, column, info->unit),
+                             {}});
+    if (table.columns.back().cells.size() != rows(table))
+      throw hdf5::Error(fmt::format("the columns of the table {} are not equally long", name));
+  }
+  return table;
+}
+
+}  // namespace drape::results

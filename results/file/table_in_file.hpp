@@ -1,0 +1,13 @@
+#pragma once
+
+#include "results/file/hdf5.hpp"
+#include "results/table.hpp"
+
+namespace drape::results {
+
+/// Writes a table as a group of datasets, one for each column; what people are shown in place of cells is not kept.
+void write_table(const hdf5::Handle& tables, const Table& table);
+
+Table read_table(const hdf5::Handle& tables, const std::string& name);
+
+}  // namespace drape::results

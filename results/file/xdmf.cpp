@@ -1,0 +1,103 @@
+#include "results/file/xdmf.hpp"
+
+#include <fmt/format.h>
+
+#include <iterator>
+
+#include "results/file/run_file.hpp"
+#include "solver/base/atomic_file.hpp"
+#include "solver/base/printable.hpp"
+
+namespace drape::results {
+namespace {
+
+std::string escaped(const std::string& text) {
+  std::string result;
+  for (const char c : base::printable(text)) switch (c) {
+      case '&': result += "&amp;"; break;
+      case '<': result += "&lt;"; break;
+      case '"': result += "&quot;"; break;
+      default: result += c;
+    }
+  return result;
+}
+
+/// A dataset of the trajectory and how XDMF calls what is in it.
+struct Numbers {
+  const char* dataset;
+  const char* number;  ///< type and precision
+  int components;
+};
+constexpr Numbers positions{"x", R"(NumberType="Float" Precision="8")", 3};
+
+struct Attribute {
+  const char* name;
+  const char* type;
+  Numbers numbers;
+};
+constexpr Attribute attributes[] = {{"velocity", "Vector", {"v", positions.number, 3}},
+                                    {"stretch", "Scalar", {"stretch", positions.number, 1}},
+                                    {"constraint", "Scalar", {"constraint", R"(NumberType="Int" Precision="4")", 1}}};
+
+class XdmfText {
+ public:
+  explicit XdmfText(std::string hdf5_name) : hdf5_name_(std::move(hdf5_name)) {}
+
+  std::string file(std::span<const RunRecord> runs) {
+    text_ = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<Xdmf Version=\"3.0\">\n<Domain>\n";
+    for (std::size_t k = 0; k < runs.size(); ++k)
+      if (runs[k].trajectory) series(runs[k], fmt::format("/runs/{}/trajectory/", run_name(k)));
+    return text_ + "</Domain>\n</Xdmf>\n";
+  }
+
+ private:
+  void series(const RunRecord& run, const std::string& group) {
+    const std::string name =
+        fmt::format("{} {} h = {:g} s{}{}", run.scene, run.method, run.step, run.overrides.empty() ? "" : " ", run.overrides);
+    add(R"(<Grid Name="{}" GridType="Collection" CollectionType="Temporal">)", escaped(name));
+    for (std::size_t k = 0; k < run.trajectory->times.size(); ++k) frame(*run.trajectory, group, k);
+    add("</Grid>");
+  }
+
+  void frame(const TrajectoryRecord& trajectory, const std::string& group, std::size_t k) {
+    add(R"(<Grid Name="sheet" GridType="Uniform"><Time Value="{}"/>)", trajectory.times[k]);
+    add(R"(<Topology TopologyType="3DSMesh" Dimensions="1 {} {}"/>)", trajectory.nv, trajectory.nu);
+    add(R"(<Geometry GeometryType="XYZ">)");
+    numbers(trajectory, group, positions, k);
+    add("</Geometry>");
+    for (const Attribute& shown : attributes) {
+      add(R"(<Attribute Name="{}" AttributeType="{}" Center="Node">)", shown.name, shown.type);
+      numbers(trajectory, group, shown.numbers, k);
+      add("</Attribute>");
+    }
+    add("</Grid>");
+  }
+
+  /// One frame of a dataset, chosen as `file:path|start:stride:count:shape`: the only way that ParaView's Xdmf3 reader knows.
+  void numbers(const TrajectoryRecord& trajectory, const std::string& group, const Numbers& what, std::size_t k) {
+    const bool vector = what.components > 1;
+    const std::string frame = fmt::format("{}{}", trajectory.nu * trajectory.nv, vector ? " 3" : "");
+    const char *zeros = vector ? "0 0" : "0", *ones = vector ? "1 1 1" : "1 1";
+    add(R"(<DataItem Format="HDF" {} Dimensions="1 {}">{}:{}{}|{} {}:{}:1 {}:{} {}</DataItem>)", what.number, frame,
+        escaped(hdf5_name_), group, what.dataset, k, zeros, ones, frame, trajectory.times.size(), frame);
+  }
+
+  template <class... Values>
+  void add(fmt::format_string<Values...> form, Values&&... values) {
+    fmt::format_to(std::back_inserter(text_), form, std::forward<Values>(values)...);
+    text_ += '\n';
+  }
+
+  std::string hdf5_name_, text_;
+};
+
+}  // namespace
+
+std::filesystem::path xdmf_path(const std::filesystem::path& hdf5_file) { return hdf5_file.string() + ".xdmf"; }
+
+void write_xdmf(const std::filesystem::path& hdf5_file, std::span<const RunRecord> runs) {
+  const std::string text = XdmfText(hdf5_file.filename()).file(runs);
+  base::publish(xdmf_path(hdf5_file), std::as_bytes(std::span(text)), base::Existing::replace);
+}
+
+}  // namespace drape::results

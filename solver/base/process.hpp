@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace drape::base {
+
+/// What a program has said until its end.
+struct ChildSaid {
+  int exit_code = 0;  ///< as in a shell: 128 + signal if it was killed
+  std::string out;
+  std::string err;
+};
+
+/// Runs a program, found on PATH unless its name has a slash, with the words after its name as arguments. One that takes longer
+/// than so many seconds is killed with all that it has started; so it is when a signal reaches us. Throws std::system_error: no
+/// such file (there is no such program), timed out, interrupted.
+ChildSaid run_child(std::vector<std::string> words, double seconds);
+
+}  // namespace drape::base

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "solver/filter.hpp"
+#include "solver/linear/counters.hpp"
+#include "solver/linear/five_point.hpp"
+#include "solver/linear/preconditioner.hpp"
+#include "solver/outcome.hpp"
+
+namespace drape::solver {
+
+struct LinearResult {
+  Outcome outcome = Outcome::success;
+  int iterations = 0;
+};
+
+/// Preconditioned conjugate gradients for A d = r, all three coordinates as one system [Etzmuß 2002, 3.4.2].
+class ConjugateGradients {
+ public:
+  ConjugateGradients(std::unique_ptr<Preconditioner> preconditioner, int max_iterations, Work& work);
+
+  /// Prepares for a pattern; allocates all that later calls need.
+  void analyze(const SparseMatrix& A);
+
+  /// Prepares for new values.
+  Outcome factor(const SparseMatrix& A);
+
+  /// Solves P A P d = r from d = 0 until |residual| ≤ target (Euclidean norm), where P is the filter and P r = r
+  /// [Etzmuß 2002, Alg. 7]: d keeps to the free directions. r is overwritten with the residual.
+  ///
+  /// A is the matrix that was factored last. If the factor is exact and the filter empty, there is one substitution and no
+  /// iteration, and the residual is taken for 0.
+  LinearResult solve(const SparseMatrix& A, const Filter& filter, Vectors& r, Vectors& d, double target);
+
+  /// z ≈ P A⁻¹ r for the matrix that was factored last and P r = r. Returns <r, z>.
+  double precondition(const Filter& filter, const Vectors& r, Vectors& z);
+
+ private:
+  LinearResult solve_directly(Vectors& r, Vectors& d);
+  double direct(const SparseMatrix& A, double beta);
+  std::int64_t direct_bytes(const SparseMatrix& A) const;
+
+  std::unique_ptr<Preconditioner> preconditioner_;
+  int max_iterations_;
+  std::optional<FivePoint> star_;  ///< the matrix that was factored last, if it is one of a grid
+  Vectors z_, p_, q_;
+  LinearWork work_;
+};
+
+}  // namespace drape::solver

@@ -1,0 +1,186 @@
+#include <algorithm>
+#include <vector>
+
+#include "solver/linear/coarse_grid.hpp"
+#include "solver/linear/preconditioner.hpp"
+#include "solver/linear/wavefront.hpp"
+
+namespace drape::solver {
+namespace {
+
+/// A grid, and the residual and correction of the next coarser one.
+struct Level {
+  FivePoint A;
+  Coarsening u, v;
+  Vectors r, z;  ///< one row more than there are particles: four lanes of the last may be loaded
+};
+
+/// Calls f(a, coarse, in_u, in_v) for the red nodes of line b (a + b even). `coarse`: index of the first coordinate of the
+/// coarse particle at or before (a, b); in_u, in_v (constants, so that the loop has no branches): whether the node lies halfway
+/// to the next one along u and along v.
+template <class F>
+void each_red(const Level& level, int b, const F& f) {
+  const Eigen::Index first = 3 * static_cast<Eigen::Index>(level.u.coarse()) * level.v.parent(b);
+  const auto loop = [&](auto in_u, auto in_v) {
+    const int end = level.A.nu - 1;
+    int a = b % 2;
+    for (; a < end; a += 2) f(a, first + 3 * level.u.parent(a), in_u, in_v);
+    if (a == end) f(a, first + 3 * level.u.parent(a), std::false_type(), in_v);
+  };
+  const auto along_v = [&](auto in_u) { level.v.between(b) ? loop(in_u, std::true_type()) : loop(in_u, std::false_type()); };
+  level.u.halved&& b % 2 == 1 ? along_v(std::true_type()) : along_v(std::false_type());
+}
+
+/// z = r / D on red nodes (a + b even), (r + what neighbours pull) / D on black ones. What then is left is on red nodes only:
+/// what their neighbours pull. It goes to the coarse grid. A line's black ends are first 0: the next lines read them, maybe
+/// before they are known, and nobody knows what z was.
+void smooth_down(Level& level, const Vectors& r, Vectors& z) {
+  const FivePoint& A = level.A;
+  level.r.setZero();
+  const auto red = [&](int b) {
+    with_line(A, b, [&](const auto& line) {
+      for (int a = b % 2; a < A.nu; a += 2) store(z.data() + line.begin + 3 * a, line.nodes[a].inverse * line.at(r.data(), a));
+      for (const int end : {0, A.nu - 1})
+        if ((end + b) % 2 == 1) store(z.data() + line.begin + 3 * end, Lanes::Zero());
+    });
+    return Lanes(Lanes::Zero());
+  };
+  const auto black = [&](int b) {
+    with_line(A, b, [&](const auto& line) {
+      for (int a = 1 - b % 2; a < A.nu; a += 2)
+        store(z.data() + line.begin + 3 * a, line.nodes[a].inverse * (line.at(r.data(), a) + line.around(z.data(), a)));
+    });
+    return Lanes(Lanes::Zero());
+  };
+  const Eigen::Index next = 3 * static_cast<Eigen::Index>(level.u.coarse());
+  const auto restricted = [&](int b) {
+    with_line(A, b, [&](const auto& line) {
+      Lanes carried = Lanes::Zero();  // to the next coarse particle, which would wait if it were stored and loaded again
+      double* pending = nullptr;
+      const auto add = [&](auto in_v, double* to, const Lanes& part) {
+        store(to, load(to) + part);
+        if (in_v) store(to + next, load(to + next) + part);
+      };
+      each_red(level, b, [&](int a, Eigen::Index coarse, auto in_u, auto in_v) {
+        double* const to = level.r.data() + coarse;
+        const Lanes part = (in_u ? 0.5 : 1) * (in_v ? 0.5 : 1) * line.around(z.data(), a);
+        add(in_v, to, in_u ? Lanes(part + carried) : part);
+        if (!in_u) return;
+        carried = part;
+        pending = to + 3;
+      });
+      if (pending != nullptr) add(level.v.between(b), pending, carried);
+    });
+    return Lanes(Lanes::Zero());
+  };
+  sweep(A, red, black, restricted);
+}
+
+/// Adds the coarse correction on the red nodes, for black ones depend on these only; then black and red. Returns <r, z>.
+double smooth_up(Level& level, const Vectors& r, Vectors& z) {
+  const FivePoint& A = level.A;
+  const Eigen::Index next = 3 * static_cast<Eigen::Index>(level.u.coarse());
+  const auto corrected = [&](int b) {
+    with_line(A, b, [&](const auto& line) {
+      each_red(level, b, [&](int a, Eigen::Index coarse, auto in_u, auto in_v) {
+        const double* const from = level.z.data() + coarse;
+        Lanes part = load(from);
+        if (in_u) part += load(from + 3);
+        if (in_v) part += load(from + next);
+        if (in_u && in_v) part += load(from + next + 3);
+        store(z.data() + line.begin + 3 * a, line.at(z.data(), a) + (in_u ? 0.5 : 1) * (in_v ? 0.5 : 1) * part);
+      });
+    });
+    return Lanes(Lanes::Zero());
+  };
+  const auto smoothed = [&](int b, int first) {
+    Lanes rz = Lanes::Zero();
+    with_line(A, b, [&](const auto& line) {
+      for (int a = first; a < A.nu; a += 2) {
+        const Lanes residual = line.at(r.data(), a);
+        const Lanes value = line.nodes[a].inverse * (residual + line.around(z.data(), a));
+        rz += residual * value;
+        store(z.data() + line.begin + 3 * a, value);
+      }
+    });
+    return rz;
+  };
+  const Lanes rz = sweep(
+      A, corrected, [&](int b) { return smoothed(b, 1 - b % 2); }, [&](int b) { return smoothed(b, b % 2); });
+  return sum(rz);
+}
+
+/// One V(1,1) cycle on a grid, with Gauss–Seidel by colours; black before red on the way up makes it symmetric. Each way takes
+/// one pass over memory. Matrices that are no five-point star of a grid are left to modified incomplete Cholesky.
+class Multigrid : public Preconditioner {
+ public:
+  void analyze(const SparseMatrix&) override {}
+  Outcome factor(const SparseMatrix& A) override;
+  double apply(const Vectors& r, Vectors& z) override { return cycle(0, r, z); }
+  bool exact() const override { return levels_.empty() && coarsest_->exact(); }
+  std::string_view name() const override { return levels_.empty() ? coarsest_->name() : "multigrid"; }
+  std::int64_t bytes() const override;
+
+ private:
+  double cycle(std::size_t k, const Vectors& r, Vectors& z);
+
+  static constexpr int few = 1000;  ///< particles that are better solved for directly
+
+  std::vector<Level> levels_;
+  std::unique_ptr<Preconditioner> coarsest_;
+  std::vector<int> coarsest_pins_;
+};
+
+bool has_springs(const FivePoint& A) {
+  return std::ranges::all_of(A.nodes, [](const FivePoint::Node& n) {
+    return n.diagonal > 0 && n.left >= 0 && n.right >= 0 && n.down >= 0 && n.up >= 0;
+  });
+}
+
+Outcome Multigrid::factor(const SparseMatrix& A) {
+  levels_.clear();
+  SparseMatrix coarsest = A;
+  coarsest_ = make_cholesky();
+  if (A.rows() > few) {
+    std::optional<FivePoint> star = five_point(A);
+    if (star && has_springs(*star)) {
+      while (star->particles() > few) {
+        CoarseGrid coarse(*star);
+        const Vectors zero = Vectors::Zero(coarse.A.particles() + 1, 3);
+        levels_.push_back({std::move(*star), coarse.u, coarse.v, zero, zero});
+        star = std::move(coarse.A);
+      }
+      coarsest = sparse(*star);
+      coarsest_pins_.clear();
+      for (int i = 0; i < star->particles(); ++i)
+        if (star->node(i).inverse == 0) coarsest_pins_.push_back(i);
+    } else {
+      coarsest_ = make_modified_incomplete_cholesky();
+    }
+  }
+  coarsest_->analyze(coarsest);
+  return coarsest_->factor(coarsest);
+}
+
+double Multigrid::cycle(std::size_t k, const Vectors& r, Vectors& z) {
+  if (k == levels_.size()) return coarsest_->apply(r, z);
+  Level& level = levels_[k];
+  smooth_down(level, r, z);
+  if (k + 1 == levels_.size())
+    for (const int i : coarsest_pins_) level.r.row(i).setZero();
+  cycle(k + 1, level.r, level.z);
+  return smooth_up(level, r, z);
+}
+
+std::int64_t Multigrid::bytes() const {
+  std::int64_t bytes = coarsest_->bytes();
+  for (const Level& level : levels_)
+    bytes += 2 * level.A.bytes() + vector_bytes(level.A.particles(), 5) + vector_bytes(level.r.rows(), 4);
+  return bytes;
+}
+
+}  // namespace
+
+std::unique_ptr<Preconditioner> make_multigrid() { return std::make_unique<Multigrid>(); }
+
+}  // namespace drape::solver

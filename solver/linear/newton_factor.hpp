@@ -1,0 +1,31 @@
+#pragma once
+
+#include <memory>
+
+#include "solver/counters.hpp"
+#include "solver/outcome.hpp"
+#include "solver/state.hpp"
+
+namespace drape::solver {
+
+/// The complete factor of a Newton matrix.
+class NewtonFactor {
+ public:
+  /// Registers its counter.
+  explicit NewtonFactor(Work& work);
+  ~NewtonFactor();
+
+  /// J: the upper triangle, 3N × 3N, with the pattern of the first call.
+  Outcome factor(const SparseMatrix& J);
+
+  /// d = J⁻¹ r; both N × 3.
+  void solve(const Vectors& r, Vectors& d);
+
+ private:
+  class Factor;
+
+  std::unique_ptr<Factor> factor_;
+  std::int64_t& factorizations_;
+};
+
+}  // namespace drape::solver

@@ -1,0 +1,90 @@
+#include "solver/stage/anderson.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace drape::solver {
+namespace {
+
+/// Part of the diagonal that is added to the normal equations: below it differences are parallel.
+constexpr double ridge = 1e-13;
+
+/// What counts as the response to a change before any was seen.
+constexpr double unknown_response = 0.05;
+
+}  // namespace
+
+Anderson::Anderson(Eigen::Index particles)
+    : v_(3 * particles), d_(3 * particles), dd_(3 * particles, depth), dg_(3 * particles, depth) {}
+
+void Anderson::begin() {
+  follows_ = false;
+  for (int i = 0; i < kept(); ++i) serves_[i] = serves_[i] && response(i) >= lasting_response;
+}
+
+/// Takes the differences from the last iterate, if this one follows it, and makes this one the last.
+void Anderson::remember(const Vectors& v, const Vectors& d) {
+  if (follows_) {
+    add_pair(v.data(), d.data());
+    return;
+  }
+  std::copy_n(v.data(), v_.size(), v_.data());
+  std::copy_n(d.data(), d_.size(), d_.data());
+  follows_ = true;
+}
+
+/// The differences take the place of the oldest.
+void Anderson::add_pair(const double* v, const double* d) {
+  const int slot = pairs_++ % depth, count = kept();
+  double *const dd = dd_.col(slot).data(), *const dg = dg_.col(slot).data();
+  double *const last_v = v_.data(), *const last_d = d_.data();
+  const Eigen::Index n = v_.size();
+  double squares = 0;
+#pragma omp simd reduction(+ : squares)
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double dv = v[i] - last_v[i];
+    dd[i] = d[i] - last_d[i];
+    dg[i] = dd[i] + dv;
+    squares += dv * dv;
+    last_v[i] = v[i];
+    last_d[i] = d[i];
+  }
+  lengths_[slot] = std::sqrt(squares);
+  serves_[slot] = true;
+  gram_.col(slot).head(count).noalias() = dd_.leftCols(count).transpose() * dd_.col(slot);
+  gram_.row(slot).head(count) = gram_.col(slot).head(count).transpose();
+}
+
+double Anderson::weakest() const {
+  if (kept() < 1) return unknown_response;
+  double weakest = 1;
+  for (int i = 0; i < kept(); ++i) weakest = std::min(weakest, response(i));
+  return weakest;
+}
+
+/// Those of the normal equations of min |d − Σ w_i Δd_i|, with columns of length one.
+Anderson::Small Anderson::weights() const {
+  const int count = kept();
+  Small scale = gram_.diagonal().head(count).cwiseMax(std::numeric_limits<double>::min()).cwiseSqrt().cwiseInverse();
+  for (int i = 0; i < count; ++i)
+    if (!serves_[i]) scale[i] = 0;
+  Gram normal = Gram::Identity();
+  normal.topLeftCorner(count, count) = scale.asDiagonal() * gram_.topLeftCorner(count, count) * scale.asDiagonal();
+  normal.diagonal().array() += ridge;
+  Eigen::Matrix<double, depth, 1> right = Eigen::Matrix<double, depth, 1>::Zero();
+  right.head(count) = scale.cwiseProduct(projections_.head(count));
+  return scale.cwiseProduct(normal.ldlt().solve(right).head(count));
+}
+
+void Anderson::advance(Vectors& v, Vectors& d) {
+  remember(v, d);
+  if (const int count = kept(); count > 0) {
+    Eigen::Map<Eigen::VectorXd> flat_d(d.data(), d.size());
+    projections_.head(count).noalias() = dd_.leftCols(count).transpose() * d_;
+    flat_d.noalias() -= dg_.leftCols(count) * weights();
+  }
+  v += d;
+}
+
+}  // namespace drape::solver

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "solver/options.hpp"
+#include "solver/stage/newton_system.hpp"
+#include "solver/stage/stage_system.hpp"
+
+namespace drape::solver {
+
+/// Newton's method with a new matrix for every update, of which only a part is made where the whole leads too far: slow but
+/// hard to stop.
+///
+/// Along an update d the slope r(v + α d)·d falls from r(v)·d > 0; α is where little of it is left. If forces have a potential,
+/// that is downhill in the energy whose minimum solves the stage, to near the lowest point along d; no energy is evaluated.
+class NewtonSearch {
+ public:
+  NewtonSearch(const SplitOde& ode, const Options& options, StageSystem& system);
+
+  /// Goes on from y.v; guess: where the stage began. Adds to the result's updates and sets its outcome. `newton`: of all
+  /// forces.
+  void solve(const Stage& stage, const Vectors& guess, NewtonSystem& newton, State& y, StageResult& result);
+
+ private:
+  void evaluate(const Stage& stage, State& y);
+  double slope() const;
+  bool follow(const Stage& stage, State& y);
+
+  const Options& options_;
+  StageSystem& system_;
+  Vectors from_, d_;
+  LinearWork work_;
+  std::int64_t& stages_;
+};
+
+}  // namespace drape::solver

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <memory>
+
+#include "solver/stage/stage_system.hpp"
+
+namespace drape::solver {
+
+class AcceleratedLoop;
+
+/// Solves stages in the way the options say. All calls take the state with a first guess of v; its prescribed velocities are
+/// set here.
+class StageSolver {
+ public:
+  /// `contacts`: the response to contacts, null if there are no obstacles.
+  StageSolver(const SplitOde& ode, const Options& options, ContactResponse* contacts = nullptr);
+  ~StageSolver();
+
+  /// The stage with f = K x + D v + f̂ and given f̂: one linear system   [Etzmuß 2002, (3.23), (3.30)], and one more
+  /// whenever contacts change.
+  StageResult solve_linear(const Stage& stage, const Vectors& f_explicit, State& y);
+
+  /// The whole stage, either accelerated, unless something is touched, or by the fixed-point loop: a simplified Newton method
+  /// with A for the Jacobian [Etzmuß 2002, (3.33)–(3.36), Alg. 6]. There the guess counts as a solution only if its own
+  /// residual passes the test of CG.
+  StageResult solve(const Stage& stage, State& y);
+
+  /// Whether the next stage is accelerated.
+  bool accelerates() const { return accelerated_ && !system_.touches(); }
+
+  /// What a change `r` of γ f would have changed in v at the last linear stage; its linear system counts.
+  const Vectors& respond(const Vectors& r, StageResult& result);
+
+ private:
+  StageResult solve(const Stage& stage, const Vectors* f_explicit, State& y);
+
+  const SplitOde& ode_;
+  const Options options_;
+  StageSystem system_;
+  std::unique_ptr<AcceleratedLoop> accelerated_;  ///< if the options ask for it
+  LinearWork work_;
+};
+
+}  // namespace drape::solver

@@ -1,0 +1,165 @@
+#include "solver/stage/stage_system.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <vector>
+
+#include "solver/linear/kernels.hpp"
+
+namespace drape::solver {
+namespace {
+
+/// What is left of a row of a compressed matrix.
+class Row {
+ public:
+  Row(const SparseMatrix& B, int i) {
+    if (B.nonZeros() == 0) return;
+    next_ = B.innerIndexPtr() + B.outerIndexPtr()[i];
+    end_ = B.innerIndexPtr() + B.outerIndexPtr()[i + 1];
+    value_ = B.valuePtr() + B.outerIndexPtr()[i];
+  }
+
+  int column(int none) const { return next_ == end_ ? none : *next_; }
+
+  /// The entry in this column, if it is the next one, else 0.
+  double take(int column) {
+    if (next_ == end_ || *next_ != column) return 0;
+    ++next_;
+    return *value_++;
+  }
+
+ private:
+  const int *next_ = nullptr, *end_ = nullptr;
+  const double* value_ = nullptr;
+};
+
+auto array(const std::vector<double>& values) { return Eigen::ArrayXd::Map(values.data(), std::ssize(values)); }
+
+auto flat(const Vectors& a) { return Eigen::ArrayXd::Map(a.data(), a.size()); }
+auto flat(Vectors& a) { return Eigen::ArrayXd::Map(a.data(), a.size()); }
+
+}  // namespace
+
+/// M, K and D merged row by row, without what couples particles that are pinned in all directions. On small sheets assembly
+/// by triplets and look-ups cost as much as some steps.
+struct StageSystem::Merged {
+  explicit Merged(const SplitOde& ode) : n(ode.particles()) {
+    std::vector<bool> gone(n, false);
+    for (const Pin& pin : ode.pins) gone[pin.particle] = pin.all();
+    for (int i = 0; i < n; ++i) {
+      Row k_i(ode.stiffness, i), d_i(ode.damping, i);
+      for (int own = i;;) {
+        const int j = std::min({own, k_i.column(n), d_i.column(n)});
+        if (j == n) break;
+        const double k_ij = k_i.take(j), d_ij = d_i.take(j);
+        if (j == own) own = n;
+        if (j == i || (!gone[i] && !gone[j])) add(j, j == i ? ode.mass[i] : 0, k_ij, d_ij);
+      }
+      start.push_back(static_cast<int>(column.size()));
+    }
+  }
+
+  void add(int j, double m_ij, double k_ij, double d_ij) {
+    column.push_back(j);
+    m.push_back(m_ij);
+    k.push_back(k_ij);
+    d.push_back(d_ij);
+  }
+
+  SparseMatrix pattern() const {
+    return Eigen::Map<const SparseMatrix>(n, n, start.back(), start.data(), column.data(), m.data());
+  }
+
+  int n;
+  std::vector<int> start{0}, column;
+  std::vector<double> m, k, d;  // aligned with the columns
+};
+
+StageSystem::StageSystem(const SplitOde& ode, const Options& options, ContactResponse* contacts)
+    : StageSystem(ode, Merged(ode), options, contacts) {}
+
+StageSystem::StageSystem(const SplitOde& ode, const Merged& merged, const Options& options, ContactResponse* contacts)
+    : ode_(ode),
+      contacts_(contacts),
+      pinned_(Filter::partial(ode.pins)),
+      cg_(options.linear_solver->make(), options.max_cg_iterations, *ode.work),
+      A_(merged.pattern()),
+      mass_(array(merged.m)),
+      stiffness_(array(merged.k)),
+      damping_(array(merged.d)),
+      momentum_(thrice(ode.mass)),
+      spring_(thrice(ode.stiffness.diagonal())),
+      work_(*ode.work) {
+  cg_.analyze(A_);
+  for (Vectors* field : {&r_, &d_, &q_}) field->setZero(ode.particles(), 3);
+  work_.entries = A_.nonZeros();
+}
+
+Outcome StageSystem::prepare(double gamma, double different) {
+  if (std::abs(gamma - gamma_) <= different * gamma_) return Outcome::success;
+  gamma_ = gamma;
+  ++work_.builds;
+  Eigen::Map<Eigen::ArrayXd>(A_.valuePtr(), A_.nonZeros()) = mass_ - gamma * gamma * stiffness_ - gamma * damping_;
+  const Outcome outcome = cg_.factor(A_);
+  if (outcome != Outcome::success) gamma_ = 0;
+  return outcome;
+}
+
+double StageSystem::noise(const State& y, double gamma) const {
+  const double underflow = std::sqrt(std::numeric_limits<double>::min());  // squares of what is smaller vanish
+  return round_off(gamma * (spring_ * flat(y.x)).matrix().norm()) + underflow;
+}
+
+/// At rest b vanishes like r does, but for its noise, which a relative test alone would never get below.
+StageSystem::Scale StageSystem::scale(const State& y, double gamma) {
+  multiply(A_, y.v, q_);
+  ++work_.products;
+  work_.bytes += multiply_bytes(A_) + vector_bytes(A_.rows(), 3);
+  q_ += r_;
+  filter(ode_.pins, q_);
+  filtered()(q_);
+  return {q_.norm(), noise(y, gamma)};
+}
+
+void StageSystem::evaluate(const Stage& stage, const Vectors* f_explicit, State& y) {
+  y.x = stage.ax + stage.gamma * y.v;
+  if (touches()) contacts_->impose(stage, y);
+  if (f_explicit == nullptr) {
+    ode_.force(stage.t, y.x, y.v, r_);
+  } else {
+    multiply(ode_.stiffness, y.x, r_);
+    ++work_.products;
+    work_.bytes += multiply_bytes(ode_.stiffness) + vector_bytes(A_.rows(), 8);
+    if (ode_.damping.nonZeros() > 0) {
+      multiply(ode_.damping, y.v, q_);
+      r_ += q_;
+      ++work_.products;
+      work_.bytes += multiply_bytes(ode_.damping) + vector_bytes(A_.rows(), 3);
+    }
+    r_ += *f_explicit;
+  }
+  flat(r_) = momentum_ * (flat(stage.av) - flat(y.v)) + stage.gamma * flat(r_);
+}
+
+bool StageSystem::adapt_contacts(const Stage& stage, const Vectors* f_explicit, State& y, double noise, bool settled) {
+  const bool changed = contacts_->update(stage, y, r_, noise, settled);
+  if (changed) evaluate(stage, f_explicit, y);
+  return changed;
+}
+
+LinearResult StageSystem::respond(const Vectors& r, double tolerance) {
+  r_ = r;
+  filter(ode_.pins, r_);
+  filtered()(r_);
+  return correct(tolerance * r_.norm());
+}
+
+void StageSystem::filter_residual(double gamma) {
+  if (touches()) contacts_->add_friction(gamma, r_);
+  filter(ode_.pins, r_);
+  filtered()(r_);
+}
+
+}  // namespace drape::solver

@@ -1,0 +1,94 @@
+#pragma once
+
+#include <algorithm>
+#include <limits>
+
+#include "solver/contact/contact_response.hpp"
+#include "solver/linear/conjugate_gradients.hpp"
+#include "solver/options.hpp"
+#include "solver/stage.hpp"
+
+namespace drape::solver {
+
+struct StageResult {
+  Outcome outcome = Outcome::success;
+  int updates = 0;  ///< linear systems solved
+  int cg_iterations = 0;
+};
+
+/// The equation of a stage as r(v) = M (av − v) + γ f = 0, with the constant matrix A = M − γ² K − γ D to correct v by; A is
+/// rebuilt only when γ changes.
+///
+/// Particles that are pinned in all three directions have no entries in A but their diagonal. No call but the constructor
+/// allocates.
+class StageSystem {
+ public:
+  StageSystem(const SplitOde& ode, const Options& options, ContactResponse* contacts);
+
+  /// Makes A for this γ, unless the one there is is for a γ that differs by less than this part.
+  Outcome prepare(double gamma, double different = 1e-12);
+
+  /// The γ [s] that A is for.
+  double gamma() const { return gamma_; }
+
+  /// Sets x = ax + γ v, imposes contacts and sets r in all coordinates; f = K x + D v + f̂ if f̂ is given.
+  void evaluate(const Stage& stage, const Vectors* f_explicit, State& y);
+
+  /// Lets contacts adapt to y and r; true if they changed, with y and r evaluated anew. `noise`, `settled`: as
+  /// ContactResponse::update has them.
+  bool adapt_contacts(const Stage& stage, const Vectors* f_explicit, State& y, double noise, bool settled);
+
+  /// Adds friction to r and removes what pins and constraints bear.
+  void filter_residual(double gamma);
+
+  /// A d = r, to |A d − r| ≤ target; r is lost.
+  LinearResult correct(double target) { return cg_.solve(A_, filtered(), r_, d_, target); }
+
+  /// z ≈ A⁻¹ r in the directions that pins leave free, for an r that lies in them. Returns <r, z>.
+  double precondition(const Vectors& r, Vectors& z) { return cg_.precondition(pinned_, r, z); }
+
+  /// What |r| is compared with: |b| = |r + A v|, and the round-off below which no residual falls.
+  struct Scale {
+    double b, round_off;
+    double target(double tolerance) const { return std::max(tolerance * b, round_off); }
+  };
+  Scale scale(const State& y, double gamma);
+
+  /// Below this no |r| falls: the round-off of differences of positions times spring constants [N s].
+  double noise(const State& y, double gamma) const;
+
+  /// Round-off of a sum of terms of this size.
+  static double round_off(double size) { return 8 * std::numeric_limits<double>::epsilon() * size; }
+
+  /// Error of v [m/s] that may be left in a stage that began with this guess: a part of the error of the time step, which the
+  /// distance between the two tells, but no less than round-off.
+  static double allowed_error(const Stage& stage, const Vectors& guess, const State& y) {
+    return std::max(round_off(y.x.norm()) / stage.gamma, stage.accuracy * (y.v - guess).norm());
+  }
+
+  /// A d = r for another r; what pins and constraints bear of it does not count.
+  LinearResult respond(const Vectors& r, double tolerance);
+
+  bool touches() const { return contacts_ != nullptr && !contacts_->empty(); }
+  const Vectors& residual() const { return r_; }
+  Vectors& correction() { return d_; }
+
+ private:
+  struct Merged;
+  StageSystem(const SplitOde& ode, const Merged& merged, const Options& options, ContactResponse* contacts);
+
+  const Filter& filtered() const { return touches() ? contacts_->filter() : pinned_; }
+
+  const SplitOde& ode_;
+  ContactResponse* const contacts_;
+  const Filter pinned_;  ///< partially pinned particles
+  ConjugateGradients cg_;
+  SparseMatrix A_;
+  Eigen::ArrayXd mass_, stiffness_, damping_;  // each aligned with the entries of A
+  Eigen::ArrayXd momentum_, spring_;           // mass and diagonal of K, each thrice a particle, as coordinates lie in memory
+  double gamma_ = 0;
+  Vectors r_, d_, q_;
+  LinearWork work_;
+};
+
+}  // namespace drape::solver

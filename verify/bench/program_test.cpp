@@ -1,0 +1,276 @@
+// bench_integrators beside its runs: names, help, progress, studies.
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <set>
+
+#include "solver/methods.hpp"
+#include "verify/support/bench_integrators.hpp"
+
+namespace drape::verify::program_test {
+namespace {
+
+using testing::AllOf;
+using testing::Contains;
+using testing::Each;
+using testing::EndsWith;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::IsSupersetOf;
+using testing::MatchesRegex;
+using testing::Not;
+using testing::SizeIs;
+using testing::StartsWith;
+
+const Words of_the_thesis{"imex-euler", "implicit-euler", "sbdf2", "bdf2", "midpoint", "imex-midpoint", "verlet"};
+const Words others{"tr-bdf2", "esdirk3", "esdirk4", "bdf3", "bdf4", "bdf5"};
+
+/// All that the table has: those, and whatever was added.
+Words all_methods() {
+  Words names;
+  for (const solver::Method& method : solver::methods()) names.emplace_back(method.name);
+  return names;
+}
+const Words methods = all_methods();
+
+// --- Names ---------------------------------------------------------------------------------------------------------------
+
+TEST(ProgramList, HasTheNamesThatOtherProgramsRelyOn) {
+  const BenchIntegrators program;
+  EXPECT_THAT(methods, IsSupersetOf(of_the_thesis + others));
+  EXPECT_EQ(program.output({"list", "methods"}), joined(methods, "\n") + "\n");
+  EXPECT_THAT(lines(program.output({"list", "scenes"})),
+              AllOf(IsSupersetOf({"hung-edge", "hung-corners"}), Each(MatchesRegex("[a-z_-]+"))));
+  EXPECT_THAT(lines(program.output({"list", "studies"})), AllOf(Contains("hung-sheets"), Each(MatchesRegex("[a-z0-9.-]+"))));
+}
+
+TEST(ProgramList, DescribesTheNamesOfAllKinds) {
+  const BenchIntegrators program;
+  const Words all = lines(program.output({"list"}));
+  for (const std::string kind : {"scenes", "methods", "studies"}) {
+    EXPECT_THAT(all, Contains(kind + ":"));
+    for (const std::string& name : lines(program.output({"list", kind})))
+      EXPECT_THAT(all, Contains(MatchesRegex("  " + name + "  +[^ ].+")));
+  }
+}
+
+TEST(ProgramList, HasOnlyWhatRuns) {
+  const BenchIntegrators program;
+  for (const std::string& scene : lines(program.output({"list", "scenes"}))) {
+    const Words command{"run",      "--scene", scene,     "--method", joined(of_the_thesis, ","),
+                        "--step",   "0.001",   "--until", "0.001",    "--no-reference",
+                        "--format", "csv"};
+    EXPECT_THAT(parse_csv(program.output(command)),
+                AllOf(SizeIs(of_the_thesis.size()), Each(Contains(Row::value_type("outcome", "success")))));
+  }
+}
+
+// --- Help ----------------------------------------------------------------------------------------------------------------
+
+void expect_all_in(const std::string& text, const Words& parts) {
+  for (const std::string& part : parts) EXPECT_THAT(text, HasSubstr(part));
+}
+
+TEST(ProgramHelp, OfTheProgramLeadsToItsSubcommands) {
+  const BenchIntegrators program;
+  expect_all_in(program.output({"--help"}), {"Without arguments", "\n  list ", "\n  run ", "\n  study ", "\n  inspect ",
+                                             "\n  compare ", "bench_integrators run --help"});
+}
+
+TEST(ProgramHelp, OfRunHasEveryOptionAndAllThatThereIsToChooseFrom) {
+  const BenchIntegrators program;
+  const std::string help = program.output({"run", "--help"});
+  expect_all_in(help, {"--scene NAME|FILE.toml", "--method A,B", "--step H1,H2", "--until T", "--set key=value", "--repeat R",
+                       "--out FILE.h5", "--format table|csv|json", "--no-reference", "--trajectory every=SECONDS",
+                       "--loop-tolerance", "--cg-tolerance", "--max-updates", "--verlet-fraction", "--control MIN MAX",
+                       "--resume", "--time-limit SECONDS", "--memory-limit MB"});
+  expect_all_in(help,
+                lines(program.output({"list", "scenes"})) + methods + Words{"ic0", "mic0", "cholesky", "multigrid", "auto"});
+  expect_all_in(help, {"grid.n", "material.tension", "material.damping", "material.shear", "material.bend"});
+}
+
+TEST(ProgramHelp, OfTheOthersSaysWhatTheyTake) {
+  const BenchIntegrators program;
+  expect_all_in(program.output({"study", "--help"}),
+                {"study [OPTIONS] NAME", "--quick", "--repeat R", "--out FILE.h5", "--format table|csv|json", "hung-sheets"});
+  expect_all_in(program.output({"list", "--help"}), {"list [OPTIONS] [KIND]", "scenes, methods or studies"});
+}
+
+/// All that reads like help, wherever it is printed.
+std::map<std::string, std::string> helps(const BenchIntegrators& program) {
+  std::map<std::string, std::string> texts{{"list", program.output({"list"})}, {"", program.output({"--help"})}};
+  for (const std::string command : {"list", "run", "study", "inspect", "compare", "check", "report", "export", "score"})
+    texts[command + " --help"] = program.output({command, "--help"});
+  return texts;
+}
+
+std::size_t columns(const std::string& line) {
+  return static_cast<std::size_t>(std::ranges::count_if(line, [](char c) { return (c & 0xC0) != 0x80; }));
+}
+
+TEST(ProgramHelp, FitsATerminalOf80Columns) {
+  for (const auto& [command, text] : helps(BenchIntegrators()))
+    for (const std::string& line : lines(text)) EXPECT_LE(columns(line), 80u) << command << ": " << line;
+}
+
+TEST(ProgramVersion, IsTheProjectsWithItsCommit) {
+  EXPECT_THAT(BenchIntegrators().output({"--version"}), MatchesRegex("drape [0-9.]+ \\(([0-9a-f]+(-dirty)?|unknown)\\)\n"));
+}
+
+std::string with_name(std::string text, const std::string& name) {
+  const std::string usual = "bench_integrators";
+  for (auto at = text.find(usual); at != std::string::npos; at = text.find(usual, at)) text.replace(at, usual.size(), name);
+  return text;
+}
+
+std::string source_file(const std::string& path) {
+  std::ifstream file(std::filesystem::path(DRAPE_SOURCE_DIR) / path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+TEST(BenchRun, HasTheHelpOfTheProgramBeforeItIsBuilt) {
+  const BenchIntegrators program;
+  EXPECT_EQ(source_file("bench/commands/help.txt"), with_name(program.output({"--help"}), "bench/run"))
+      << "bench/run --help >bench/commands/help.txt";
+  EXPECT_EQ(source_file("bench/commands/list.txt"), program.output({"list"})) << "bench/run list >bench/commands/list.txt";
+}
+
+TEST(BenchRun, AnswersBeforeAnythingIsInstalledOrBuilt) {
+  const BenchIntegrators program;
+  const std::filesystem::path tree = program.folder() / "tree";
+  for (const std::string file :
+       {".ci/prepare.sh", "bench/run", "bench/commands/help.txt", "bench/commands/list.txt", "CMakeLists.txt"}) {
+    std::filesystem::create_directories((tree / file).parent_path());
+    std::filesystem::copy_file(std::filesystem::path(DRAPE_SOURCE_DIR) / file, tree / file);
+  }
+  const auto said = [&](const Words& arguments) {
+    Command command = program.command(Words{(tree / "bench/run").string()} + arguments);
+    command.program = "/bin/bash";
+    const ProgramResult result = run_program(command);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return result.out;
+  };
+  EXPECT_EQ(said({"--help"}), source_file("bench/commands/help.txt"));
+  EXPECT_EQ(said({"list"}), source_file("bench/commands/list.txt"));
+  for (const std::string kind : {"scenes", "methods", "studies"})
+    EXPECT_EQ(said({"list", kind}), program.output({"list", kind}));
+  EXPECT_THAT(said({"--version"}), StartsWith("drape "));
+  EXPECT_FALSE(std::filesystem::exists(tree / "build"));
+}
+
+// --- Progress ------------------------------------------------------------------------------------------------------------
+
+const std::string erase_line = "\r\033[K";
+constexpr int terminated = 128 + SIGTERM;
+
+TEST(ProgramProgress, IsALineOnTheTerminalWithTheTimeLeft) {
+  const BenchIntegrators program;
+  const Words command{"run",    "--scene", "hung-edge", "--set", "grid.n=5", "--method", "bdf2",
+                      "--step", "0.01",    "--until",   "0.05",  "--format", "csv"};
+  const unsigned short columns = 50;
+  const ProgramResult result = run_on_terminal(program.command(command), columns);
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_THAT(result.err, AllOf(HasSubstr("0/5"), HasSubstr("5/5  0:00 left"), EndsWith(erase_line), Not(HasSubstr("\n"))));
+  EXPECT_THAT(split(result.err, '\r'), Each(SizeIs(testing::Lt(columns + erase_line.size() - 1)))) << "wraps";
+  EXPECT_THAT(parse_csv(result.out), SizeIs(1));
+}
+
+TEST(Program, WithoutArgumentsDoesTheMainJob) {
+  const BenchIntegrators program;
+  const ProgramResult result = run_on_terminal(program.command({}), 120, "damping=50");
+  EXPECT_EQ(result.exit_code, terminated);
+  EXPECT_THAT(result.err,
+              AllOf(StartsWith(erase_line + "["), HasSubstr("hung-edge imex-euler/ic0 h = 0.01 material.damping=50")));
+  for (const auto& [name, content] : program.files())
+    EXPECT_THAT(name, testing::AnyOf(HasSubstr("-motions-"), EndsWith("/"), EndsWith(".journal"))) << "half-written";
+}
+
+// --- A scene in which nothing moves ----------------------------------------------------------------------------------------
+
+TEST(ProgramRun, SaysWhereNothingMoves) {
+  const BenchIntegrators program;
+  program.write("still.toml", "grid.n = 4\nend.time = 0.1\n");
+  const Words command{"run", "--scene", "still.toml", "--method", "bdf2", "--step", "0.05", "--no-reference"};
+  const ProgramResult result = program.run(command + Words{"--out", "still.h5"});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_THAT(lines(result.err), testing::ElementsAre(AllOf(HasSubstr("still"), HasSubstr("nothing moves"))));
+  EXPECT_THAT(program.output({"inspect", "still.h5", "--run", "0"}), HasSubstr("nothing moves"));
+  const ProgramResult falling = program.run(command + Words{"--set", "forces.gravity=[0, 0, -9.81]"});
+  EXPECT_EQ(falling.err, "");
+}
+
+// --- Studies -------------------------------------------------------------------------------------------------------------
+
+TEST(ProgramStudy, HungSheetsComparesAllMethodsOnFourSheets) {
+  const BenchIntegrators program;
+  const Words command{"study", "hung-sheets", "--quick", "--repeat", "1", "--out", "a.h5", "--format", "csv"};
+  const std::vector<Row> rows = parse_csv(program.output(command));
+  EXPECT_THAT(rows, SizeIs(4 * (6 + methods.size())));
+  std::set<std::string> runs, expected;
+  for (const Row& row : rows) {
+    runs.insert(row.at("scene") + " " + row.at("set") + " " + row.at("method"));
+    EXPECT_THAT(row, IsSupersetOf<Row::value_type>({{"outcome", "success"}, {"step", "0.01"}, {"steps", "10"}}));
+    EXPECT_THAT(row.at("error_rms"), Not(IsEmpty()));
+  }
+  for (const std::string sheet : {"hung-edge material.damping=50 ", "hung-edge material.damping=0.5 ",
+                                  "hung-corners material.damping=50 ", "hung-corners material.damping=0.5 "}) {
+    for (const std::string method : {"imex-euler/ic0", "implicit-euler/fixed-point/ic0", "sbdf2/ic0", "bdf2/fixed-point/ic0",
+                                     "midpoint/fixed-point/ic0", "imex-midpoint/ic0"})
+      expected.insert(sheet + method);
+    for (const std::string& method : methods) expected.insert(sheet + method);
+  }
+  EXPECT_EQ(runs, expected);
+  EXPECT_THAT(program.files(), SizeIs(1));
+}
+
+TEST(ProgramStudy, TakesTheMethodsThatAreNamed) {
+  const BenchIntegrators program;
+  const Words sheets{"study", "hung-sheets", "--quick", "--repeat", "1", "--format", "csv", "--method", "bdf2,sbdf2"};
+  const std::vector<Row> rows = parse_csv(program.output(sheets));
+  EXPECT_THAT(rows, SizeIs(4 * 4));
+  for (const Row& row : rows) EXPECT_THAT(row.at("method"), testing::AnyOf(StartsWith("bdf2"), StartsWith("sbdf2")));
+
+  const Words modes{"study", "modes", "--quick", "--out", "modes.h5", "--method", "esdirk3"};
+  program.output(modes);
+  for (const Row& row : parse_csv(program.output({"inspect", "modes.h5", "--table", "artificial", "--csv"})))
+    EXPECT_EQ(row.at("method"), "esdirk3");
+  EXPECT_THAT(program.output({"inspect", "modes.h5"}), HasSubstr("--method esdirk3"));
+  EXPECT_EQ(program.run(modes + Words{"--resume"}).exit_code, 0);
+  EXPECT_THAT(program.run({"study", "modes", "--quick", "--out", "modes.h5", "--resume", "--method", "esdirk4"}).err,
+              HasSubstr("something else"));
+  EXPECT_THAT(program.run({"study", "modes", "--quick", "--method", "esdirk9"}).err, HasSubstr("unknown method 'esdirk9'"));
+  EXPECT_THAT(program.run({"study", "table-3.1", "--quick", "--method", "bdf2"}).err, HasSubstr("has methods of its own"));
+}
+
+TEST(ProgramInspect, FindsTablesByTheBeginningOfTheirNames) {
+  const BenchIntegrators program;
+  program.output({"study", "modes", "--quick", "--out", "modes.h5", "--method", "bdf2"});
+  const std::string whole = program.output({"inspect", "modes.h5", "--table", "amplification"});
+  EXPECT_EQ(program.output({"inspect", "modes.h5", "--table", "amp"}), whole);
+  EXPECT_THAT(program.run({"inspect", "modes.h5", "--table", "a"}).err,
+              AllOf(HasSubstr("amplification, artificial, stability"), HasSubstr("not 'a'")));
+  EXPECT_THAT(program.run({"inspect", "modes.h5", "--table", "runs"}).err, HasSubstr("not 'runs'"));
+  program.output({"run", "--scene", "hung-edge", "--set", "grid.n=4", "--method", "all", "--step", "0.01", "--until", "0.02",
+                  "--no-reference", "--out", "runs.h5"});
+  EXPECT_THAT(parse_csv(program.output({"inspect", "runs.h5", "--table", "runs", "--csv"})), SizeIs(methods.size()));
+}
+
+TEST(ProgramCheck, IsOneScreenWithTheOrderAsDeclared) {
+  const BenchIntegrators program;
+  const Words said = lines(program.output({"check", "sbdf2", "--out", "check.h5"}));
+  EXPECT_LE(said.size(), 24u);
+  for (const std::string& line : said) EXPECT_LE(columns(line), 80u) << line;
+  for (const std::string part : {"2 as declared", "stability ", "energy ", "cost ", "bdf2", "verlet"})
+    EXPECT_THAT(joined(said, "\n"), HasSubstr(part));
+  EXPECT_THAT(lines(program.output({"inspect", "check.h5", "--csv"})), Contains(StartsWith("check-order")));
+  EXPECT_EQ(program.run({"check", "bdf2/newto"}).exit_code, 2);
+}
+
+}  // namespace
+}  // namespace drape::verify::program_test

@@ -1,0 +1,364 @@
+// bench_integrators report: the page in a browser.
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "bench/report/browser.hpp"
+#include "results/file/run_file.hpp"
+#include "results/table_builder.hpp"
+#include "verify/support/bench_integrators.hpp"
+#include "verify/support/mesh_files.hpp"
+
+namespace drape::verify::report_test {
+namespace {
+
+using nlohmann::json;
+using results::Table;
+using results::TableBuilder;
+using testing::AllOf;
+using testing::Contains;
+using testing::EndsWith;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+using testing::StartsWith;
+
+/// Errors of two methods at five steps: one of the order that is declared, one not.
+Table orders() {
+  TableBuilder table("orders-sheet", "Order in time on a sheet");
+  for (const auto& [method, order] : {std::pair{"bdf2", 2.0}, {"euler", 0.5}})
+    for (int k = 0; k < 5; ++k) {
+      table.row();
+      table.text("scene", "scene", "", "sheet");
+      table.text("method", "method", "", method);
+      table.number("step", "h", "s", "", std::pow(2.0, -k) / 30);
+      table.number("error", "rms error", "1", "", 0.1 * std::pow(2.0, -order * k));
+      table.number("uncertainty", "", "1", "", 1e-5);
+      if (k > 0) table.number("order", "order", "1", "", order);
+      if (k < 4) continue;
+      table.text("verdict", "verdict", "", order == 2 ? "2 as declared" : "NOT 1");
+      table.number("fitted_order", "fitted", "1", "", order);
+    }
+  return table.finish();
+}
+
+Table trials() {
+  TableBuilder table("trials: sheet", "All that was tried on sheet");
+  for (const auto& [code, slowness] : {std::pair{"drape", 1.0}, {"cvode-bdf", 5.0}})
+    for (int k = 1; k <= 3; ++k) {
+      table.row();
+      table.text("code", "", "", code);
+      table.text("family", "", "", fmt::format("{}, \"as it is\"", code));
+      table.text("method", "", "", "");
+      table.text("control", "", "", "step");
+      table.number("value", "", "1", "", 0.1 / k);
+      table.text("outcome", "", "", k == 3 ? "unstable" : "success");
+      table.number("uncertainty", "", "1", "", 1e-9);
+      table.count("steps", "", "", 10 * k);
+      if (k == 3) continue;
+      table.number("error", "", "1", "", std::pow(10.0, -k));
+      for (const char* time : {"time", "lower", "upper"}) table.number(time, "", "ms", "", slowness * k);
+    }
+  return table.finish();
+}
+
+Table atlas() {
+  TableBuilder table("stability-atlas", "Verdicts");
+  for (const double nu : {1.0, 1e5})
+    for (const double ratio : {1.0, std::numeric_limits<double>::infinity()}) {
+      table.row();
+      table.count("n", "n", "", 6);
+      table.number("step", "h", "s", "", 0.02);
+      table.text("method", "method", "", "bdf2");
+      table.number("nu", "ν_h", "1", "", nu);
+      table.number("to_damping", "h k/d", "1", "", ratio);
+      table.text("predicted", "predicted", "", nu > 1 ? "unstable" : "stable");
+      table.text("verdict", "verdict", "", nu > 1 ? "unstable" : "accurate");
+    }
+  return table.finish();
+}
+
+/// What would end the script that the data are in, or become an element, if the page were careless.
+Table hostile() {
+  TableBuilder table("hostile", "</script><script>console.error('from the data')</script>");
+  for (const char* text : {"b <img src=x onerror=console.error(1)>", "a & b"}) {
+    table.row();
+    table.text("text", "text", "", text);
+  }
+  return table.finish();
+}
+
+/// A table like those of figure 4.3.
+Table over_time() {
+  TableBuilder table("figure-4.3", "Figure 4.3: a sheet and a box");
+  for (int k = 1; k <= 4; ++k) {
+    table.row();
+    table.number("t", "until", "s", "", 0.05 * k);
+    for (const char* curve : {"bdf2_updates", "bdf2_CG", "bdf2_contacts"}) table.number(curve, curve, "1", "", k);
+  }
+  return table.finish();
+}
+
+/// A sheet on a box that rises, beside other obstacles.
+std::string scene_on_box(const std::string& name, const std::string& others) {
+  return fmt::format(R"(name = "{}"
+[grid]
+n = 6
+size = 0.8
+[material]
+density = 0.3
+tension = 300
+[forces]
+gravity = [0, 0, -9.81]
+[[obstacles]]
+shape = "box"
+size = [0.5, 0.5, 0.1]
+motion = [{{ time = 0, position = [0.4, 0.4, -0.4] }}, {{ time = 0.1, position = [0.4, 0.4, 0.1] }}]
+{})",
+                     name, others);
+}
+
+/// What the scripts of the tests below see of one page, in one go: a browser takes seconds to start.
+constexpr const char* look = R"(
+  const all = (selector, from = document) => [...from.querySelectorAll(selector)];
+  const csv = async (link) => {
+    link.addEventListener("click", (event) => event.preventDefault());
+    link.click();
+    return (await fetch(link.href)).text();
+  };
+  const picture = (canvas) => {
+    const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext("2d", {willReadFrequently: true});
+    copy.drawImage(canvas, 0, 0);
+    return copy.getImageData(0, 0, canvas.width, canvas.height).data;
+  };
+  // How much of a picture has a colour that colour(r, g, b) tells, and how far from its top that is.
+  const coloured = (pixels, width, colour) => {
+    let count = 0, rows = 0;
+    for (let k = 0; k < pixels.length; k += 4)
+      if (pixels[k + 3] === 255 && colour(pixels[k], pixels[k + 1], pixels[k + 2])) ++count, rows += Math.floor(k / 4 / width);
+    return {share: 4 * count / pixels.length, row: count ? rows / count / width : 0};
+  };
+  const isGrey = (r, g, b) => r > 60 && Math.abs(g / r - 130 / 118) < 0.03 && Math.abs(b / g - 142 / 130) < 0.03;
+  const isWhite = (r, g, b) => Math.min(r, g, b) > 225;
+  const isOrange = (r, g, b) => Math.hypot(r - 213, g - 94, b) < 30;
+  const drawn = (pixels) => pixels.filter((value, k) => k % 4 === 3 && value > 0).length / (pixels.length / 4);
+  const seen = {
+    fetched: performance.getEntriesByType("resource").map((any) => any.name).filter((name) => !name.startsWith("blob:")),
+    summary: document.getElementById("summary").innerText,
+    figures: {}, csv: {}, titles: all("article h3").map((title) => title.textContent), views: [],
+  };
+  for (const figure of all("figure")) {
+    const plot = figure.querySelector(".plot");
+    if (plot) seen.figures[figure.querySelector("h3").textContent] = all(".point, .js-line, .heatmaplayer image, .textpoint", plot).length;
+  }
+  for (const table of all("article.table")) seen.csv[table.querySelector("h3").textContent] = await csv(table.querySelector("a[download]"));
+  const canvases = all(".view canvas"), before = canvases.map(picture);
+  for (const slider of all(".time")) slider.value = slider.max, slider.dispatchEvent(new Event("input"));
+  canvases.forEach((canvas, k) => {
+    const after = picture(canvas);
+    const body = coloured(before[k], canvas.width, isGrey), later = coloured(after, canvas.width, isGrey);
+    seen.views.push({title: canvas.closest("figure").querySelector("h3").textContent, drawn: drawn(before[k]), changed: after.some((value, i) => value !== before[k][i]),
+                     body: body.share, risen: body.row - later.row, pins: coloured(after, canvas.width, isWhite).share, contacts: coloured(after, canvas.width, isOrange).share});
+  });
+  seen.legends = all("#motion figure").map((figure) => figure.querySelector(".legend")?.parentElement.innerText ?? "");
+  const svg = await svgOf(plots[0]), png = await pngOf(svg), image = new Image();
+  image.src = `data:image/png;base64,${png}`;
+  await image.decode();
+  const copy = element("canvas", {width: image.width, height: image.height});
+  copy.getContext("2d").drawImage(image, 0, 0);
+  const ink = coloured(picture(copy), copy.width, (r, g, b) => Math.min(r, g, b) < 180).share;
+  seen.picture = {name: plots[0].name, svg, bytes: atob(png).length, width: image.width, ink};
+  const sorted = all("article.table").find((table) => table.textContent.includes("from the data")), head = sorted.querySelector("thead button");
+  const order = () => all("tbody th", sorted).map((cell) => cell.textContent);
+  head.click();
+  seen.up = order(), seen.aria = head.parentElement.getAttribute("aria-sort");
+  head.click();
+  seen.down = order();
+  see(JSON.stringify(seen));
+)";
+
+void expect_marks_in_every_figure(const json& seen) {
+  std::string titles;
+  for (const auto& [title, marks] : seen.at("figures").get<std::map<std::string, int>>()) {
+    EXPECT_GT(marks, 0) << title;
+    titles += title + "\n";
+  }
+  for (const char* title : {"Distance from", "Work–precision of runs: hung-corners", "Energy: hung-corners",
+                            "Updates: hung-corners", "Convergence: sheet", "Work–precision: sheet", "Stability: 6 × 6",
+                            "Contacts: on box", "Clearance: on box", "Least clearance: on box", "Figure 4.3: a sheet"})
+    EXPECT_THAT(titles, HasSubstr(title));
+}
+
+void expect_csv_of(const Table& table, const json& seen) {
+  const std::vector<Row> shown = parse_csv(seen.at("csv").at(table.description)), recorded = parse_csv(to_csv(table));
+  ASSERT_THAT(shown, SizeIs(recorded.size()));
+  for (std::size_t k = 0; k < shown.size(); ++k)
+    for (const results::Column& column : table.columns) {
+      const std::string &a = shown[k].at(column.name), &b = recorded[k].at(column.name);
+      if (column.unit.empty() || b.empty())
+        EXPECT_EQ(a, b) << column.name;
+      else
+        EXPECT_EQ(std::stod(a), std::stod(b)) << column.name;
+    }
+}
+
+void expect_motions(const json& seen, std::size_t count) {
+  ASSERT_THAT(seen.at("views"), SizeIs(count));
+  for (const json& view : seen.at("views")) {
+    EXPECT_GT(view.at("drawn"), 0.02);
+    EXPECT_LT(view.at("drawn"), 0.9);
+    EXPECT_TRUE(view.at("changed"));
+  }
+}
+
+/// Pins are marked where there are some, and so are contacts; a box is there and rises.
+void expect_obstacles_and_marks(const json& seen) {
+  for (const json& view : seen.at("views")) {
+    const bool boxed = view.at("title").get<std::string>().find("box") != std::string::npos;
+    const auto expect = [&](const char* what, bool there, double least) {
+      if (there)
+        EXPECT_GT(view.at(what), least) << what << " " << view;
+      else
+        EXPECT_EQ(view.at(what), 0) << what << " " << view;
+    };
+    expect("pins", !boxed, 2e-5);
+    expect("contacts", boxed, 2e-5);
+    expect("body", boxed, 0.01);
+    expect("risen", boxed, 0.02);
+  }
+  const std::vector<std::string> legends = seen.at("legends");
+  EXPECT_THAT(legends, Contains(HasSubstr("pinned")));
+  EXPECT_THAT(legends, Contains(testing::AllOf(HasSubstr("in contact"), HasSubstr("obstacle"), Not(HasSubstr("not drawn")))));
+  EXPECT_THAT(legends, Contains(testing::AllOf(HasSubstr("obstacle"), HasSubstr("not drawn"), HasSubstr("gone.obj"))));
+}
+
+/// The images are those of the page, one pair for each figure, and there is something on them.
+void expect_images(const json& seen, const std::map<std::string, std::string>& files) {
+  std::size_t images = 0;
+  for (const auto& [path, content] : files) {
+    if (!path.starts_with("page/images/") || path.ends_with('/')) continue;
+    ++images;
+    EXPECT_THAT(content, StartsWith(path.ends_with(".svg") ? "<svg" : "\x89PNG\r\n\x1a\n")) << path;
+    EXPECT_THAT(content, testing::AnyOf(HasSubstr("IEND"), HasSubstr("class=\"trace"), HasSubstr("<image"))) << path;
+  }
+  EXPECT_EQ(images, 2 * seen.at("figures").size());
+  const json& picture = seen.at("picture");
+  const std::string path = "page/images/" + picture.at("name").get<std::string>();
+  EXPECT_EQ(files.at(path + ".svg"), picture.at("svg"));
+  EXPECT_EQ(files.at(path + ".png").size(), picture.at("bytes"));
+  EXPECT_EQ(picture.at("width"), 2700);
+  EXPECT_GT(picture.at("ink"), 0.002);
+}
+
+void expect_summary(const json& seen) {
+  const std::string summary = seen.at("summary");
+  for (const char* text : {"1 of 2", "sheet euler: NOT 1 but 0.50", "The quickest recorded run", "1e-3"})
+    EXPECT_THAT(summary, HasSubstr(text));
+}
+
+void expect_sorting(const json& seen) {
+  const std::vector<std::string> up{"a & b", "b <img src=x onerror=console.error(1)>"};
+  EXPECT_EQ(seen.at("up"), up);
+  EXPECT_EQ(seen.at("aria"), "ascending");
+  EXPECT_EQ(seen.at("down"), (std::vector{up[1], up[0]}));
+}
+
+/// The report of some files beside all kinds of tables.
+std::filesystem::path page(const BenchIntegrators& program, const Words& files) {
+  {
+    results::RunFile file(program.folder() / "tables.h5", results::provenance("bench_integrators study all"));
+    for (const Table& table : {orders(), trials(), atlas(), over_time(), hostile()}) file.add(table);
+  }
+  EXPECT_THAT(program.output(Words{"report"} + files + Words{"tables.h5", "--out", "page"}),
+              AllOf(HasSubstr("\nOrders of convergence\n"), HasSubstr("\nreport: page/index.html\n")));
+  return program.folder() / "page/index.html";
+}
+
+void record(const BenchIntegrators& program, const std::string& scene, const Words& more) {
+  program.output(Words{"run", "--scene", scene, "--until", "0.1", "--trajectory", "every=0.02"} + more);
+}
+
+TEST(Report, ShowsAllThereIs) {  // one test, since a browser takes seconds to start
+  const BenchIntegrators program;
+  record(program, "hung-corners", {"--set", "grid.n=6", "--method", "bdf2,sbdf2", "--step", "0.02,0.01", "--out", "runs.h5"});
+  const Words once{"--method", "bdf2", "--step", "0.01", "--no-reference", "--repeat", "1", "--out"};
+  program.write("box.toml", scene_on_box("on box", ""));
+  record(program, "box.toml", once + Words{"box.h5"});
+  program.write("gone.toml",
+                scene_on_box("box and more", "[[obstacles]]\nshape = \"mesh\"\nfile = \"gone.obj\"\nposition = [3, 0, 0]\n"));
+  write_mesh(program.folder() / "gone.obj", box_mesh({0.1, 0.1, 0.1}));
+  record(program, "gone.toml", once + Words{"gone.h5"});
+  std::filesystem::remove(program.folder() / "gone.obj");
+  const bench::Browsed browsed = bench::browse(page(program, {"runs.h5", "box.h5", "gone.h5", "--images"}), look, 1280);
+  EXPECT_THAT(browsed.console, IsEmpty());
+  const json seen = json::parse(browsed.seen);
+  EXPECT_THAT(seen.at("fetched"), IsEmpty());
+  expect_marks_in_every_figure(seen);
+  expect_csv_of(orders(), seen);
+  expect_csv_of(atlas(), seen);
+  EXPECT_THAT(seen.at("csv").at("All that was tried on sheet"), HasSubstr("\"cvode-bdf, \"\"as it is\"\"\""));
+  expect_motions(seen, 6);
+  expect_obstacles_and_marks(seen);
+  expect_images(seen, program.files());
+  expect_summary(seen);
+  expect_sorting(seen);
+  EXPECT_THAT(seen.at("titles"), Contains(hostile().description));
+}
+
+TEST(Report, WithoutChromiumIsAPageWithoutImages) {
+  const BenchIntegrators program;
+  page(program, {});
+  std::filesystem::create_directory(program.folder() / "page/images");
+  program.write("page/images/old.png", "older");
+  Command command = program.command({"report", "tables.h5", "--out", "page", "--images"});
+  command.environment.emplace_back("PATH=/nowhere");
+  const ProgramResult result = run_program(command);
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.out, EndsWith("\nreport: page/index.html\n"));
+  EXPECT_THAT(result.err, HasSubstr("apt-get install chromium"));
+  EXPECT_THAT(lines(result.err), SizeIs(1));
+  EXPECT_EQ(program.files().at("page/images/old.png"), "older");
+}
+
+TEST(Report, ImagesTakeThePlaceOfImagesOnly) {
+  const BenchIntegrators program;
+  page(program, {});
+  std::filesystem::create_directory(program.folder() / "page/images");
+  program.write("page/images/notes.txt", "mine");
+  const ProgramResult result = program.run({"report", "tables.h5", "--out", "page", "--images"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("page/images/notes.txt"));
+  EXPECT_EQ(program.files().at("page/images/notes.txt"), "mine");
+}
+
+TEST(Report, FitsAPhone) {
+  const BenchIntegrators program;
+  const bench::Browsed browsed =
+      bench::browse(page(program, {}), "see(document.documentElement.scrollWidth - innerWidth);", 500);
+  EXPECT_EQ(browsed.seen, "0");
+  EXPECT_THAT(browsed.console, IsEmpty());
+}
+
+TEST(Report, AScriptThatFailsWouldBeSeen) {
+  const BenchIntegrators program;
+  const std::filesystem::path broken = page(program, {});
+  std::ofstream(broken, std::ios::app) << "<script>no_such_function();</script>";
+  EXPECT_THAT(bench::browse(broken, "see('');", 1280).console, Contains(HasSubstr("no_such_function")));
+}
+
+TEST(Report, OfNothingSaysWhatIsWrongAndLeavesNothing) {
+  const BenchIntegrators program;
+  const ProgramResult result = program.run({"report", "none.h5", "--out", "page"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("none.h5"));
+  EXPECT_THAT(program.files(), IsEmpty());
+}
+
+}  // namespace
+}  // namespace drape::verify::report_test

@@ -1,0 +1,351 @@
+// The studies: their quick forms answer their questions as theory wants it, and what they find is recorded.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "results/analysis/order_fit.hpp"
+#include "results/file/run_file.hpp"
+#include "results/table_builder.hpp"
+#include "solver/methods.hpp"
+#include "verify/support/bench_integrators.hpp"
+#include "verify/support/temporary_folder.hpp"
+
+namespace drape::verify::studies_test {
+namespace {
+
+using results::Cell;
+using results::Column;
+using results::fit_order;
+using results::Table;
+using results::TableBuilder;
+using results::verdict;
+using testing::AllOf;
+using testing::AnyOf;
+using testing::Contains;
+using testing::DoubleNear;
+using testing::Each;
+using testing::ElementsAre;
+using testing::Field;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::IsNan;
+using testing::Not;
+using testing::SizeIs;
+
+// --- The window of an order --------------------------------------------------------------------------------------------------
+
+/// h = 1, ½, ¼, … and errors given.
+struct Series {
+  std::vector<double> h, errors;
+
+  explicit Series(std::vector<double> e) : errors(std::move(e)) {
+    for (std::size_t k = 0; k < errors.size(); ++k) h.push_back(std::exp2(-double(k)));
+  }
+  auto fit(double uncertainty = 0) const { return fit_order(h, errors, uncertainty); }
+};
+
+TEST(OrderFit, FindsTheWindowBetweenThePreasymptoticAndTheRoundOffEnd) {
+  const auto fit = Series({0.3, 0.25, 4e-2, 1e-2, 2.5e-3, 6.25e-4, 5e-4, 6e-4}).fit();
+  ASSERT_TRUE(fit);
+  EXPECT_EQ(fit->first, 2);
+  EXPECT_EQ(fit->last, 5);
+  EXPECT_NEAR(fit->order, 2, 1e-12);
+  EXPECT_NEAR(fit->lowest, 2, 1e-12);
+  EXPECT_NEAR(fit->highest, 2, 1e-12);
+}
+
+TEST(OrderFit, LeavesOutErrorsThatTheReferenceCannotResolve) {
+  const Series series({64, 16, 4, 1, 0.25});
+  EXPECT_EQ(series.fit(0.02)->last, 4);
+  EXPECT_EQ(series.fit(0.03)->last, 3);
+  EXPECT_FALSE(series.fit(0.11)) << "three errors are two refinements";
+}
+
+TEST(OrderFit, NeedsThreeRefinementsOfASteadyOrder) {
+  EXPECT_FALSE(Series({64, 16, 4}).fit());
+  EXPECT_TRUE(Series({64, 16, 4, 1}).fit());
+  EXPECT_FALSE(Series({64, 16, 4, 4 / std::exp2(2.11)}).fit());
+  EXPECT_TRUE(Series({64, 16, 4, 4 / std::exp2(2.09)}).fit());
+  EXPECT_FALSE(Series({64, 16, std::nan(""), 1}).fit());
+  EXPECT_FALSE(Series({64, 16, 4, 0}).fit());
+}
+
+TEST(OrderFit, TakesTheFinestOfEquallyLongWindows) {
+  const auto fit = Series({4096, 2048, 1024, 512, 64, 8, 1}).fit();
+  ASSERT_TRUE(fit);
+  EXPECT_NEAR(fit->order, 3, 1e-12);
+}
+
+TEST(OrderFit, KnowsUnequalRefinements) {
+  EXPECT_NEAR(fit_order(std::vector{1.0, 0.7, 0.2, 0.1}, std::vector{1.0, 0.49, 0.04, 0.01}, 0)->order, 2, 1e-12);
+}
+
+TEST(Verdict, IsWithinATenthToBothSides) {
+  const auto of = [](double order) { return verdict(results::OrderFit{order, order, order, 0, 3}, 2); };
+  EXPECT_EQ(of(2.09), "2 as declared");
+  EXPECT_EQ(of(1.91), "2 as declared");
+  EXPECT_EQ(of(2.11), "NOT 2");
+  EXPECT_EQ(of(1.89), "NOT 2");
+  EXPECT_EQ(verdict(std::nullopt, 2), "no order to be seen");
+}
+
+// --- Tables ------------------------------------------------------------------------------------------------------------------
+
+/// A table with all kinds of cells, and gaps.
+Table some_table() {
+  TableBuilder table("some", "Some table");
+  table.row();
+  table.text("name", "name", "who", "Ähre");
+  table.count("n", "n", "how many", 3);
+  table.row();
+  table.text("name", "name", "who", "b, c");
+  table.number("x", "x", "m", "where", 0.1 + 0.2);
+  table.count("n", "n", "how many", 4);
+  table.row();
+  table.number("hidden", "", "1", "not shown", 7);
+  return table.finish();
+}
+
+TEST(StudyTable, HasEquallyLongColumns) {
+  for (const Column& column : some_table().columns) EXPECT_THAT(column.cells, SizeIs(3)) << column.name;
+}
+
+TEST(StudyTable, IsShownWithoutItsHiddenColumns) {
+  EXPECT_EQ(to_text(some_table()),
+            "name  n    x\n"
+            "         [m]\n"
+            "------------\n"
+            "Ähre  3     \n"
+            "b, c  4  0.3\n"
+            "            \n");
+}
+
+TEST(StudyTable, HasAllColumnsInCsv) {
+  EXPECT_EQ(to_csv(some_table()),
+            "name,n,x,hidden\n"
+            "Ähre,3,,\n"
+            "\"b, c\",4,0.30000000000000004,\n"
+            ",,,7\n");
+}
+
+TEST(StudyTable, IsReadBackFromItsFile) {
+  const base::TemporaryFolder folder;
+  const auto path = folder.path() / "tables.h5";
+  results::RunFile file(path, {});
+  file.add(some_table());
+  EXPECT_THAT(results::read_tables(path), SizeIs(1)) << "on disk at once";
+  Table second = some_table();
+  second.name = "other";
+  file.add(second);
+  const auto tables = results::read_tables(path);
+  ASSERT_THAT(tables, SizeIs(2));
+  EXPECT_EQ(tables[0].name, "other");
+  const Table &read = tables[1], written = some_table();
+  EXPECT_EQ(read.description, written.description);
+  ASSERT_EQ(read.columns.size(), written.columns.size());
+  for (std::size_t k = 0; k < read.columns.size(); ++k) {
+    EXPECT_EQ(read.columns[k].name, written.columns[k].name);
+    EXPECT_EQ(read.columns[k].title, written.columns[k].title);
+    EXPECT_EQ(read.columns[k].unit, written.columns[k].unit);
+    EXPECT_EQ(read.columns[k].description, written.columns[k].description);
+  }
+  EXPECT_EQ(to_text(read), to_text(written));
+  EXPECT_EQ(to_csv(read), to_csv(written));
+}
+
+TEST(StudyTable, IsRefusedTwice) {
+  const base::TemporaryFolder folder;
+  results::RunFile file(folder.path() / "tables.h5", {});
+  file.add(some_table());
+  EXPECT_THROW(file.add(some_table()), base::FileError);
+  EXPECT_THAT(results::read_tables(folder.path() / "tables.h5"), SizeIs(1)) << "and does no harm";
+}
+
+// --- The studies of the program
+// ------------------------------------------------------------------------------------------------
+
+/// All verdicts of a table, without the empty ones.
+std::vector<std::string> verdicts(const Table& table) {
+  std::vector<std::string> found;
+  const auto column = std::ranges::find(table.columns, "verdict", &Column::name);
+  if (column == table.columns.end()) return found;
+  for (const Cell& cell : column->cells)
+    if (const auto* text = std::get_if<std::string>(&cell); text && !text->empty()) found.push_back(*text);
+  return found;
+}
+
+/// The verdicts in the rows of a method.
+std::vector<std::string> verdicts_of(const Table& table, const std::string& method) {
+  std::vector<std::string> found;
+  for (std::size_t row = 0; row < rows(table); ++row)
+    if (text_in(find_column(table, "method"), row) == method) found.push_back(text_in(find_column(table, "verdict"), row));
+  return found;
+}
+
+/// The numbers of a column in the rows whose column `key` is this text; NaN where there is none.
+std::vector<double> numbers(const Table& table, const std::string& column, const std::string& key, const std::string& text) {
+  const auto cells = [&](const std::string& name) -> const std::vector<Cell>& {
+    return std::ranges::find(table.columns, name, &Column::name)->cells;
+  };
+  std::vector<double> found;
+  for (std::size_t row = 0; row < cells(key).size(); ++row) {
+    if (cells(key)[row] != Cell(text)) continue;
+    const Cell& cell = cells(column)[row];
+    if (const auto* count = std::get_if<std::int64_t>(&cell))
+      found.push_back(static_cast<double>(*count));
+    else
+      found.push_back(std::holds_alternative<double>(cell) ? std::get<double>(cell) : std::nan(""));
+  }
+  return found;
+}
+
+class ProgramStudies : public testing::Test {
+ protected:
+  const BenchIntegrators program;
+
+  std::vector<Table> tables(const std::string& study) const {
+    program.output({"study", study, "--quick", "--out", "study.h5"});
+    return results::read_tables(program.folder() / "study.h5");
+  }
+};
+
+TEST_F(ProgramStudies, ModesAreAsInTheory) {
+  const auto all = tables("modes");
+  EXPECT_THAT(all, SizeIs(3));
+  for (const Table& table : all) {
+    EXPECT_THAT(verdicts(table), SizeIs(table.columns[0].cells.size())) << table.name << ": one for each row";
+    EXPECT_THAT(verdicts(table), Each(Not(HasSubstr("NOT")))) << table.name;
+    for (const solver::Method& method : solver::methods()) {
+      const std::size_t unknown = std::ranges::count(verdicts_of(table, std::string(method.name)), "no theory known");
+      EXPECT_EQ(unknown > 0, std::ranges::find(solver::thesis_methods(), method.name, &solver::Method::name) ==
+                                 solver::thesis_methods().end())
+          << method.name << " in " << table.name;
+      EXPECT_FALSE(verdicts_of(table, std::string(method.name)).empty()) << method.name << " is left out of " << table.name;
+    }
+  }
+}
+
+TEST_F(ProgramStudies, OrdersAreAsDeclared) {
+  const auto all = tables("orders");
+  ASSERT_THAT(all, SizeIs(1));
+  const auto found = verdicts(all[0]);
+  constexpr int known = 13;
+  ASSERT_THAT(found, SizeIs(testing::Ge(known)));
+  EXPECT_THAT(
+      std::vector(found.begin(), found.begin() + known),
+      ElementsAre("1 as declared", "1 as declared", "2 as declared", "2 as declared", "2 as declared", "2 as declared",
+                  "2 as declared", "2 as declared", "3 as declared", testing::_, "3 as declared", "4 as declared", testing::_))
+      << "the reference ends the fourth order early; BDF(5) is not stable for what swings";
+  EXPECT_THAT(std::vector(found.begin() + known, found.end()), Each(HasSubstr("as declared"))) << "what was added";
+}
+
+TEST_F(ProgramStudies, ErrorsAreNearTheirTolerances) {
+  const auto all = tables("tolerance");
+  ASSERT_THAT(all, SizeIs(3));
+  const auto known = AnyOf("within 10", HasSubstr("under by"), "cost explodes");
+  for (const char* name : {"tolerance-hung-edge", "tolerance-chain"}) {
+    const auto found = verdicts(*std::ranges::find(all, name, &Table::name));
+    EXPECT_THAT(found, AllOf(SizeIs(2 * solver::methods().size()), Each(known))) << name << ": one for each row";
+    EXPECT_THAT(found, Contains("within 10").Times(testing::Ge(8))) << name;
+  }
+  EXPECT_THAT(verdicts(*std::ranges::find(all, "tolerance-summary", &Table::name)), Each("proportional"));
+}
+
+TEST_F(ProgramStudies, EquilibriaConvergeAsDeclared) {
+  const auto all = tables("convergence");
+  ASSERT_THAT(all, SizeIs(3));
+  EXPECT_THAT(verdicts(all[0]), ElementsAre("exact as declared", "1 as declared"));
+  EXPECT_THAT(verdicts(all[1]), Contains("2 as declared"));
+  EXPECT_THAT(verdicts(all[2]), Contains("2 as declared").Times(5));
+  for (const Table& table : all) EXPECT_THAT(verdicts(table), Each(Not(HasSubstr("NOT")))) << table.name;
+}
+
+TEST_F(ProgramStudies, ReferencesAgree) {
+  const auto all = tables("references");
+  ASSERT_THAT(all, SizeIs(2));
+  EXPECT_THAT(verdicts(all[0]), AllOf(SizeIs(4), Each("as wanted")));  // growth
+  EXPECT_THAT(verdicts(all[1]), AllOf(SizeIs(12), Each("agrees")));
+}
+
+TEST_F(ProgramStudies, WorkGrowsWithStiffnessAndFallsWithDampingAsInTheThesis) {
+  const auto all = tables("table-3.1");
+  ASSERT_THAT(all, SizeIs(1));
+  EXPECT_THAT(verdicts(all[0]), ElementsAre("grows with k, falls with d", "grows with k, falls with d"));
+  EXPECT_THAT(numbers(all[0], "thesis_cg_iterations", "rows", "thesis"), ElementsAre(566, 52, 1160, 538));
+}
+
+TEST_F(ProgramStudies, MethodsDrapeTheTableclothButForArtificialDamping) {
+  const auto all = tables("table-3.2");
+  ASSERT_THAT(all, SizeIs(1));
+  const Table& table = all[0];
+  const std::size_t gaining = 2;  // imex-midpoint gains energy where a falling sheet is held
+  EXPECT_THAT(numbers(table, "sunk", "outcome", "success"), SizeIs(table.columns[0].cells.size() - gaining));
+  EXPECT_THAT(numbers(table, "sunk", "method", "imex-midpoint"), SizeIs(4));
+  EXPECT_THAT(numbers(table, "thesis_updates", "method", "bdf2"), ElementsAre(122, 122, IsNan(), IsNan()));
+  const double truth = numbers(table, "sunk", "method", "verlet").at(1);
+  for (const char* method : {"implicit-euler", "bdf2", "midpoint"})
+    EXPECT_NEAR(numbers(table, "sunk", "method", method).at(2), truth, 0.05 * truth) << method;
+  EXPECT_LT(numbers(table, "sunk", "method", "imex-euler").at(2), 0.2 * truth);
+}
+
+TEST_F(ProgramStudies, EulerSmoothsTheSheetInTheWindAndBdf2Less) {
+  const auto all = tables("figure-3.2");
+  ASSERT_THAT(all, SizeIs(2));
+  EXPECT_THAT(verdicts(all[0]), AllOf(SizeIs(3), Each("swings less")));
+  EXPECT_THAT(verdicts(all[1]), AllOf(SizeIs(9), Each("smoothed by Euler")));
+  EXPECT_THAT(numbers(all[1], "bending_ratio_bdf2", "waves", "1"), Contains(DoubleNear(1, 1e-2))) << "where damping is strong";
+}
+
+TEST_F(ProgramStudies, SemiImplicitMethodsLagAsPredicted) {
+  const auto all = tables("figure-3.3");
+  ASSERT_THAT(all, SizeIs(1));
+  EXPECT_THAT(verdicts(all[0]), AllOf(SizeIs(4), Each("as predicted")));
+}
+
+TEST_F(ProgramStudies, RestingOnTheBoxIsNoHarderThanSwinging) {
+  const auto all = tables("figure-4.3");  // in the order of their names
+  ASSERT_THAT(all, SizeIs(3));
+  const auto bars = numbers(all[1], "value", "method", "bdf2");
+  ASSERT_THAT(bars, SizeIs(3));
+  EXPECT_LE(bars[0], 1.5);
+  EXPECT_THAT(all[2].columns, Contains(Field(&Column::name, "bdf2_contacts")));
+  EXPECT_THAT(all[2].columns, Each(Field(&Column::title, IsEmpty()))) << "every step is for the file";
+  EXPECT_EQ(all[2].columns[0].cells.size() / 5, all[0].columns[0].cells.size());
+}
+
+TEST_F(ProgramStudies, EveryCellOfTheAtlasEndsInAVerdict) {
+  const auto all = tables("stability");  // in the order of their names
+  ASSERT_THAT(all, SizeIs(6));
+  const auto table = [&](const std::string& name) { return *std::ranges::find(all, "stability-" + name, &Table::name); };
+  EXPECT_THAT(verdicts(table("bar")), AllOf(SizeIs(3), Each("all converge")));
+  const auto all_cells = verdicts(table("atlas"));
+  EXPECT_THAT(all_cells, SizeIs(4 * (solver::methods().size() + 3)));
+  const auto known =
+      AnyOf("accurate", "stable but wrong", "stable, error unknown", "unstable", "not converged", "not finished");
+  EXPECT_THAT(all_cells, Each(known));
+  EXPECT_THAT(verdicts(table("stress")), AllOf(SizeIs(2 * 17), Each(known)));
+  EXPECT_THAT(numbers(table("verdicts"), "accurate", "method", "bdf2"), ElementsAre(4));
+  EXPECT_THAT(numbers(table("verdicts"), "not_converged", "method", "bdf2/fixed-point"), ElementsAre(1));
+  EXPECT_THAT(numbers(table("verdicts"), "wrong", "method", "sbdf2"), ElementsAre(2)) << "of the slack sheets";
+  EXPECT_LT(numbers(table("steps"), "accurate", "method", "sbdf2").at(0),
+            numbers(table("steps"), "accurate", "method", "bdf2").at(0));
+}
+
+TEST_F(ProgramStudies, ScalingTellsWhatWasChosenAndWhatAnIterationMoves) {
+  const auto all = tables("scaling");  // in the order of their names
+  ASSERT_THAT(all, SizeIs(3));
+  EXPECT_THAT(numbers(all[0], "n", "linear_solver", "cholesky"), ElementsAre(20, 20, 40, 40));
+  const auto iterations = numbers(all[0], "cg_iterations", "linear_solver", "cholesky");
+  EXPECT_THAT(iterations, Each(0));
+  // z, p, p, q and d, d, p, r, r, q, and the stencil: more than the matrix's bytes would be too much to claim.
+  EXPECT_THAT(numbers(all[2], "bytes", "linear_solver", "none"), Each(AllOf(testing::Ge(240), testing::Le(260))));
+  EXPECT_THAT(verdicts(all[1]), AllOf(SizeIs(3), Each(AnyOf("met", HasSubstr("NOT met by")))));
+}
+
+}  // namespace
+}  // namespace drape::verify::studies_test

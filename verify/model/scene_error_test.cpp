@@ -1,0 +1,221 @@
+// Scenes that are wrong are refused in one line that says where, which key, and what would be right.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "model/scene_file/scene_file.hpp"
+#include "verify/support/temporary_folder.hpp"
+
+namespace drape::verify::scene_error_test {
+namespace {
+
+using model::load_scene;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+
+/// The message of the SceneError that `read` throws; empty if it throws none.
+template <class Read>
+std::string message(const Read& read) {
+  try {
+    read();
+  } catch (const model::SceneError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+/// A scene that must be refused. Its file begins with a line for the name; `lines` follow.
+struct BadScene {
+  std::string name;
+  std::string lines;
+  std::string says;      ///< how the message begins
+  std::string set = {};  ///< an override
+};
+
+void PrintTo(const BadScene& bad, std::ostream* out) { *out << bad.name; }
+
+std::string repeated(int times, const std::string& text) { return times == 0 ? "" : text + repeated(times - 1, text); }
+
+const std::string count = "expected a whole number from 1 to 10000000";
+const std::string chain_bends = "expected bend_form = \"plate\" with bend_projected = false, a chain has no normals";
+
+// clang-format off
+const std::vector<BadScene> bad_scenes = {
+    {"unknown_key", "foo = 1", "a.toml:2: unknown key 'foo': expected one of name, description, grid.n, "},
+    {"unknown_section", "[foo]\nbar = 1", "a.toml:2: unknown key 'foo': expected one of name, "},
+    {"unknown_key_in_a_section", "[material]\n\ndensty = 1",
+     "a.toml:4: unknown key 'material.densty' (did you mean material.density?): expected one of material.density, material.tension, "},
+    {"unknown_key_in_a_pin", "[[pins]]\nwher = 'all'", "a.toml:3: pins.wher = 'all': "},
+    {"number_for_a_section", "material = 1", "a.toml:2: unknown key 'material': expected one of "},
+    {"list_of_sections", "[[grid]]\nn = 3", "a.toml:2: unknown key 'grid': expected one of "},
+    {"key_twice", "description = 'a'\ndescription = 'b'", "a.toml:3: "},
+    {"syntax_error", "[grid]\nn = \n", "a.toml:3: Error while parsing key-value pair: expected value, saw "},
+
+    {"not_a_number", "[material]\ndensity = nan", "a.toml:3: material.density = nan: expected a finite number"},
+    {"infinity", "end.time = inf", "a.toml:2: end.time = inf: expected a finite number"},
+    {"infinity_in_a_list", "material.tension = [1, -inf]", "a.toml:2: material.tension = -inf: expected a finite number"},
+    {"not_a_number_in_a_vector", "forces.gravity = [0, nan, 1]", "a.toml:2: forces.gravity = nan: expected a finite number"},
+    {"negative_density", "[material]\ndensity = -1", "a.toml:3: material.density = -1: expected a number above 0"},
+    {"zero_density", "[material]\ndensity = 0.0", "a.toml:3: material.density = 0.0: expected a number above 0"},
+    {"negative_modulus", "material.shear = -2", "a.toml:2: material.shear = -2: expected a number of at least 0"},
+    {"negative_modulus_in_a_list", "material.bend = [1, -2]", "a.toml:2: material.bend = -2: expected a number of at least 0"},
+    {"no_length", "grid.size = [1, 0]", "a.toml:2: grid.size = 0: expected a number above 0"},
+    {"no_stretch", "start.stretch = 0", "a.toml:2: start.stretch = 0: expected a number above 0"},
+    {"no_time", "end.time = 0", "a.toml:2: end.time = 0: expected a number above 0"},
+
+    {"text_for_a_number", "material.density = 'heavy'", "a.toml:2: material.density = 'heavy': expected a number"},
+    {"flag_for_a_number", "material.shear = true", "a.toml:2: material.shear = true: expected a number"},
+    {"table_for_a_number", "material.shear = {a = 1}", "a.toml:2: material.shear = "},
+    {"number_for_a_text", "description = 7", "a.toml:2: description = 7: expected a text in quotes"},
+    {"number_for_a_flag", "material.bend_projected = 1", "a.toml:2: material.bend_projected = 1: expected true or false"},
+    {"number_for_a_vector", "forces.gravity = -9", "a.toml:2: forces.gravity = -9: expected a list of 3 numbers"},
+    {"short_vector", "forces.gravity = [0, -9]", "a.toml:2: forces.gravity = [ 0, -9 ]: expected a list of 3 numbers"},
+    {"long_list", "material.tension = [1, 2, 3]", "a.toml:2: material.tension = [ 1, 2, 3 ]: expected a list of 2 numbers"},
+    {"unknown_word", "material.bend_form = 'disk'", "a.toml:2: material.bend_form = 'disk': expected one of \"membrane\", \"plate\", \"printed\""},
+    {"number_for_a_word", "start.plane = 3", "a.toml:2: start.plane = 3: expected one of \"horizontal\", \"vertical\""},
+
+    {"one_particle", "[grid]\nn = 1", "a.toml:3: grid.n = 1: expected at least 2 particles"},
+    {"one_by_one", "[grid]\nn = [1, 1]", "a.toml:3: grid.n = [ 1, 1 ]: expected at least 2 particles"},
+    {"no_particles", "[grid]\nn = [0, 5]", "a.toml:3: grid.n = 0: " + count},
+    {"negative_count", "[grid]\nn = -3", "a.toml:3: grid.n = -3: " + count},
+    {"fractional_count", "[grid]\nn = 2.5", "a.toml:3: grid.n = 2.5: " + count},
+    {"fractional_count_in_a_list", "[grid]\nn = [4, 3.0]", "a.toml:3: grid.n = 3.0: " + count},
+    {"count_beyond_int", "[grid]\nn = 9999999999999", "a.toml:3: grid.n = 9999999999999: " + count},
+    {"too_many_particles", "[grid]\nn = 4000", "a.toml:3: grid.n = 4000: expected at most ten million particles"},
+
+    {"pin_nowhere", "[[pins]]\ndirections = 'x'\nvelocity = [0, 0, 1]", "a.toml:2: pins = "},
+    {"pin_twice", "[[pins]]\nwhere = 'all'\nparticles = [[0, 0]]", "a.toml:2: pins = "},
+    {"pins_not_a_list", "[pins]\nwhere = 'all'\ndirections = 'x'", "a.toml:2: pins = "},
+    {"unknown_place", "[[pins]]\nwhere = 'middle'", "a.toml:3: pins.where = 'middle': expected one of \"left edge\", \"right edge\", "},
+    {"unknown_direction", "[[pins]]\nwhere = 'all'\ndirections = 'xw'",
+     "a.toml:4: pins.directions = 'xw': expected some of the letters x, y and z"},
+    {"no_direction", "[[pins]]\nwhere = 'all'\ndirections = ''",
+     "a.toml:4: pins.directions = '': expected some of the letters x, y and z"},
+    {"direction_twice", "[[pins]]\nwhere = 'all'\ndirections = 'xx'", "a.toml:4: pins.directions = 'xx': expected some of "},
+    {"infinite_velocity", "[[pins]]\nwhere = 'all'\nvelocity = [0, 0, inf]", "a.toml:4: pins.velocity = inf: expected a finite number"},
+    {"pinned_particle_off_the_grid", "[grid]\nn = [4, 3]\n[[pins]]\nparticles = [[3, 2], [4, 0]]",
+     "a.toml:5: pins.particles = [ [ 3, 2 ], [ 4, 0 ] ]: expected places [a, b] with 0 ≤ a < 4 and 0 ≤ b < 3"},
+    {"pinned_particle_off_the_grid_after_many", "pins = [{particles = [" + repeated(50, "[0, 1], ") + "[9, 9]]}]",
+     "a.toml:2: pins.particles = "},
+    {"negative_pinned_particle", "[[pins]]\nparticles = [[0, -1]]", "a.toml:3: pins.particles = [ [ 0, -1 ] ]: expected places [a, b]"},
+    {"half_a_pinned_particle", "[[pins]]\nparticles = [[0.5, 0]]", "a.toml:3: pins.particles = [ [ 0.5, 0 ] ]: expected places [a, b]"},
+    {"pinned_particle_beyond_int", "[[pins]]\nparticles = [[1e300, 0]]", "a.toml:3: pins.particles = "},
+    {"pinned_particle_of_three", "[[pins]]\nparticles = [[0, 0, 0]]", "a.toml:3: pins.particles = [ 0, 0, 0 ]: expected a list of 2"},
+
+    {"obstacle_without_a_shape", "obstacles = [{radius = 1}]", "a.toml:2: obstacles = { radius = 1 }: expected 'shape' in every obstacle"},
+    {"unknown_shape", "[[obstacles]]\nshape = 'cone'",
+     "a.toml:3: obstacles.shape = 'cone': expected one of \"plane\", \"sphere\", \"box\", \"cylinder\", \"mesh\""},
+    {"obstacle_that_is_none", "obstacles = ['sphere']", "a.toml:2: obstacles = 'sphere': expected a table"},
+    {"unknown_key_in_an_obstacle", "[[obstacles]]\nshape = 'plane'\nheigth = 1", "a.toml:4: obstacles.heigth = 1: expected no such key; "},
+    {"key_of_another_shape", "[[obstacles]]\nshape = 'sphere'\nradius = 1\nheight = 2",
+     "a.toml:5: obstacles.height = 2: expected no such key; a sphere has shape, radius, friction, position, rotation, motion"},
+    {"sphere_without_radius", "obstacles = [{shape = 'sphere'}]", "a.toml:2: obstacles = { shape = 'sphere' }: expected 'radius' in every sphere"},
+    {"cylinder_without_height", "obstacles = [{shape = 'cylinder', radius = 1}]",
+     "a.toml:2: obstacles = { radius = 1, shape = 'cylinder' }: expected 'height' in every cylinder"},
+    {"box_without_size", "obstacles = [{shape = 'box'}]", "a.toml:2: obstacles = { shape = 'box' }: expected 'size' in every box"},
+    {"mesh_without_file", "obstacles = [{shape = 'mesh'}]", "a.toml:2: obstacles = { shape = 'mesh' }: expected 'file' in every mesh"},
+    {"flat_box", "obstacles = [{shape = 'box', size = [1, 0, 1]}]", "a.toml:2: obstacles.size = 0: expected a number above 0"},
+    {"sphere_inside_out", "obstacles = [{shape = 'sphere', radius = -1}]", "a.toml:2: obstacles.radius = -1: expected a number above 0"},
+    {"negative_friction", "obstacles = [{shape = 'plane', friction = -1}]",
+     "a.toml:2: obstacles.friction = -1: expected a number of at least 0"},
+    {"position_and_motion", "obstacles = [{shape = 'plane', position = [0, 0, 1], motion = [{time = 0}]}]",
+     "a.toml:2: obstacles = { motion = [ { time = 0 } ], position = [ 0, 0, 1 ], shape = 'plane' }: expected 'motion' or 'position' and 'rotation', not both"},
+    {"motion_of_no_frame", "obstacles = [{shape = 'plane', motion = []}]", "a.toml:2: obstacles.motion = []: expected at least one key frame"},
+    {"motion_back_in_time", "obstacles = [{shape = 'plane', motion = [{time = 1}, {time = 1}]}]",
+     "a.toml:2: obstacles.motion = [ { time = 1 }, { time = 1 } ]: expected key frames with times that ascend"},
+    {"key_frame_without_time", "obstacles = [{shape = 'plane', motion = [{position = [0, 0, 1]}]}]",
+     "a.toml:2: obstacles.motion = { position = [ 0, 0, 1 ] }: expected 'time' in every key frame"},
+    {"unknown_key_in_a_key_frame", "obstacles = [{shape = 'plane', motion = [{time = 0, velocity = [0, 0, 1]}]}]",
+     "a.toml:2: obstacles.motion.velocity = [ 0, 0, 1 ]: expected no such key; a key frame has time, position, rotation"},
+    {"no_contact_distance", "contact.distance = 0", "a.toml:2: contact.distance = 0: expected a number above 0"},
+    {"relaxation_above_one", "contact.relaxation = 1.5", "a.toml:2: contact.relaxation = 1.5: expected a number above 0 and at most 1"},
+    {"no_relaxation", "contact.relaxation = 0", "a.toml:2: contact.relaxation = 0: expected a number above 0"},
+    {"unknown_response", "contact.response = 'penalty'",
+     "a.toml:2: contact.response = 'penalty': expected one of \"constraint\", \"reaction\""},
+    {"no_reaction_time", "contact.reaction_time = 0", "a.toml:2: contact.reaction_time = 0: expected a number above 0"},
+
+    {"nothing_free_to_move", "[[pins]]\nwhere = 'all'", "a.toml: pins: expected at least one coordinate that is free to move"},
+    {"contraction_above_tension", "material.tension = [4, 9]\nmaterial.contraction = 6",
+     "a.toml: material.contraction: expected C12² below k1 k2, or the material would collapse"},
+    {"contraction_without_tension", "material.contraction = 1", "a.toml: material.contraction: expected C12² below k1 k2"},
+    {"projected_plate_on_a_chain", "grid.n = [5, 1]\nmaterial.bend = 1", "a.toml: material.bend: " + chain_bends},
+    {"membrane_on_a_chain", "grid.n = [1, 5]\nmaterial.bend_damping = 1\nmaterial.bend_form = 'membrane'",
+     "a.toml: material.bend: " + chain_bends},
+    {"wind_on_a_chain", "grid.n = [5, 1]\nforces.wind = [0, 1, 0]",
+     "a.toml: forces.wind: expected forces.drag = forces.lift, a chain has no normals"},
+    {"air_on_a_chain", "grid.n = [1, 5]\nforces.air = 1", "a.toml: forces.air: expected 0, a chain has no normals"},
+    {"negative_air", "forces.air = -1", "a.toml:2: forces.air = -1: expected a number of at least 0"},
+    {"half_a_pleat", "start.pleats = [1.5, 40]", "a.toml:2: start.pleats = [ 1.5, 40 ]: expected a whole number of at most 0 waves"},
+    {"more_pleats_than_particles", "grid.n = 9\nstart.pleats = [5, 40]",
+     "a.toml:3: start.pleats = [ 5, 40 ]: expected a whole number of at most 4 waves, for two edges each"},
+    {"pleats_that_turn_back", "grid.n = 9\nstart.pleats = [1, 90]",
+     "a.toml:3: start.pleats = [ 1, 90 ]: expected a whole number of at most 4 waves, for two edges each, and an angle below 90"},
+    {"unprojected_membrane", "[material]\nbend = 1\nbend_form = 'membrane'\nbend_projected = false",
+     "a.toml: material.bend_projected = false: expected true, the membrane acts along the normal only"},
+
+    {"override_of_an_unknown_key", "", "--set material.densty: unknown key 'material.densty' (did you mean material.density?): expected one of material.density, ",
+     "material.densty=1"},
+    {"override_of_an_unknown_section", "", "--set foo: unknown key 'foo': expected one of name, ", "foo=1"},
+    {"override_inside_a_value", "grid = 5", "--set grid.n: 'grid' is not a section", "grid.n=4"},
+    {"override_below_a_key", "", "--set name.x: unknown key 'name.x' (did you mean name?): expected one of name, ", "name.x=1"},
+    {"override_by_a_negative_density", "material.density = 1",
+     "--set material.density: material.density = -1: expected a number above 0", "material.density=-1"},
+    {"override_by_not_a_number", "", "--set end.time: end.time = nan: expected a finite number", "end.time=nan"},
+    {"override_by_a_word", "", "--set material.shear: material.shear = 'stiff': expected a number", "material.shear=stiff"},
+    {"override_by_a_broken_list", "", "--set material.tension: material.tension = '[1,': expected a number", "material.tension=[1,"},
+    {"override_by_one_particle", "", "--set grid.n: grid.n = 1: expected at least 2 particles", "grid.n=1"},
+    {"override_by_an_unknown_place", "", "--set pins: pins.where = 'middle': expected one of ", "pins=[{where='middle'}]"},
+};
+// clang-format on
+
+class RefusedScene : public testing::TestWithParam<BadScene> {};
+INSTANTIATE_TEST_SUITE_P(, RefusedScene, testing::ValuesIn(bad_scenes), [](const auto& test) { return test.param.name; });
+
+TEST_P(RefusedScene, SaysInOneLineWhereWhatAndWhatIsRight) {
+  const BadScene& bad = GetParam();
+  std::vector<model::Override> overrides;
+  if (!bad.set.empty()) overrides.push_back(model::parse_override(bad.set));
+  EXPECT_THAT(message([&] { model::parse_scene("name = 'x'\n" + bad.lines, "a.toml", overrides); }),
+              AllOf(StartsWith(bad.says), Not(HasSubstr("\n"))));
+}
+
+TEST(SceneError, OfASceneWithoutAName) {
+  EXPECT_EQ(message([&] { model::parse_scene("name = ''", "a.toml"); }), "a.toml: name: expected a name for the scene");
+  for (const std::string text : {"", "# nothing\n", "[grid]\nn = 3"})
+    EXPECT_EQ(message([&] { model::parse_scene(text, "no file"); }), "no file: name: expected a name for the scene");
+}
+
+TEST(SceneError, OfAnUnknownSceneSaysTheNamesOfAll) {
+  const std::string said = message([] { load_scene("hung-egde"); });
+  EXPECT_THAT(said, AllOf(StartsWith("unknown scene 'hung-egde' (did you mean hung-edge?): expected "),
+                          HasSubstr("a file ending in .toml")));
+  for (const auto& scene : model::builtin_scenes()) EXPECT_THAT(said, HasSubstr(std::string(scene.name)));
+}
+
+TEST(SceneError, OfAFileThatCannotBeRead) {
+  const base::TemporaryFolder folder;
+  const std::string missing = folder / "missing.toml", directory = folder / "directory.toml";
+  std::filesystem::create_directory(directory);
+  EXPECT_EQ(message([&] { load_scene(missing); }), missing + ": there is no such file: expected a scene file of at most 4 MB");
+  EXPECT_EQ(message([&] { load_scene(directory); }), directory + ": is a folder: expected a scene file of at most 4 MB");
+}
+
+TEST(SceneError, InAFileSaysItsName) {
+  const base::TemporaryFolder folder;
+  const std::string file = folder / "bad.toml";
+  std::ofstream(file) << "name = 'x'\nfoo = 1\n";
+  EXPECT_THAT(message([&] { load_scene(file); }), StartsWith(file + ":2: unknown key 'foo'"));
+}
+
+TEST(SceneError, OfAnOverrideWithoutKeyOrValue) {
+  for (const std::string text : {"material.damping", "=3", "material.damping="})
+    EXPECT_EQ(message([&] { model::parse_override(text); }),
+              "--set " + text + ": expected key=value, for example material.damping=0.5");
+}
+
+}  // namespace
+}  // namespace drape::verify::scene_error_test

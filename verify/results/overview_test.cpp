@@ -1,0 +1,153 @@
+// What report says of files on one screen.
+
+#include "results/analysis/overview.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "results/analysis/conclusion.hpp"
+#include "results/table_builder.hpp"
+
+namespace drape::verify::overview_test {
+namespace {
+
+using results::Recording;
+using results::RunRecord;
+using results::Table;
+using results::TableBuilder;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+Recording recording(TableBuilder table) { return {{}, {}, {table.finish()}}; }
+
+/// A table of the overview, which is the only one beside the conclusion.
+std::string shown(const Recording& recording, const std::string& name) {
+  const std::vector<Table> tables = results::overview({&recording, 1});
+  EXPECT_LE(tables.size(), 2);
+  return results::to_csv(*std::ranges::find(tables, name, &Table::name));
+}
+
+/// What is concluded, sentence by sentence.
+std::vector<std::string> conclusion(const Recording& recording) {
+  const Table table = results::conclusion({&recording, 1});
+  std::vector<std::string> sentences;
+  for (std::size_t row = 0; row < rows(table); ++row)
+    sentences.push_back(text_in(find_column(table, "subject"), row) + ": " + text_in(find_column(table, "conclusion"), row));
+  return sentences;
+}
+
+TEST(Overview, CountsOrdersThatAreAsDeclaredAndNamesTheOthers) {
+  TableBuilder table("orders-sheet", "");
+  const auto curve = [&](const char* method, const char* verdict, double order) {
+    table.row();
+    table.text("method", "method", "", method);
+    table.text("verdict", "verdict", "", verdict);
+    if (order > 0) table.number("fitted_order", "fitted", "1", "", order);
+  };
+  curve("bdf2", "", 0);
+  curve("bdf2", "2 as declared", 2.01);
+  curve("bdf3", "NOT 3", 2.5);
+  curve("bdf5", "no order to be seen", 0);
+  EXPECT_EQ(shown(recording(table), "orders"),
+            "table,good,others\norders-sheet,1 of 3,bdf3: NOT 3 but 2.50; bdf5: no order to be seen\n");
+}
+
+TEST(Overview, NamesTheQuickestBesideTheBestOfSundials) {
+  TableBuilder table("winners", "");
+  table.row();
+  table.text("scene", "scene", "", "sheet");
+  table.number("error", "error", "1", "", 0.01);
+  table.text("ours", "", "", "bdf2");
+  table.number("ours_ms", "", "ms", "", 2);
+  for (const auto& [family, ratio] : {std::pair{"cvode-bdf", 7.0}, {"ida-bdf", 3.0}, {"thesis", 2.0}}) {
+    table.text(family, "", "", std::string(family) + " at its best");
+    table.number((std::string(family) + "_ratio").c_str(), "", "1", "", ratio);
+  }
+  table.row();  // where nobody gets to
+  table.number("error", "error", "1", "", 0.001);
+  EXPECT_EQ(shown(recording(table), "winners"),
+            "scene,error,ours,ours_ms,peer,ratio\nsheet,0.01,bdf2,2,ida-bdf at its best,3\n");
+}
+
+RunRecord run(const char* method, double error, double ms) {
+  RunRecord run;
+  run.scene = "sheet";
+  run.method = method;
+  run.step = 0.01;
+  run.outcome = "success";
+  run.times_ms = {ms};
+  run.error.emplace().rms = error;
+  run.error->growth = 1;
+  return run;
+}
+
+TEST(Overview, NamesTheQuickestRunAtEachErrorThatIsResolved) {
+  RunRecord lucky = run("lucky", 1e-9, 0.1), folded = run("folded", 1e-9, 0.1);
+  lucky.error->reference_error = 1e-4;
+  folded.error->growth = 1e6;
+  const Recording recording{{}, {run("slow", 1e-5, 3), run("quick", 1e-2, 0.05), run("slower", 1e-5, 4), lucky, folded}, {}};
+  EXPECT_EQ(shown(recording, "quickest-runs"),
+            "scene,1e-1,1e-2,1e-3,1e-4,1e-5,1e-6,1e-7\nsheet,quick 0.01,quick 0.01,lucky 0.01,slow 0.01,slow 0.01,,\n");
+}
+
+TEST(Overview, ShowsWhatFailedAndWhy) {
+  RunRecord failed = run("bdf2", 0, 1);
+  failed.error.reset();
+  failed.overrides = "k=1";
+  failed.outcome = "unstable";
+  failed.message = "too much energy";
+  failed.last_good_time = 0.12;
+  EXPECT_EQ(shown({{}, {failed}, {}}, "failures"),
+            "scene,method,step,outcome,reached,message\nsheet k=1,bdf2,0.01,unstable,0.12,too much energy\n");
+}
+
+TEST(Overview, ShowsTenOfWhatIsNotAsItWasWanted) {
+  TableBuilder table("bars", "");
+  for (int k = 0; k < 24; ++k) {
+    table.row();
+    table.text("bar", "bar", "", "faster");
+    table.number("error", "error", "1", "", 0.1);
+    table.text("verdict", "verdict", "", k % 2 == 0 ? "met" : "NOT met by 2");
+  }
+  const Recording all = recording(table);
+  const Table not_met = results::overview({&all, 1}).at(0);
+  EXPECT_EQ(rows(not_met), 10);
+  EXPECT_THAT(not_met.description, HasSubstr("2 more"));
+  EXPECT_EQ(text_in(find_column(not_met, "row"), 9), "faster at 0.1");
+}
+
+TEST(Conclusion, SaysOfRunsWhoIsQuickWhoIsWrongAndWhoFails) {
+  RunRecord failed = run("unlucky", 0, 1);
+  failed.error.reset();
+  failed.outcome = "unstable";
+  EXPECT_THAT(
+      conclusion({{}, {run("slow", 1e-5, 3), run("quick", 1e-2, 0.05), run("wrong", 0.3, 1), failed}, {}}),
+      ElementsAre("sheet: error <= 0.01 in 0.05 ms by quick, h = 0.01 s; error <= 0.0001 in 3 ms by slow, h = 0.01 s",
+                  "sheet: stable and wrong: wrong, h = 0.01 s, ends 30 % of the size away", "sheet: fails: unlucky unstable"));
+}
+
+TEST(Conclusion, SaysOfTablesHowManyOrdersAreAsDeclaredAndHowFarSundialsIsBehind) {
+  TableBuilder orders("orders-sheet", ""), winners("winners", "");
+  for (const char* verdict : {"", "2 as declared", "NOT 3"}) {
+    orders.row();
+    orders.text("verdict", "verdict", "", verdict);
+    orders.number("fitted_order", "fitted", "1", "", 2);
+  }
+  for (const double ratio : {3.0, 0.9, 2.0}) {
+    winners.row();
+    winners.text("scene", "scene", "", "sheet");
+    winners.number("arkode-steps_ratio", "", "1", "", ratio);
+    winners.number("cvode-bdf_ratio", "", "1", "", 4);
+    winners.number("thesis_ratio", "", "1", "", 0.1);
+  }
+  EXPECT_THAT(
+      conclusion({{}, {}, {orders.finish(), winners.finish()}}),
+      ElementsAre("orders-sheet: 1 of 2 methods converge with the order they declare",
+                  "sheet: SUNDIALS, tuned, takes 0.9 to 3 times as long as our quickest, in the median 2, over 3 errors"));
+}
+
+TEST(Overview, OfNothingIsEmpty) { EXPECT_THAT(results::overview({}), IsEmpty()); }
+
+}  // namespace
+}  // namespace drape::verify::overview_test

@@ -1,0 +1,132 @@
+// Steps allocate no memory.
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstdlib>
+
+#include "model/cloth.hpp"
+#include "model/scene_file/scene_file.hpp"
+#include "verify/support/small_problems.hpp"
+
+namespace {
+std::atomic<std::int64_t> allocations = 0;
+}
+
+// All ways to memory lead through malloc and its relatives, `new` and the libraries of others included.
+#ifdef DRAPE_SANITIZE
+// Declared here because g++ 12 ships the function without its header.
+// NOLINTNEXTLINE(readability-identifier-naming)
+extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*)(const volatile void*, std::size_t),
+                                                         void (*)(const volatile void*));
+
+namespace {
+const int installed = __sanitizer_install_malloc_and_free_hooks([](const volatile void*, std::size_t) { ++allocations; },
+                                                                [](const volatile void*) {});
+}
+#else
+// The C library's own, which the linker would have taken if we had not defined these here.
+extern "C" {
+void* __libc_malloc(std::size_t);
+void* __libc_calloc(std::size_t, std::size_t);
+void* __libc_realloc(void*, std::size_t);
+void* __libc_memalign(std::size_t, std::size_t);
+
+void* malloc(std::size_t size) noexcept { return ++allocations, __libc_malloc(size); }
+void* calloc(std::size_t count, std::size_t size) noexcept { return ++allocations, __libc_calloc(count, size); }
+void* realloc(void* old, std::size_t size) noexcept { return ++allocations, __libc_realloc(old, size); }
+void* memalign(std::size_t alignment, std::size_t size) noexcept { return ++allocations, __libc_memalign(alignment, size); }
+void* aligned_alloc(std::size_t alignment, std::size_t size) noexcept { return memalign(alignment, size); }
+int posix_memalign(void** result, std::size_t alignment, std::size_t size) noexcept {
+  *result = memalign(alignment, size);
+  return *result ? 0 : ENOMEM;
+}
+}
+#endif
+
+namespace drape::verify::allocation_test {
+namespace {
+
+using namespace small_problems;
+using solver::Integrator;
+using solver::Outcome;
+
+/// Allocations while f runs.
+template <class F>
+std::int64_t allocations_of(const F& f) {
+  const std::int64_t before = allocations;
+  f();
+  return allocations - before;
+}
+
+void* volatile last_used = nullptr;
+
+/// Keeps the compiler from leaving out an allocation that nobody uses.
+void* used(void* memory) {
+  last_used = memory;
+  return memory;
+}
+
+TEST(AllocationCounter, SeesAllWaysToAllocate) {
+  EXPECT_EQ(allocations_of([] {}), 0);
+  EXPECT_EQ(allocations_of([] { used(std::vector<double>(100).data()); }), 1);
+  EXPECT_EQ(allocations_of([] { used(Vectors(100, 3).data()); }), 1);
+  EXPECT_EQ(allocations_of([] { delete static_cast<int*>(used(new int)); }), 1);
+  EXPECT_EQ(allocations_of([] { std::free(used(std::malloc(100))); }), 1);
+  EXPECT_EQ(allocations_of([] { std::free(used(std::calloc(10, 10))); }), 1);
+  EXPECT_EQ(allocations_of([] { std::free(used(std::realloc(nullptr, 100))); }), 1);
+  EXPECT_EQ(allocations_of([] { std::free(used(std::aligned_alloc(64, 128))); }), 1);
+  void* memory = nullptr;
+  EXPECT_EQ(allocations_of([&] { EXPECT_EQ(posix_memalign(&memory, 64, 128), 0); }), 1);
+  std::free(memory);
+}
+
+class Allocations : public testing::TestWithParam<std::tuple<std::string, std::string>> {
+ protected:
+  const Method& method = solver::method(std::get<0>(GetParam()));
+  Options options;
+
+  void SetUp() override {
+    if (!method.implicit() && !method.sub_steps) GTEST_SKIP() << "solves systems of its own, as it likes";
+    options.linear_solver = &solver::linear_solver(std::get<1>(GetParam()));
+  }
+
+  /// Allocations of 50 steps after those that begin a history.
+  std::int64_t of_steps(const model::Cloth& cloth, const Options& chosen) {
+    Integrator integrator(cloth.ode, method, chosen, cloth.start);
+    const auto steps = [&](int n) {
+      for (int k = 0; k < n; ++k) EXPECT_EQ(integrator.step(2e-4).outcome, Outcome::success);
+    };
+    steps(method.past_states + 2);
+    return allocations_of([&] { steps(50); });
+  }
+};
+INSTANTIATE_TEST_SUITE_P(, Allocations,
+                         testing::Combine(testing::ValuesIn(names(solver::methods())),
+                                          testing::ValuesIn(names(solver::linear_solvers()))),
+                         [](const auto& test) { return identifier(std::get<0>(test.param)) + "_" + std::get<1>(test.param); });
+
+TEST_P(Allocations, DoNotHappenInStepsOfAHungSheet) {
+  const model::Override small[] = {{"grid.n", "10"}};
+  EXPECT_EQ(of_steps(model::compile(model::load_scene("hung-edge", small)), options), 0);
+}
+
+TEST_P(Allocations, DoNotHappenInStepsWithAllForces) {
+  const model::Override windy[] = {{"forces.wind", "[1, 2, 3]"}, {"forces.lift", "0.5"}, {"forces.air", "0.1"}};
+  EXPECT_EQ(of_steps(model::compile(model::load_scene("pulled", windy)), options), 0);
+}
+
+TEST_P(Allocations, AreSeenIfTheForceAllocates) {
+  const model::Override small[] = {{"grid.n", "10"}};
+  model::Cloth cloth = model::compile(model::load_scene("hung-edge", small));
+  for (auto* f : {&cloth.ode.force, &cloth.ode.explicit_force})
+    *f = [original = *f](double t, const Vectors& x, const Vectors& v, Vectors& force) {
+      used(std::vector<double>(1).data());
+      original(t, x, v, force);
+    };
+  EXPECT_GE(of_steps(cloth, options), 50);
+}
+
+}  // namespace
+}  // namespace drape::verify::allocation_test
