@@ -1,8 +1,9 @@
 #include "solver/global_error.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 #include <limits>
 #include <vector>
@@ -188,8 +189,8 @@ class Planner {
   }
 
   GlobalControl too_costly(double scale) const {
-    std::string why = "an error of " + text(control_.tolerance) + " takes more than " + std::to_string(control_.most_steps) +
-                      " steps, about " + text(expected_steps(scale)) + " as far as pilot runs tell";
+    std::string why = fmt::format("an error of {:.2g} takes more than {} steps, about {:.2g} as far as pilot runs tell",
+                                  control_.tolerance, control_.most_steps, expected_steps(scale));
     if (!pilots_.back().message.empty()) why += "; the last: " + pilots_.back().message;
     return {0, 0, false, why};
   }
@@ -200,8 +201,10 @@ class Planner {
     for (std::size_t k = 1; k < pilots_.size(); ++k) {
       const bool far_more = pilots_[k].steps >= many_steps && more_steps(k) > 2 * finer(k);
       if (!no_finer(k) && !far_more) continue;
-      return "stability or ringing limits the steps, not the tolerance alone: " + std::to_string(pilots_[k - 1].steps) +
-             ", and " + std::to_string(pilots_[k].steps) + " with steps meant to be " + text(finer(k)) + " times finer";
+      return fmt::format(
+          "stability or ringing limits the steps, not the tolerance alone: {}, and {} with steps meant to be {:.2g} times "
+          "finer",
+          pilots_[k - 1].steps, pilots_[k].steps, finer(k));
     }
     return "";
   }
@@ -210,14 +213,8 @@ class Planner {
   std::string cliff(const Pilot& chosen) const {
     if (chosen.error >= lowest * control_.tolerance || chosen.largest_steps || &chosen == pilots_.data()) return "";
     const Pilot& coarser = *(&chosen - 1);
-    return "the error jumps: " + text(coarser.error) + " with " + std::to_string(coarser.steps) + " steps, " +
-           text(chosen.error) + " with " + std::to_string(chosen.steps);
-  }
-
-  static std::string text(double value) {
-    char digits[32];
-    std::snprintf(digits, sizeof digits, "%.2g", value);
-    return digits;
+    return fmt::format("the error jumps: {:.2g} with {} steps, {:.2g} with {}", coarser.error, coarser.steps, chosen.error,
+                       chosen.steps);
   }
 
   const Integrator& integrator_;

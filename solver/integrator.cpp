@@ -1,5 +1,7 @@
 #include "solver/integrator.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -39,8 +41,8 @@ int history_points(const Method& method, const Options& options) {
 }
 
 std::string describe(Outcome outcome, const StageResult& result, double t, double h) {
-  return "step from t = " + std::to_string(t) + " s with h = " + std::to_string(h) + " s: " + std::string(to_string(outcome)) +
-         " after " + std::to_string(result.updates) + " updates and " + std::to_string(result.cg_iterations) + " CG iterations";
+  return fmt::format("step from t = {:f} s with h = {:f} s: {} after {} updates and {} CG iterations", t, h, to_string(outcome),
+                     result.updates, result.cg_iterations);
 }
 
 }  // namespace
@@ -272,8 +274,8 @@ RunResult advance(Integrator& integrator, double t_end, double h, const Observer
   for (double left = t_end - integrator.time(); left > same_step * h; left = t_end - integrator.time()) {
     if (control.enabled() && run.steps + run.rejected_steps >= control.most_steps) {
       run.outcome = Outcome::inaccurate;
-      run.message = "more than " + std::to_string(control.most_steps) + " steps, " + std::to_string(run.rejected_steps) +
-                    " of them rejected, at t = " + std::to_string(integrator.time()) + " s";
+      run.message = fmt::format("more than {} steps, {} of them rejected, at t = {:g} s", control.most_steps,
+                                run.rejected_steps, integrator.time());
       return run;
     }
     const double size = sizes.next(left);
