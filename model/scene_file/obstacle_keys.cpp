@@ -95,8 +95,8 @@ constexpr ObstacleKey obstacle_keys[] = {
      [](const ObstacleRule& o) { return written(shapes, o.kind); }},
     {"size", only(ShapeKind::box), true,
      [](const Value& v, ObstacleRule& o) {
-       const std::vector<Value> sides = v.list(3);
-       o.size = {sides[0].positive(), sides[1].positive(), sides[2].positive()};
+       const std::vector<Value> lengths = v.list(3);
+       o.size = {lengths[0].positive(), lengths[1].positive(), lengths[2].positive()};
      },
      [](const ObstacleRule& o) { return written(o.size); }},
     {"radius", only(ShapeKind::sphere) | only(ShapeKind::cylinder), true,
