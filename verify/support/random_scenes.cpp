@@ -20,6 +20,10 @@ class Dice {
     const double z = between(-1, 1), angle = between(0, 6.283185307), r = std::sqrt(1 - z * z);
     return {r * std::cos(angle), r * std::sin(angle), z};
   }
+  Eigen::Vector3d vector(double shortest, double longest) {
+    const double length = decades(shortest, longest);
+    return length * direction();
+  }
 
  private:
   std::mt19937& random_;
@@ -52,8 +56,7 @@ void choose_pins(Dice& dice, std::vector<model::PinRule>& pins) {
   pins.clear();
   constexpr const char* places[] = {"upper corners", "upper edge", "left edge", "corners", "border"};
   if (!dice.one_in(5)) pins.push_back({.where = places[dice.up_to(5)], .particles = {}});
-  if (dice.one_in(3))
-    pins.push_back({.where = "right edge", .particles = {}, .velocity = dice.decades(0.1, 3) * dice.direction()});
+  if (dice.one_in(3)) pins.push_back({.where = "right edge", .particles = {}, .velocity = dice.vector(0.1, 3)});
   if (dice.one_in(6) && !pins.empty()) pins.back().directions[static_cast<std::size_t>(dice.up_to(3))] = false;
 }
 
@@ -66,8 +69,7 @@ void choose_obstacle(Dice& dice, Scene& scene) {
   const double below = rule.kind == model::ShapeKind::plane ? gap : gap + rule.radius;
   const Eigen::Vector3d at(0.4, 0.4, -below);
   rule.motion = {{.t = 0, .position = at}};
-  if (dice.one_in(2))
-    rule.motion.push_back({.t = scene.end, .position = at + dice.between(0, 1) * scene.end * dice.direction()});
+  if (dice.one_in(2)) rule.motion.push_back({.t = scene.end, .position = at + scene.end * dice.vector(0.1, 1)});
   scene.obstacles = {rule};
   if (dice.one_in(3)) scene.contact.response = model::ResponseKind::reaction;
 }
@@ -83,17 +85,14 @@ Scene random_scene(std::mt19937& random) {
   sheet.grid = {
       .nu = 4 + dice.up_to(6), .nv = 4 + dice.up_to(6), .size_u = dice.between(0.5, 1.2), .size_v = dice.between(0.5, 1.2)};
   choose_material(dice, sheet.material);
-  if (!dice.one_in(3)) sheet.gravity = (dice.one_in(3) ? dice.decades(1e-3, 1) : 9.81) * dice.direction();
+  if (!dice.one_in(3)) sheet.gravity = dice.one_in(3) ? dice.vector(1e-3, 1) : dice.vector(9.81, 9.81);
   if (dice.one_in(5))
-    sheet.wind = {.load = dice.decades(0.1, 10) * dice.direction(),
-                  .constant = 0.3,
-                  .frequency = dice.between(0, 20),
-                  .lift = dice.between(0, 1)};
+    sheet.wind = {.load = dice.vector(0.1, 10), .constant = 0.3, .frequency = dice.between(0, 20), .lift = dice.between(0, 1)};
   if (dice.one_in(5)) sheet.air = dice.decades(1e-2, 1);
   choose_pins(dice, scene.pins);
   if (dice.one_in(3)) scene.start.stretch = {dice.between(0.9, 1.2), dice.between(0.9, 1.2)};
   if (dice.one_in(2)) scene.start.pleats = {1 + dice.up_to(3), dice.between(5, 60)};
-  if (dice.one_in(3)) scene.start.velocity = dice.decades(0.1, 3) * dice.direction();
+  if (dice.one_in(3)) scene.start.velocity = dice.vector(0.1, 3);
   if (dice.one_in(6)) choose_obstacle(dice, scene);
   return scene;
 }
