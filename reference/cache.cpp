@@ -6,12 +6,13 @@
 
 #include <Eigen/Core>
 #include <cstdlib>
-#include <fstream>
+#include <span>
 #include <system_error>
 
 #include "reference/fingerprint.hpp"
 #include "reference/reference_file.hpp"
 #include "reference/sundials/sundials_build.hpp"
+#include "solver/base/atomic_file.hpp"
 #include "solver/base/input_file.hpp"
 #include "solver/base/temporary.hpp"
 
@@ -23,17 +24,6 @@ constexpr std::uintmax_t largest_file = std::uintmax_t{4} << 30;  // [bytes]
 std::string complete(std::string_view key) {
   return fmt::format("{}\n{}, Eigen {}.{}.{}\n{}\n", key, sundials_versions(), EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION,
                      EIGEN_MINOR_VERSION, fingerprint);
-}
-
-/// Writes a file of its own beside the target and renames it, so that no reader ever sees a half of it.
-void write_atomically(const std::filesystem::path& target, const std::string& bytes) {
-  std::filesystem::create_directories(target.parent_path());
-  const base::Temporary temporary(target.parent_path(), base::Temporary::Kind::file);
-  std::ofstream file(temporary.path(), std::ios::binary);
-  file.exceptions(std::ios::badbit | std::ios::failbit);
-  file << bytes;
-  file.close();
-  std::filesystem::rename(temporary.path(), target);
 }
 
 }  // namespace
@@ -79,7 +69,9 @@ void Cache::store(std::string_view key, const Reference& reference) {
   const std::filesystem::path path = file(key);
   try {
     if (folder_.empty()) throw std::runtime_error("none of DRAPE_CACHE, XDG_CACHE_HOME and HOME names a folder");
-    write_atomically(path, encode(complete(key), reference));
+    const std::string bytes = encode(complete(key), reference);
+    base::create_folder(folder_);
+    base::publish(path, std::as_bytes(std::span(bytes)), base::Existing::replace);
   } catch (const std::exception& error) {
     ++counts_.not_stored;
     messages_.push_back(fmt::format("the reference is not kept for the next run: {}", error.what()));

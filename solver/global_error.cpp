@@ -38,6 +38,7 @@ struct Pilot {
   bool largest_steps = false;           ///< whether all are as long as allowed
   std::vector<Vectors> positions = {};  ///< at the tenths; fewer if it failed
   std::string message = {};             ///< why it did
+  double distance = unknown;            ///< from the one flown before
   double error = unknown;
 };
 
@@ -107,8 +108,9 @@ class Planner {
     Options options = integrator_.options();
     options.error_control.global = false;
     options.error_control.tolerance = tolerance(scale);
-    const double most = pilots_.empty() ? unknown : std::max<double>(few_steps, most_excess * expected);
-    options.error_control.most_steps = static_cast<int>(std::min<double>(control_.most_steps, most));
+    if (!pilots_.empty())
+      options.error_control.most_steps =
+          static_cast<int>(std::min<double>(control_.most_steps, std::max<double>(few_steps, most_excess * expected)));
     Integrator integrator(integrator_.ode(), integrator_.method(), options, integrator_.state(), integrator_.time());
     SmoothOutput output(times_, integrator.time(), integrator.state());
     const RunResult run =
@@ -116,6 +118,7 @@ class Planner {
     const int steps = run.steps + run.rejected_steps;
     const bool largest = steps <= std::ceil((t_end_ - integrator_.time()) / largest_step(scale));
     pilots_.push_back({scale, steps, largest, std::move(output.positions), run.message});
+    if (pilots_.size() > 1) pilots_.back().distance = distance(pilots_[pilots_.size() - 2], pilots_.back());
     return steps < options.error_control.most_steps;
   }
 
@@ -128,11 +131,9 @@ class Planner {
     return std::isfinite(distance) ? distance : unknown;
   }
 
-  /// Of the pilot that is `back` pilots before the last from the next.
-  double last_distance(std::size_t back = 0) const {
-    return distance(pilots_[pilots_.size() - 2 - back], pilots_[pilots_.size() - 1 - back]);
-  }
-  double fall() const { return last_distance(1) / last_distance(); }
+  /// As long as there are no trials.
+  double last_distance() const { return pilots_.back().distance; }
+  double fall() const { return pilots_[pilots_.size() - 2].distance / last_distance(); }
 
   /// How many times finer pilot k was meant to be than the one before, and how many times as many steps it took.
   double finer(std::size_t k) const { return pilots_[k - 1].scale / pilots_[k].scale; }

@@ -55,11 +55,11 @@ results::Motion read(const std::vector<std::string>& files, std::optional<double
   const fs::path plain = folder / "motion.h5";
   std::vector<std::string> arguments{plain, frame_time ? fmt::format("{}", *frame_time) : "none"};
   arguments.insert(arguments.end(), files.begin(), files.end());
-  const ScriptResult result = run_script("score/external_motion.py", arguments);
+  constexpr std::string_view script = "score/external_motion.py";
+  const ScriptResult result = run_script(script, arguments);
   if (!result.success)
-    throw std::invalid_argument(result.said.starts_with("score/external_motion.py")
-                                    ? fmt::format("{}: {}: it is damaged", title(files), result.said)
-                                    : result.said);
+    throw std::invalid_argument(
+        result.said.starts_with(script) ? fmt::format("{}: {}: it is damaged", title(files), result.said) : result.said);
   return results::read_motion(plain);
 }
 

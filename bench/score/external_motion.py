@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""foreign_motion.py OUT.h5 FRAME_TIME FILE...: brings the motion of another simulator into one plain HDF5 file.
+"""external_motion.py OUT.h5 FRAME_TIME FILE...: brings the motion of another simulator into one plain HDF5 file.
 
 FILE is one HDF5 file with /time, /positions and maybe /velocities (FRAME_TIME is then "none"), or meshes that meshio
 reads, one a frame, in the natural order of their names: sheet-9.obj comes before sheet-10.obj. Should a damaged file

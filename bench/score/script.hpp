@@ -12,7 +12,7 @@ struct ScriptResult {
   std::string said;  ///< all that it has written; if it failed, why in one line
 };
 
-/// Runs one of the Python scripts beside this header.
+/// Runs a Python script, by its path in bench/.
 ScriptResult run_script(std::string_view script, const std::vector<std::string>& arguments);
 
 }  // namespace drape::bench

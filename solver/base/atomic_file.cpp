@@ -31,9 +31,9 @@ bool is_there(const fs::path& path) {
 }
 
 /// The file under another name in the same folder: only within a file system can it be renamed.
-base::Temporary temporary_beside(const fs::path& file) {
+Temporary temporary_beside(const fs::path& file) {
   try {
-    return {folder_of(file), base::Temporary::Kind::file};
+    return {folder_of(file), Temporary::Kind::file};
   } catch (const std::system_error& error) {
     errno = error.code().value();
     fail_to_create_beside(file);
@@ -44,7 +44,7 @@ base::Temporary temporary_beside(const fs::path& file) {
 
 void require_creatable(const fs::path& file) {
   if (is_there(file)) refuse_existing(file);
-  const base::Temporary attempt =
+  const Temporary attempt =
       temporary_beside(file);  // the only test that knows of rights, full and read-only file systems alike
 }
 
@@ -75,7 +75,7 @@ void publish_folder(const fs::path& folder, const std::map<std::string, std::str
 }
 
 void publish(const fs::path& file, std::span<const std::byte> content, Existing existing) {
-  const base::Temporary temporary = temporary_beside(file);
+  const Temporary temporary = temporary_beside(file);
   write_all(file, temporary.descriptor(), content);
   if (existing == Existing::replace) {
     if (std::rename(temporary.path().c_str(), file.c_str()) != 0) fail(file, "cannot be replaced");

@@ -3,15 +3,18 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <filesystem>
 #include <span>
+#include <string>
 #include <string_view>
 #include <system_error>
+#include <vector>
 
 #include "solver/base/atomic_file.hpp"
 
-/// What atomic_file.cpp and journal.cpp share of the operating system's files.
+/// What those who write files and start processes share of the operating system's files.
 namespace drape::base {
 
 /// Owns an open file; one that could not be opened is negative.
@@ -47,6 +50,18 @@ inline void write_all(const std::filesystem::path& file, int fd, std::span<const
     content = content.subspan(static_cast<std::size_t>(written));
   }
   if (fsync(fd) != 0) fail(file, "cannot be written");
+}
+
+/// All bytes of a file that is open for reading, wherever it stands. Throws std::system_error that names `what`.
+inline std::vector<std::byte> bytes_of(const Descriptor& file, const std::string& what) {
+  const off_t size = lseek(file.fd, 0, SEEK_END);
+  std::vector<std::byte> bytes(static_cast<std::size_t>(std::max<off_t>(size, 0)));
+  for (std::size_t at = 0; at < bytes.size();) {
+    const ssize_t n = pread(file.fd, bytes.data() + at, bytes.size() - at, static_cast<off_t>(at));
+    if (n <= 0) throw std::system_error(errno, std::generic_category(), what);
+    at += static_cast<std::size_t>(n);
+  }
+  return bytes;
 }
 
 }  // namespace drape::base

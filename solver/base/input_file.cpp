@@ -7,6 +7,8 @@
 #include <cerrno>
 #include <system_error>
 
+#include "solver/base/descriptor.hpp"
+
 namespace drape::base {
 namespace {
 
@@ -22,17 +24,6 @@ void check(const struct stat& status, std::uintmax_t most_bytes) {
     throw UnreadableFile("has " + in_megabytes(size) + ", more than " + in_megabytes(most_bytes));
 }
 
-struct Opened {
-  int fd;
-  explicit Opened(const std::filesystem::path& file)
-      : fd(open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK)) {  // a pipe would wait for somebody who writes
-    if (fd < 0) fail();
-  }
-  Opened(const Opened&) = delete;
-  Opened& operator=(const Opened&) = delete;
-  ~Opened() { close(fd); }
-};
-
 }  // namespace
 
 void require_input_file(const std::filesystem::path& file, std::uintmax_t most_bytes) {
@@ -42,8 +33,9 @@ void require_input_file(const std::filesystem::path& file, std::uintmax_t most_b
 }
 
 std::string content_of(const std::filesystem::path& file, std::uintmax_t most_bytes) {
-  require_input_file(file, most_bytes);  // opening a device may act on it
-  const Opened opened(file);
+  require_input_file(file, most_bytes);                                                       // opening a device may act on it
+  const Descriptor opened(open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK));  // a pipe would wait for a writer
+  if (opened.fd < 0) fail();
   struct stat status {};
   if (fstat(opened.fd, &status) != 0) fail();
   check(status, most_bytes);

@@ -7,7 +7,6 @@
 #include <sys/syscall.h>
 #include <sys/wait.h>
 
-#include <array>
 #include <csignal>
 #include <utility>
 
@@ -20,12 +19,9 @@ namespace {
   throw std::system_error(error, std::generic_category(), program);
 }
 
-std::string text_of(const Descriptor& file) {
-  std::string text;
-  std::array<char, 65536> buffer{};
-  for (ssize_t n = 0; (n = pread(file.fd, buffer.data(), buffer.size(), static_cast<off_t>(text.size()))) > 0;)
-    text.append(buffer.data(), static_cast<std::size_t>(n));
-  return text;
+std::string text_of(const Descriptor& file, const std::string& program) {
+  const std::vector<std::byte> bytes = bytes_of(file, program);
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
 /// What a child is started with.
@@ -97,7 +93,7 @@ ChildSaid run_child(std::vector<std::string> words, double seconds) {
   const Setup setup(out, err);
   Group group(words, setup);
   const int code = group.wait(seconds, words[0]);
-  return {code, text_of(out), text_of(err)};
+  return {code, text_of(out, words[0]), text_of(err, words[0])};
 }
 
 }  // namespace drape::base

@@ -38,7 +38,7 @@ std::string nearest_name(std::string_view name, std::span<const std::string_view
 
 std::string unknown_name(std::string_view kind, std::string_view name, std::span<const std::string_view> names) {
   std::string message("unknown ");
-  message.append(kind).append(" '").append(base::quoted(name)).append("'");
+  message.append(kind).append(" '").append(quoted(name)).append("'");
   if (const std::string nearest = nearest_name(name, names); !nearest.empty())
     message.append(" (did you mean ").append(nearest).append("?)");
   const char* separator = ": expected one of ";

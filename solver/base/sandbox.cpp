@@ -27,7 +27,9 @@ namespace {
 /// How a copy ends, as exit codes that nobody else uses.
 enum Ending : int { done = 70, failed = 71, out_of_memory = 72 };
 
-[[noreturn]] void fail_as(int error) { throw std::system_error(error, std::generic_category(), "process of its own"); }
+constexpr const char* own_process = "process of its own";
+
+[[noreturn]] void fail_as(int error) { throw std::system_error(error, std::generic_category(), own_process); }
 
 /// At most `value`, or what the system allows.
 void limit(int resource, rlim_t value) {
@@ -37,7 +39,7 @@ void limit(int resource, rlim_t value) {
   if (setrlimit(static_cast<__rlimit_resource>(resource), &wanted) != 0) fail_as(errno);
 }
 
-void put(const Descriptor& out, std::span<const std::byte> bytes) { write_all("process of its own", out.fd, bytes); }
+void put(const Descriptor& out, std::span<const std::byte> bytes) { write_all(own_process, out.fd, bytes); }
 
 Ending compute_in_copy(const std::function<std::vector<std::byte>()>& compute, const SandboxLimits& limits,
                        const Descriptor& out, const Descriptor& silence) {
@@ -59,17 +61,6 @@ Ending compute_in_copy(const std::function<std::vector<std::byte>()>& compute, c
     put(out, std::as_bytes(std::span(std::string_view(error.what()))));
     return failed;
   }
-}
-
-std::vector<std::byte> bytes_of(const Descriptor& file) {
-  const off_t size = lseek(file.fd, 0, SEEK_END);
-  std::vector<std::byte> bytes(static_cast<std::size_t>(std::max<off_t>(size, 0)));
-  for (std::size_t at = 0; at < bytes.size();) {
-    const ssize_t n = pread(file.fd, bytes.data() + at, bytes.size() - at, static_cast<off_t>(at));
-    if (n <= 0) fail_as(errno);
-    at += static_cast<std::size_t>(n);
-  }
-  return bytes;
 }
 
 int status_of(pid_t copy) {
@@ -105,7 +96,7 @@ std::vector<std::byte> in_sandbox(const std::function<std::vector<std::byte>()>&
   if (copy < 0) fail_as(errno);
   if (copy == 0) _exit(compute_in_copy(compute, limits, out, silence));
   const int status = status_of(copy);
-  std::vector<std::byte> said = bytes_of(out);
+  std::vector<std::byte> said = bytes_of(out, own_process);
   if (!WIFEXITED(status) || WEXITSTATUS(status) != done) say_why(status, said, limits);
   return said;
 }

@@ -11,9 +11,9 @@ namespace drape::base {
 namespace fs = std::filesystem;
 namespace {
 
-base::Temporary folder_in(const fs::path& parent, const std::string& name) {
+Temporary folder_in(const fs::path& parent, const std::string& name) {
   try {
-    return {parent, base::Temporary::Kind::folder};
+    return {parent, Temporary::Kind::folder};
   } catch (const std::system_error& error) {
     throw FileError(fmt::format("{}: cannot create files in it ({})", name, error.code().message()));
   }

@@ -21,7 +21,7 @@ class TemporaryFolder {
   const std::filesystem::path& path() const { return folder_.path(); }
 
  private:
-  base::Temporary folder_;
+  Temporary folder_;
 };
 
 }  // namespace drape::base

@@ -7,8 +7,8 @@ namespace drape::bench {
 
 /// One way to set SUNDIALS up. It solves the same forces as our methods do, and where it factors, with our factor.
 struct PeerSetup {
-  std::string
-      package;  ///< a family of reference/sundials/families.hpp, or "arkode-steps" with a method of reference/tableaux.hpp
+  /// A family of reference/sundials/families.hpp, or "arkode-steps" with a method of reference/tableaux.hpp.
+  std::string package;
   std::string newton;  ///< one of reference/newton_solves.hpp; empty if it solves no systems
   int order = 5;
   double velocity_weight = 1;  ///< as reference::Tuning has it, as the following
