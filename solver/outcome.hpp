@@ -7,12 +7,15 @@ namespace drape::solver {
 /// How a solve, a step or a run ended. Anything but `success` means that its result must not be used.
 enum class Outcome {
   success,
-  not_converged,  ///< an iteration reached its limit before its tolerance
-  breakdown,      ///< a matrix that must be positive definite is not
-  not_finite,     ///< a NaN or an infinity appeared
-  inaccurate,     ///< the estimated error is above its tolerance
-  unstable,       ///< the energy is far above all that the scene can have
-  failed,         ///< the method threw an exception
+  not_converged,       ///< an iteration reached its limit before its tolerance
+  breakdown,           ///< a matrix that must be positive definite is not
+  not_finite,          ///< a NaN or an infinity appeared
+  inaccurate,          ///< the estimated error is above its tolerance
+  unstable,            ///< the energy is far above all that the scene can have
+  failed,              ///< the method threw an exception
+  out_of_time,         ///< a limit of wall time was reached,
+  out_of_memory,       ///< of memory,
+  out_of_evaluations,  ///< of evaluations of forces and Newton matrices
 };
 
 /// The outcome as it is written in tables and files, for example "not converged".
@@ -25,6 +28,9 @@ constexpr std::string_view to_string(Outcome outcome) {
     case Outcome::inaccurate: return "inaccurate";
     case Outcome::unstable: return "unstable";
     case Outcome::failed: return "failed";
+    case Outcome::out_of_time: return "out of time";
+    case Outcome::out_of_memory: return "out of memory";
+    case Outcome::out_of_evaluations: return "out of evaluations";
   }
   return "unknown";
 }

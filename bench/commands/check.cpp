@@ -97,7 +97,7 @@ std::string summary(const std::string& method, const std::vector<Table>& tables)
 }
 
 int check(const CheckArguments& a) {
-  Cell cell{{}, "", nullptr, 1, {}};
+  RunSpec cell{{}, "", nullptr, 1, {}};
   choose_method(cell, a.method);  // before anything is computed
   SweepOptions options = a.output.sweep;
   options.out = out_file(a.output, "check");

@@ -67,7 +67,7 @@ Group run_group(const RunArguments& a) {
   model::Scene scene = a.choice.load();
   scene.end = a.until.value_or(scene.end);
   check_steps(a, scene.end);
-  Cell cell{scene, fmt::format("{}", fmt::join(a.choice.sets, " ")), nullptr, 0, a.options};
+  RunSpec cell{scene, fmt::format("{}", fmt::join(a.choice.sets, " ")), nullptr, 0, a.options};
   cell.options.control = step_control(a.control);
   cell.options.error_control = {a.tolerance, model::size(scene), scene.end, scene.obstacles.empty()};
   Group group;
@@ -97,7 +97,7 @@ void run(const RunArguments& a) {
     base::require_creatable(output.sweep.out);  // before a folder is made
     base::create_folder(a.frames.folder);
     base::require_empty_folder(a.frames.folder, "the frames");
-    output.sweep.look = [&](const Cell& cell) { return frame_writer(cell, a.frames); };
+    output.sweep.look = [&](const RunSpec& cell) { return frame_writer(cell, a.frames); };
   }
   sweep_and_print(groups, output, "run");
 }

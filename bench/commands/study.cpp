@@ -56,7 +56,7 @@ Methods methods_of(const Study& chosen, const std::vector<std::string>& names) {
 std::vector<Group> runs_of(std::vector<Group> groups, const Methods& methods) {
   if (methods.empty()) return groups;
   for (Group& group : groups)
-    std::erase_if(group, [&](const Cell& cell) { return std::ranges::find(methods, cell.method) == methods.end(); });
+    std::erase_if(group, [&](const RunSpec& cell) { return std::ranges::find(methods, cell.method) == methods.end(); });
   std::erase_if(groups, [](const Group& group) { return group.empty(); });
   return groups;
 }

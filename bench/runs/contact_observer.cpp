@@ -7,29 +7,26 @@
 
 namespace drape::bench {
 
-ContactWatch::ContactWatch(const model::Scene& scene, const model::Cloth& cloth) : scene_(scene), cloth_(cloth) {
-  record_.clearance = std::numeric_limits<double>::infinity();
+void ContactObserver::begin(const model::Scene& scene, const model::Cloth& cloth, const solver::State&) {
+  scene_ = &scene;
+  cloth_ = &cloth;
+  if (!cloth.contacts) return;
+  record_.emplace().clearance = std::numeric_limits<double>::infinity();
+  start_ = cloth.ode.potential_energy(0, cloth.start.x);
+  least_ = std::numeric_limits<double>::infinity();
+  see(0, cloth.start);
 }
 
-void ContactWatch::see(double t, const solver::State& y, double kinetic, double potential) {
-  if (!cloth_.contacts) return;
+void ContactObserver::see(double t, const solver::State& y) {
+  if (!record_) return;
+  const double kinetic = solver::kinetic_energy(cloth_->ode, y.v), potential = cloth_->ode.potential_energy(t, y.x);
   const double energy = kinetic + potential;
-  if (!begun_) {
-    start_ = potential;
-    least_ = energy;
-    begun_ = true;
-  }
+  least_ = std::min(least_, energy);
   scale_ = base::larger(scale_, kinetic + std::abs(potential - start_));
   rise_ = base::larger(rise_, energy - least_);
-  least_ = std::min(least_, energy);
-  record_.clearance = std::min(record_.clearance, cloth_.contacts->distances(t, y.x).minCoeff());
-  record_.area = contact_area(scene_, cloth_, t, y.x);
-  record_.energy_rise = scale_ > 0 ? rise_ / scale_ : 0;
-}
-
-std::optional<results::ContactRecord> ContactWatch::result() const {
-  if (!cloth_.contacts) return {};
-  return record_;
+  record_->clearance = std::min(record_->clearance, cloth_->contacts->distances(t, y.x).minCoeff());
+  record_->area = contact_area(*scene_, *cloth_, t, y.x);
+  record_->energy_rise = scale_ > 0 ? rise_ / scale_ : 0;
 }
 
 std::vector<bool> in_contact(const model::Scene& scene, const model::Cloth& cloth, double t, const solver::Vectors& x) {

@@ -1,29 +1,29 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
-#include "model/cloth.hpp"
+#include "bench/runs/observer.hpp"
 #include "results/run_record.hpp"
 
 namespace drape::bench {
 
-/// Gathers what obstacles do to a run while it runs.
-class ContactWatch {
+/// Gathers what obstacles do to a run. Costs nothing where there are none.
+class ContactObserver : public Observer {
  public:
-  ContactWatch(const model::Scene& scene, const model::Cloth& cloth);
+  void begin(const model::Scene& scene, const model::Cloth& cloth, const solver::State& start) override;
+  void observe(const solver::StepReport& step) override { see(step.t, step.y); }
 
-  /// A state with its kinetic and potential energy [J]; the first is the start.
-  void see(double t, const solver::State& y, double kinetic, double potential);
-
-  /// Nothing if the scene has no obstacles.
-  std::optional<results::ContactRecord> result() const;
+  /// Nothing if the scene has no obstacles, or the run no start.
+  std::optional<results::ContactRecord> result() const { return record_; }
 
  private:
-  const model::Scene& scene_;
-  const model::Cloth& cloth_;
-  results::ContactRecord record_;
+  void see(double t, const solver::State& y);
+
+  const model::Scene* scene_ = nullptr;
+  const model::Cloth* cloth_ = nullptr;
+  std::optional<results::ContactRecord> record_;
   double start_ = 0, least_ = 0, scale_ = 0, rise_ = 0;  ///< energies [J]
-  bool begun_ = false;
 };
 
 /// Which particles are in contact: at most a twentieth of d away from the collision area. Empty without obstacles.

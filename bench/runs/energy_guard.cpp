@@ -34,11 +34,6 @@ double fall_of(const model::Sheet& sheet, const Vectors& weight) {
   return 0.5 * sheet.gravity.norm() * weight.rowwise().norm().sum();
 }
 
-/// Ends a run from within its observer.
-struct Exceeded {
-  double t, last_good_time;
-};
-
 }  // namespace
 
 EnergyGuard::Work::Work(const solver::SplitOde::Force& given, const State& start, bool jumps) : given_(given), jumps_(jumps) {
@@ -113,26 +108,13 @@ std::string EnergyGuard::message(double t) const {
   return fmt::format("at t = {:.4g} s its energy was {:.3g} J where the scene can have {:.3g} J", t, energy_, limit_);
 }
 
-solver::RunResult integrate(solver::Integrator& integrator, EnergyGuard& guard, double t_end, double h,
-                            const solver::Observer& observer) {
-  double good = integrator.time();
-  solver::RunResult run;
-  try {
-    run = solver::integrate(integrator, t_end, h, [&](const solver::StepReport& step) {
-      if (guard.exceeded(step)) throw Exceeded{step.t, good};
-      good = step.t;
-      ++run.steps;
-      if (observer) observer(step);
-    });
-  } catch (const Exceeded& e) {
-    run.outcome = solver::Outcome::unstable;
-    run.message = guard.message(e.t);
-    run.last_good_time = e.last_good_time;
-    return run;
-  }
-  if (run.outcome == solver::Outcome::success && !guard.judges())
-    run.message = "energy cannot be judged: work is too uncertain with such steps";
-  return run;
+void EnergyGuardObserver::observe(const solver::StepReport& step) {
+  if (guard_->exceeded(step)) throw Ending{solver::Outcome::unstable, guard_->message(step.t), good_};
+  good_ = step.t;
+}
+
+std::string EnergyGuardObserver::remark() const {
+  return guard_->judges() ? "" : "energy cannot be judged: work is too uncertain with such steps";
 }
 
 }  // namespace drape::bench

@@ -1,7 +1,9 @@
 #pragma once
 
-#include "model/cloth.hpp"
-#include "solver/integrator.hpp"
+#include <optional>
+#include <string>
+
+#include "bench/runs/observer.hpp"
 
 namespace drape::bench {
 
@@ -82,9 +84,21 @@ class EnergyGuard {
   bool judges_ = true;
 };
 
-/// solver::integrate, but a run whose energy exceeds the guard's limit, or is no number, ends there as `unstable`; its last
-/// good time is that of the step before. Where the guard cannot judge, the message of a run that succeeds says so.
-solver::RunResult integrate(solver::Integrator& integrator, EnergyGuard& guard, double t_end, double h,
-                            const solver::Observer& observer = {});
+/// Ends a run whose energy exceeds the guard's limit, or is no number, as `unstable`; its last good time is that of the step
+/// before. Where the guard cannot judge, it says so.
+class EnergyGuardObserver : public Observer {
+ public:
+  void begin(const model::Scene& scene, const model::Cloth& cloth, const solver::State&) override {
+    guard_.emplace(scene, cloth);
+  }
+  void observe(const solver::StepReport& step) override;
+  std::string remark() const override;
+
+  const EnergyGuard& guard() const { return *guard_; }  ///< of a run that has begun
+
+ private:
+  std::optional<EnergyGuard> guard_;
+  double good_ = 0;  ///< [s]
+};
 
 }  // namespace drape::bench

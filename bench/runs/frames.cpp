@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// A name for a run that any file system takes.
-std::string run_name(const Cell& cell) {
+std::string run_name(const RunSpec& cell) {
   std::string name = fmt::format("{}-{}-{}", cell.scene.name, cell.method_name(), cell.step);
   std::ranges::replace_if(
       name, [](unsigned char c) { return !std::isalnum(c) && c != '.' && c != '_'; }, '-');
@@ -34,7 +34,7 @@ void write(const fs::path& file, double t, const model::Polygons& polygons) {
 
 class Writer {
  public:
-  Writer(const Cell& cell, const Frames& frames)
+  Writer(const RunSpec& cell, const Frames& frames)
       : folder_(frames.folder / run_name(cell)), every_(frames.every), grid_(cell.scene.sheet.grid) {
     base::create_folder(folder_);
     for (const model::ObstacleRule& rule : cell.scene.obstacles) obstacles_.emplace_back(rule, 4 * model::size(cell.scene));
@@ -61,7 +61,7 @@ class Writer {
 
 }  // namespace
 
-solver::Observer frame_writer(const Cell& cell, const Frames& frames) {
+solver::Observer frame_writer(const RunSpec& cell, const Frames& frames) {
   return [writer = Writer(cell, frames)](const solver::StepReport& step) mutable { writer.see(step.t, step.y); };
 }
 

@@ -13,7 +13,7 @@ std::string hash_of(std::string_view text);
 /// Identity of a cell: a hash of all that determines its result beside the program itself and the machine, thus equal in all
 /// files where the same was asked for: scene, method, solvers with their options, step, and whether errors are measured and the
 /// motion is kept.
-std::string identity(const Cell& cell, const SweepOptions& options);
+std::string identity(const RunSpec& cell, const SweepOptions& options);
 
 /// Identity of a list of groups with their repetitions and limits.
 std::string identity(const std::vector<Group>& groups, const SweepOptions& options);

@@ -4,7 +4,6 @@
 #include <malloc.h>
 
 #include <cerrno>
-#include <chrono>
 #include <cmath>
 #include <system_error>
 
@@ -13,8 +12,6 @@
 
 namespace drape::bench {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 rlimit limit_of_data() {
   rlimit limit{};
@@ -29,20 +26,38 @@ void limit_data(rlim_t bytes) {
 
 }  // namespace
 
-void watch(solver::SplitOde& ode, double seconds) {
-  const auto begin = Clock::now();
-  const auto watched = [=](auto inner) {
-    return [=](auto&&... arguments) {
-      check_interruption();
-      if (std::chrono::duration<double>(Clock::now() - begin).count() > seconds)
-        throw OutOfTime(fmt::format("longer than {:g} s", seconds));
+Meter::Meter(const Limits& limits) : limits_(limits) {}
+
+void Meter::check() const {
+  check_interruption();
+  if (!std::isfinite(limits_.seconds)) return;
+  if (std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count() > limits_.seconds)
+    throw LimitReached(solver::Outcome::out_of_time, fmt::format("longer than {:g} s", limits_.seconds));
+}
+
+void Meter::count() {
+  check();
+  if (++evaluations_ > limits_.evaluations)
+    throw LimitReached(solver::Outcome::out_of_evaluations, fmt::format("more than {} evaluations", limits_.evaluations));
+}
+
+void Meter::watch(solver::SplitOde& ode) {
+  const auto counted = [this](auto inner) {
+    return [this, inner = std::move(inner)](auto&&... arguments) {
+      count();
       inner(arguments...);
     };
   };
-  ode.force = watched(ode.force);
-  ode.explicit_force = watched(ode.explicit_force);
-  ode.jacobian = watched(ode.jacobian);
-  ode.newton_matrix = watched(ode.newton_matrix);
+  ode.force = counted(ode.force);
+  ode.explicit_force = counted(ode.explicit_force);
+  ode.newton_matrix = [this, inner = counted(ode.newton_matrix)](auto&&... arguments) {
+    ++newton_matrices_;
+    inner(arguments...);
+  };
+  ode.jacobian = [this, inner = ode.jacobian](auto&&... arguments) {
+    check();
+    inner(arguments...);
+  };
 }
 
 MemoryLimit::MemoryLimit(double megabytes) : before_(limit_of_data()) {

@@ -2,26 +2,52 @@
 
 #include <sys/resource.h>
 
+#include <chrono>
+#include <cstdint>
 #include <limits>
 #include <stdexcept>
+#include <string>
 
+#include "solver/outcome.hpp"
 #include "solver/split_ode.hpp"
 
 namespace drape::bench {
 
-/// What a cell may use.
+/// What a run may use.
 struct Limits {
   double seconds = std::numeric_limits<double>::infinity();    ///< wall time
   double megabytes = std::numeric_limits<double>::infinity();  ///< of memory beside what the process holds already
+  /// Forces and Newton matrices: a limit that does not depend on the machine.
+  std::int64_t evaluations = std::numeric_limits<std::int64_t>::max();
+  std::size_t steps = std::numeric_limits<std::size_t>::max();  ///< accepted ones, after which the run ends as it stands
 };
 
-struct OutOfTime : std::runtime_error {
-  using std::runtime_error::runtime_error;
+/// A limit of time or evaluations was reached.
+struct LimitReached : std::runtime_error {
+  LimitReached(solver::Outcome kind, const std::string& message) : std::runtime_error(message), outcome(kind) {}
+  solver::Outcome outcome;  ///< out_of_time or out_of_evaluations
 };
 
-/// From now on evaluations of forces and their derivatives throw OutOfTime when so much time is over, and Interrupted when the
-/// sweep is to end: so a loop within a step ends, too.
-void watch(solver::SplitOde& ode, double seconds);
+/// Counts the evaluations of an equation and ends what exceeds its limits, also within a step.
+class Meter {
+ public:
+  explicit Meter(const Limits& limits);
+
+  /// From now on evaluations of the forces of `ode` and their derivatives are counted here, and throw LimitReached when a limit
+  /// is exceeded and Interrupted when the sweep is to end. The meter must outlive them.
+  void watch(solver::SplitOde& ode);
+
+  std::int64_t evaluations() const { return evaluations_; }  ///< of forces and Newton matrices
+  std::int64_t newton_matrices() const { return newton_matrices_; }
+
+ private:
+  void check() const;
+  void count();
+
+  const Limits limits_;
+  const std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  std::int64_t evaluations_ = 0, newton_matrices_ = 0;
+};
 
 /// As long as it lives the process may take so much more memory; beyond that operator new throws std::bad_alloc.
 class MemoryLimit {

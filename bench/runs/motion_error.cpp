@@ -46,13 +46,6 @@ MotionScale motion_scale(const model::Cloth& cloth, const reference::Trajectory&
   return scale;
 }
 
-void Samples::see(const solver::StepReport& step) {
-  if (dense_)
-    dense_->see(step.t, step.y);
-  else
-    dense_.emplace(times_, step.t, step.y);
-}
-
 results::MotionErrorRecord motion_error(const std::vector<State>& states, const reference::Reference& reference,
                                         const model::Scene& scene, const model::Cloth& cloth) {
   const reference::Trajectory& truth = reference.trajectory;

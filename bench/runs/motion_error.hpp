@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "model/cloth.hpp"
+#include "bench/runs/observer.hpp"
 #include "reference/reference.hpp"
 #include "results/run_record.hpp"
 #include "solver/dense_output.hpp"
@@ -22,14 +22,14 @@ MotionScale motion_scale(const model::Cloth& cloth, const reference::Trajectory&
 double total_energy(const model::Cloth& cloth, double t, const solver::State& y);
 
 /// The states of a run at given times, taken out of its steps.
-class Samples {
+class Samples : public Observer {
  public:
   explicit Samples(std::vector<double> times) : times_(std::move(times)) {}
-  Samples(const Samples&) = delete;
-  Samples& operator=(const Samples&) = delete;
 
-  /// The start, then the end of every step.
-  void see(const solver::StepReport& step);
+  void begin(const model::Scene&, const model::Cloth&, const solver::State& start) override {
+    dense_.emplace(times_, 0, start);
+  }
+  void observe(const solver::StepReport& step) override { dense_->see(step.t, step.y); }
 
   /// At all times that were reached.
   const std::vector<solver::State>& states() const { return dense_->states; }

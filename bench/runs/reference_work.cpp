@@ -82,16 +82,18 @@ reference::Reference compute_reference(const model::Scene& scene, const model::C
   const model::Cloth twin = model::compile(scene);
   solver::SplitOde first = cloth.ode, second = twin.ode;
   Pace pace(times.back(), limits.say);
+  const Limits own{.seconds = seconds};
+  std::array<Meter, 2> meters{Meter(own), Meter(own)};
   const auto begin = Clock::now();
   for (const auto& [ode, course] : {std::pair(&first, 0), std::pair(&second, 1)}) {
     pace.watch(*ode, course);
-    watch(*ode, seconds);
+    meters.at(static_cast<std::size_t>(course)).watch(*ode);
   }
   const reference::Equations equations{first, second};
   try {
     return first.contacts ? reference::contact_reference(equations, cloth.start, 0, times, options)
                           : reference::reference(equations, cloth.start, 0, times, options);
-  } catch (const OutOfTime&) {  // of our own methods; solvers of SUNDIALS make it an error of theirs
+  } catch (const LimitReached&) {  // of our own methods; solvers of SUNDIALS make it an error of theirs
   } catch (const reference::ReferenceError&) {
     check_interruption();  // it may have been the reason
     if (Seconds(Clock::now() - begin).count() <= seconds) throw;

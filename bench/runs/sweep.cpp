@@ -13,6 +13,7 @@
 #include "bench/runs/contact_observer.hpp"
 #include "bench/runs/identity.hpp"
 #include "bench/runs/motion_error.hpp"
+#include "bench/runs/record.hpp"
 #include "bench/runs/recording.hpp"
 #include "bench/runs/timing.hpp"
 #include "bench/runs/trajectory_observer.hpp"
@@ -22,7 +23,7 @@
 namespace drape::bench {
 namespace {
 
-std::string title(const Cell& cell) {
+std::string title(const RunSpec& cell) {
   return fmt::format("{} {} h = {} {}", cell.scene.name, cell.method_name(), cell.step, cell.overrides);
 }
 
@@ -46,17 +47,18 @@ struct TimedRun {
 };
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TimedRun, times, steps)
 
-MeasuredRun measure(const Cell& cell, const SweepOptions& options) {
-  const solver::Observer look = options.look ? options.look(cell) : solver::Observer();
-  if (!options.reference) return {record(cell, look, options.frames_every, options.limits), {}, {}};
-  Samples samples(compared_times(cell.scene));
-  const auto see = [&](const solver::StepReport& step) {
-    samples.see(step);
-    if (look) look(step);
-  };
-  MeasuredRun measured{record(cell, see, options.frames_every, options.limits), {}, {}};
-  if (measured.run.outcome != to_string(solver::Outcome::success)) return measured;
-  for (const solver::State& y : samples.states()) {
+MeasuredRun measure(const RunSpec& spec, const SweepOptions& options) {
+  std::vector<Observer*> observers;
+  std::optional<Samples> samples;
+  std::optional<TrajectoryObserver> trajectory;
+  std::optional<FunctionObserver> look;
+  if (options.reference) observers.push_back(&samples.emplace(compared_times(spec.scene)));
+  if (options.frames_every) observers.push_back(&trajectory.emplace(*options.frames_every));
+  if (options.look) observers.push_back(&look.emplace(options.look(spec)));
+  MeasuredRun measured{record(spec, observers, options.limits), {}, {}};
+  if (trajectory) measured.run.trajectory = trajectory->result();
+  if (!samples || measured.run.outcome != to_string(solver::Outcome::success)) return measured;
+  for (const solver::State& y : samples->states()) {
     measured.positions.push_back(y.x);
     measured.velocities.push_back(y.v);
   }
@@ -113,16 +115,17 @@ void require_trajectories(const std::vector<Group>& groups, const SweepOptions& 
 /// Times those runs of a group that have kept their limits, as far as they went; the others have no times.
 std::vector<TimedRun> time_all(const Group& group, int repetitions, const std::vector<MeasuredRun>& runs, Units& units) {
   Group timed;
-  std::vector<std::size_t> places;
+  std::vector<std::size_t> places, most_steps, steps;
   for (std::size_t k = 0; k < group.size(); ++k) {
     const results::RunRecord& run = runs[k].run;
-    if (run.outcome == out_of_time || run.outcome == out_of_memory) continue;
-    timed.push_back(as_far_as(group[k], run));
+    if (run.outcome == to_string(solver::Outcome::out_of_time) || run.outcome == to_string(solver::Outcome::out_of_memory))
+      continue;
+    timed.push_back(group[k]);
+    most_steps.push_back(steps_to_time(run));
     places.push_back(k);
   }
-  std::vector<std::size_t> steps;
   auto times = time_group(
-      timed, repetitions, [&] { units.advance(); }, &steps);
+      timed, most_steps, repetitions, [&] { units.advance(); }, &steps);
   std::vector<TimedRun> all(group.size());
   for (std::size_t k = 0; k < timed.size(); ++k) all[places[k]] = {std::move(times[k]), static_cast<std::int64_t>(steps[k])};
   return all;
@@ -154,7 +157,7 @@ void run_group(const Group& group, const SweepOptions& options, results::RunFile
   const model::Scene& scene = group.front().scene;
   std::vector<MeasuredRun> measured;
   std::string ids;
-  for (const Cell& cell : group) {
+  for (const RunSpec& cell : group) {
     const std::string id = identity(cell, options);
     ids += id;
     measured.push_back(units(id, [&] {

@@ -20,8 +20,8 @@ struct SweepOptions {
   std::filesystem::path out;
   results::Start start = results::Start::fresh;  ///< whether a file that is there is continued
   std::string command_line;
-  std::optional<double> frames_every;                 ///< [s] between the frames of trajectories; none are kept without
-  std::function<solver::Observer(const Cell&)> look;  ///< what sees the run of a cell that is recorded; may be empty
+  std::optional<double> frames_every;                    ///< [s] between the frames of trajectories; none are kept without
+  std::function<solver::Observer(const RunSpec&)> look;  ///< what sees the run of a cell that is recorded; may be empty
 };
 
 /// Runs all groups and returns all runs; after each group its runs are in the file. Groups and cells that a process before this

@@ -28,21 +28,11 @@ class Collector : public benchmark::BenchmarkReporter {
   TimeOf time_of_;
 };
 
-/// Ends a repetition from within its observer.
-struct Ended {};
-
-Prepare prepared(const Cell& cell, std::size_t& steps) {
-  return [&cell, &steps] {
-    return [&cell, &steps, cloth = model::compile(cell.scene)] {
-      solver::Integrator integrator(cloth.ode, *cell.method, cell.options, cloth.start);
-      steps = 0;
-      try {
-        integrate(integrator, cell.scene.end, cell.step, [&](const solver::StepReport&) {
-          check_interruption();
-          if (++steps >= cell.most_steps) throw Ended();
-        });
-      } catch (const Ended&) {
-      }
+/// `steps`: how many the last repetition took.
+Prepare prepared(const RunSpec& spec, std::size_t most_steps, std::size_t& steps) {
+  return [&spec, most_steps, &steps] {
+    return [&spec, most_steps, &steps, cloth = model::compile(spec.scene)] {
+      steps = static_cast<std::size_t>(run(spec, cloth, {}, {.steps = most_steps}).result.steps);
     };
   };
 }
@@ -84,16 +74,15 @@ std::vector<std::vector<double>> time_runs(const std::vector<Repeated>& runs, co
 }
 
 /// A run that the energy guard ended went one step further than it has recorded.
-Cell as_far_as(Cell cell, const results::RunRecord& run) {
-  cell.most_steps = run.steps.size() + (run.outcome == to_string(solver::Outcome::unstable) ? 1 : 0);
-  return cell;
+std::size_t steps_to_time(const results::RunRecord& run) {
+  return run.steps.size() + (run.outcome == to_string(solver::Outcome::unstable) ? 1 : 0);
 }
 
-std::vector<std::vector<double>> time_group(const Group& group, int repetitions, const std::function<void()>& done,
-                                            std::vector<std::size_t>* steps) {
+std::vector<std::vector<double>> time_group(const Group& group, const std::vector<std::size_t>& most_steps, int repetitions,
+                                            const std::function<void()>& done, std::vector<std::size_t>* steps) {
   std::vector<Repeated> runs;
   std::vector<std::size_t> taken(group.size());
-  for (std::size_t k = 0; k < group.size(); ++k) runs.push_back({prepared(group[k], taken[k]), repetitions});
+  for (std::size_t k = 0; k < group.size(); ++k) runs.push_back({prepared(group[k], most_steps.at(k), taken[k]), repetitions});
   auto times = time_runs(runs, done);
   if (steps != nullptr) *steps = std::move(taken);
   return times;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "bench/runs/run.hpp"
+#include "results/run_record.hpp"
 
 namespace drape::bench {
 
@@ -24,13 +25,13 @@ struct Repeated {
 std::vector<std::vector<double>> time_runs(const std::vector<Repeated>& runs, const std::function<void()>& done,
                                            TimeOf time_of = TimeOf::wall);
 
-/// The cell, to be timed as far as its run went.
-Cell as_far_as(Cell cell, const results::RunRecord& run);
+/// How many steps of a run are timed: as far as it went.
+std::size_t steps_to_time(const results::RunRecord& run);
 
-/// Wall times [ms] of the solver for every cell of a group: as time_runs() has them. Compiling the scene is outside,
-/// building the matrix and all steps are inside, up to `most_steps` of the cell; energies are not evaluated. `steps`: how many
-/// steps the last repetition of each cell took.
-std::vector<std::vector<double>> time_group(const Group& group, int repetitions, const std::function<void()>& done,
-                                            std::vector<std::size_t>* steps = nullptr);
+/// Wall times [ms] of the solver for every run of a group, as time_runs() has them, each up to its most steps. Compiling the
+/// scene is outside, building the matrix and all steps are inside; energies are not evaluated. `steps`: how many steps the last
+/// repetition of each took.
+std::vector<std::vector<double>> time_group(const Group& group, const std::vector<std::size_t>& most_steps, int repetitions,
+                                            const std::function<void()>& done, std::vector<std::size_t>* steps = nullptr);
 
 }  // namespace drape::bench

@@ -48,25 +48,25 @@ std::vector<double> frame_times(double every, double end) {
   return times;
 }
 
-TrajectoryWatch::TrajectoryWatch(const model::Scene& scene, const model::Cloth& cloth, double every)
-    : scene_(scene),
-      cloth_(cloth),
-      start_(reference::prescribed_start(cloth.ode, cloth.start)),
-      times_(frame_times(every, scene.end)),
-      output_(times_, 0, start_) {}
+void TrajectoryObserver::begin(const model::Scene& scene, const model::Cloth& cloth, const solver::State&) {
+  scene_ = &scene;
+  cloth_ = &cloth;
+  start_ = reference::prescribed_start(cloth.ode, cloth.start);
+  times_ = frame_times(every_, scene.end);
+  output_.emplace(times_, 0, start_);
+}
 
-results::TrajectoryRecord TrajectoryWatch::result() const {
-  const model::Grid& grid = scene_.sheet.grid;
+void TrajectoryObserver::finish() {
+  const model::Grid& grid = scene_->sheet.grid;
   const std::vector<model::Edge> edges = model::edges(grid);
-  results::TrajectoryRecord record{
-      .nu = grid.nu, .nv = grid.nv, .times = {0}, .states = {start_}, .stretch = {}, .constraint = {}};
-  record.times.insert(record.times.end(), times_.begin(), times_.begin() + std::ssize(output_.states));
-  record.states.insert(record.states.end(), output_.states.begin(), output_.states.end());
+  results::TrajectoryRecord& record = record_.emplace(results::TrajectoryRecord{
+      .nu = grid.nu, .nv = grid.nv, .times = {0}, .states = {start_}, .stretch = {}, .constraint = {}});
+  record.times.insert(record.times.end(), times_.begin(), times_.begin() + std::ssize(output_->states));
+  record.states.insert(record.states.end(), output_->states.begin(), output_->states.end());
   for (std::size_t k = 0; k < record.times.size(); ++k) {
     record.stretch.push_back(mean_strain(edges, record.states[k].x));
-    record.constraint.push_back(constraints(scene_, cloth_, record.times[k], record.states[k].x));
+    record.constraint.push_back(constraints(*scene_, *cloth_, record.times[k], record.states[k].x));
   }
-  return record;
 }
 
 }  // namespace drape::bench

@@ -1,8 +1,9 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
-#include "model/cloth.hpp"
+#include "bench/runs/observer.hpp"
 #include "results/run_record.hpp"
 #include "solver/dense_output.hpp"
 
@@ -15,23 +16,26 @@ void check_frames(const char* option, double every, double end);
 std::vector<double> frame_times(double every, double end);
 
 /// Takes the motion out of a run at multiples of `every` [s], beginning with the start, by dense output of its steps.
-class TrajectoryWatch {
+class TrajectoryObserver : public Observer {
  public:
-  TrajectoryWatch(const model::Scene& scene, const model::Cloth& cloth, double every);
-  TrajectoryWatch(const TrajectoryWatch&) = delete;
+  explicit TrajectoryObserver(double every) : every_(every) {}
 
-  /// The end of the next step.
-  void see(double t, const solver::State& y) { output_.see(t, y); }
+  void begin(const model::Scene& scene, const model::Cloth& cloth, const solver::State& start) override;
+  void observe(const solver::StepReport& step) override { output_->see(step.t, step.y); }
 
-  /// All frames that were reached.
-  results::TrajectoryRecord result() const;
+  void finish() override;
+
+  /// All frames that were reached; nothing if the run had no start. To be called once.
+  std::optional<results::TrajectoryRecord> result() { return std::move(record_); }
 
  private:
-  const model::Scene& scene_;
-  const model::Cloth& cloth_;
+  double every_;
+  const model::Scene* scene_ = nullptr;
+  const model::Cloth* cloth_ = nullptr;
   solver::State start_;
   std::vector<double> times_;  ///< after the start [s]
-  solver::DenseOutput output_;
+  std::optional<solver::DenseOutput> output_;
+  std::optional<results::TrajectoryRecord> record_;
 };
 
 }  // namespace drape::bench

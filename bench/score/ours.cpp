@@ -80,7 +80,7 @@ Ours try_ours(const TrueMotion& truth, const std::vector<FrameScore>& frames, co
 
 void check_methods(const std::vector<std::string>& methods, const model::Scene& scene) {
   for (const std::string& name : methods) {
-    Cell cell{scene, "", nullptr, scene.end, {}};
+    RunSpec cell{scene, "", nullptr, scene.end, {}};
     choose_method(cell, name);
     if (!scene.obstacles.empty() && !cell.method->meets_obstacles)
       throw std::invalid_argument(fmt::format("method '{}': expected one that meets obstacles, as the scene has some", name));

@@ -6,6 +6,7 @@
 #include <memory>
 #include <numbers>
 
+#include "bench/runs/record.hpp"
 #include "bench/studies/studies.hpp"
 #include "model/scene_file/scene_file.hpp"
 #include "results/table_builder.hpp"
@@ -90,7 +91,7 @@ Flutter flutter(const model::Scene& scene, const char* method) {
   const Waves waves(scene);
   Flutter seen;
   seen.bending = seen.kinetic = Eigen::VectorXd::Zero(waves.count());
-  seen.run = record({scene, "", &solver::method(method), figure_step, options}, [&](const solver::StepReport& s) {
+  FunctionObserver look([&](const solver::StepReport& s) {
     if (s.t <= scene.end - last) return;
     const Eigen::ArrayXd edge = s.y.x.col(1).head(scene.sheet.grid.nu);  // the lower one; the start is in the plane y = 0
     seen.swing.push_back(edge.mean());
@@ -98,6 +99,8 @@ Flutter flutter(const model::Scene& scene, const char* method) {
     seen.bending += waves.bending(s.y.x);
     seen.kinetic += waves.kinetic(s.y.v);
   });
+  Observer* const observers[] = {&look};
+  seen.run = record({scene, "", &solver::method(method), figure_step, options}, observers);
   const auto steps = static_cast<double>(seen.swing.size());
   seen.wrinkles = std::sqrt(seen.wrinkles / steps);
   seen.bending /= steps;

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "bench/runs/run.hpp"
 #include "bench/studies/studies.hpp"
+#include "bench/studies/trial.hpp"
 #include "model/scene_file/scene_file.hpp"
 #include "results/table_builder.hpp"
 #include "solver/base/decompositions.hpp"
@@ -36,20 +38,22 @@ struct Fall {
 };
 
 /// `substeps` make a step.
-Fall fall(const model::Cloth& cloth, const char* method, double end, int substeps = 1) {
-  solver::Options options = solver::thesis_options();
-  options.loop_tolerance = 1e-8;
-  options.max_updates = 20'000;
-  options.linear_solver = &solver::linear_solver("cholesky");
-  const auto height = [&](const solver::State& y) { return cloth.ode.mass.dot(y.x.col(2)) / cloth.ode.mass.sum(); };
-  solver::Integrator integrator(cloth.ode, solver::method(method), options, cloth.start);
-  const double start = height(integrator.state());
+Fall fall(const Specimen& sheet, const char* method, double end, int substeps = 1) {
+  const Eigen::VectorXd& mass = sheet.cloth.ode.mass;
+  RunSpec spec{sheet.scene, "", &solver::method(method), lag_step / substeps, solver::thesis_options()};
+  spec.scene.end = end;
+  spec.options.loop_tolerance = 1e-8;
+  spec.options.max_updates = 20'000;
+  spec.options.linear_solver = &solver::linear_solver("cholesky");
+  const auto height = [&](const solver::State& y) { return mass.dot(y.x.col(2)) / mass.sum(); };
+  const double start = height(sheet.cloth.start);
   Fall seen{{0}, solver::Outcome::success};
   int count = 0;
-  const auto look = [&](const solver::StepReport& s) {
-    if (++count % substeps == 0) seen.sunk.push_back(start - height(s.y));
-  };
-  seen.outcome = integrate(integrator, end, lag_step / substeps, look).outcome;
+  FunctionObserver look([&](const solver::StepReport& s) {
+    if (s.h > 0 && ++count % substeps == 0) seen.sunk.push_back(start - height(s.y));
+  });
+  Observer* const observers[] = {&look};
+  seen.outcome = run(spec, sheet.cloth, observers).result.outcome;
   return seen;
 }
 
@@ -61,12 +65,13 @@ double lag(const Fall& reference, const Fall& late) {
 }
 
 /// A strip of the sheet, two particles wide: along the pinned edge all is constant.
-model::Cloth strip(const model::Grid& sheet, double k, double damping) {
+Specimen strip(const model::Grid& sheet, double k, double damping) {
   const model::Override overrides[] = {{"grid.n", fmt::format("[2, {}]", sheet.nv)},
                                        {"grid.size", fmt::format("[{}, {}]", sheet.spacing_u(), sheet.size_v)},
                                        {"material.tension", fmt::format("{}", k)},
                                        {"material.damping", fmt::format("{}", damping)}};
-  return model::compile(model::load_scene("hung-edge", overrides));
+  const model::Scene scene = model::load_scene("hung-edge", overrides);
+  return {scene, model::compile(scene)};
 }
 
 /// M − h² K on the free particles.
@@ -88,16 +93,17 @@ Eigen::SparseMatrix<double> slow_inertia(const solver::SplitOde& ode) {
 /// itself changes slowly that is −h² K x'', so (M − h² K) dv/dt = f: mode by mode the artificial inertia
 /// (1 − ω²/κ) ν of reference/theory/amplification.hpp with ω² ≪ κ. Its first step is one of IMEX midpoint, which goes ahead
 /// with the true inertia: summing (3.29) from there gives the momentum −h K (x1 − x0) that the slow motion starts with.
-model::Cloth predicted_sbdf2(model::Cloth cloth) {
+Specimen predicted_sbdf2(Specimen sheet) {
+  model::Cloth& cloth = sheet.cloth;
   solver::SplitOde& ode = cloth.ode;
   const auto reduce = [mass = ode.mass, pins = ode.pins, inverse = base::lu_inverse(slow_inertia(ode))](Vectors& f) {
     filter(pins, f);
     for (int c = 0; c < 3; ++c) f.col(c) = mass.cwiseProduct(inverse(f.col(c)));
   };
 
-  solver::Integrator first(ode, solver::method("sbdf2"), {}, cloth.start);
-  first.step(lag_step);
-  Vectors momentum = -lag_step * (ode.stiffness * (first.state().x - cloth.start.x));
+  const RunSpec first_step{sheet.scene, "", &solver::method("sbdf2"), lag_step, {}};
+  const solver::State first = run(first_step, cloth, {}, {.steps = 1}).state;
+  Vectors momentum = -lag_step * (ode.stiffness * (first.x - cloth.start.x));
   reduce(momentum);
   cloth.start.v += ode.mass.cwiseInverse().asDiagonal() * momentum;
 
@@ -118,7 +124,7 @@ model::Cloth predicted_sbdf2(model::Cloth cloth) {
       *J = dense.sparseView();
     }
   };
-  return cloth;
+  return sheet;
 }
 
 void add_lags(results::TableBuilder& table, const char* method, double measured, double predicted) {
@@ -134,7 +140,7 @@ void add_row(results::TableBuilder& table, double nu, double ratio) {
   const model::Grid& grid = sheet.grid;
   const double rho = sheet.material.density, l = grid.spacing_v(), L = grid.size_v, h = lag_step;
   const double k = nu * rho * l * l / (h * h), d = h * k / ratio;
-  const model::Cloth cloth = strip(grid, k, d);
+  const Specimen cloth = strip(grid, k, d);
   Fall bdf2 = fall(cloth, "bdf2", longest);
   const double end = h * std::ceil(bdf2.time_of(L / 4) / h - 1e-9);
   bdf2.sunk.resize(static_cast<std::size_t>(std::lround(end / h)) + 1);

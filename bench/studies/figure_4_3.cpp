@@ -5,6 +5,7 @@
 #include <span>
 #include <tuple>
 
+#include "bench/runs/record.hpp"
 #include "bench/runs/timing.hpp"
 #include "bench/studies/draping.hpp"
 #include "bench/studies/studies.hpp"
@@ -26,7 +27,7 @@ model::Scene swing(bool quick) {
   return model::load_scene("box_swing", overrides);
 }
 
-Cell cell(const model::Scene& scene, std::string_view method) {
+RunSpec cell(const model::Scene& scene, std::string_view method) {
   return {scene, "", &solver::method(method), box_step, solver::thesis_options()};
 }
 
@@ -96,7 +97,7 @@ void add_bar(results::TableBuilder& table, const RunRecord& run, const char* wha
 /// All bars of a method, from its cells with and without box.
 void add_bars(results::TableBuilder& table, const Group& group, int repetitions) {
   const RunRecord with = record(group[0]), without = record(group[1]);
-  const auto times = time_group({as_far_as(group[0], with), as_far_as(group[1], without)}, repetitions, [] {});
+  const auto times = time_group(group, {steps_to_time(with), steps_to_time(without)}, repetitions, [] {});
   const double time = base::quantile(times[0], 0.5) / base::quantile(times[1], 0.5);
   const Steps all = with.steps, rest = all.last(std::min(all.size(), at_rest));
   add_bar(table, with, "CG iterations a step, at rest over before the first contact",

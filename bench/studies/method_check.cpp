@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "bench/runs/certified_reference.hpp"
+#include "bench/runs/record.hpp"
 #include "bench/studies/refinement.hpp"
 #include "bench/studies/stability/stability.hpp"
 #include "bench/studies/work_precision/work_precision.hpp"
@@ -30,7 +31,7 @@ results::Table order(const std::string& method, Units& units) {
   units.show(fmt::format("order of {}", method));
   TableBuilder table("check-order", fmt::format("Order of {} on a soft sheet, {:g} s", method, scene.end));
   units.rows(table, method, [&](TableBuilder& rows) {
-    const Cell cell = tight(scene, method);
+    const RunSpec cell = tight(scene, method);
     add_refinement(rows, cell, method, cloth, reference, most_work);
     rows.count("declared", "declared", "order of the method's row", cell.method->order);
   });
@@ -48,7 +49,7 @@ std::string theory_of(const solver::Method& method, double h, double k, double d
 
 results::Table stability_of(const std::string& method, Units& units) {
   constexpr double k = 1e4;
-  Cell cell{smooth_scene(), "", nullptr, 0, {}};
+  RunSpec cell{smooth_scene(), "", nullptr, 0, {}};
   choose_method(cell, method);
   TableBuilder table("check-stability",
                      fmt::format("Largest usable steps of {} on 10 x 10 particles hung by two corners, k = {:g}", method, k));
@@ -90,7 +91,7 @@ results::Table energy(const std::string& method, Units& units) {
   for (const double h : {0.01, 0.0025}) {
     units.show(fmt::format("energy of {}, h = {:g}", method, h));
     units.rows(table, fmt::format("{:g}", h), [&](TableBuilder& rows) {
-      Cell cell{scene, "", nullptr, h, {}};
+      RunSpec cell{scene, "", nullptr, h, {}};
       choose_method(cell, method);
       const results::RunRecord run = record(cell);
       rows.row();

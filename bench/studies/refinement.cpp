@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "bench/runs/certified_reference.hpp"
+#include "bench/runs/record.hpp"
 #include "model/scene_file/scene_file.hpp"
 #include "results/analysis/order_fit.hpp"
 
@@ -14,7 +15,7 @@ namespace {
 /// Runs one method with ever smaller steps.
 class Refinement {
  public:
-  Refinement(const Cell& cell, const std::string& name, const model::Cloth& cloth, const reference::Reference& reference)
+  Refinement(const RunSpec& cell, const std::string& name, const model::Cloth& cloth, const reference::Reference& reference)
       : cell_(cell), name_(name), cloth_(cloth), reference_(reference) {}
 
   void add_rows(results::TableBuilder& table, double most_work) {
@@ -35,7 +36,7 @@ class Refinement {
   double refinement() const { return cell_.method->order > 3 ? std::numbers::sqrt2 : 2; }
 
   results::RunRecord run_of(std::int64_t steps) const {
-    Cell cell = cell_;
+    RunSpec cell = cell_;
     cell.step = cell.scene.end / static_cast<double>(steps);
     return record(cell);
   }
@@ -73,7 +74,7 @@ class Refinement {
     return resolved(error);
   }
 
-  const Cell& cell_;
+  const RunSpec& cell_;
   const std::string& name_;
   const model::Cloth& cloth_;
   const reference::Reference& reference_;
@@ -92,8 +93,8 @@ model::Scene smooth_scene() {
                                                                         {"end.time", "0.6"}});
 }
 
-Cell tight(const model::Scene& scene, const std::string& name) {
-  Cell cell{scene, "", nullptr, scene.end, solver::thesis_options()};
+RunSpec tight(const model::Scene& scene, const std::string& name) {
+  RunSpec cell{scene, "", nullptr, scene.end, solver::thesis_options()};
   cell.options.loop_tolerance = 1e-11;
   cell.options.cg_tolerance = 1e-12;
   cell.options.stage_accuracy = 1e-4;
@@ -102,7 +103,7 @@ Cell tight(const model::Scene& scene, const std::string& name) {
   return cell;
 }
 
-void add_refinement(results::TableBuilder& table, const Cell& cell, const std::string& name, const model::Cloth& cloth,
+void add_refinement(results::TableBuilder& table, const RunSpec& cell, const std::string& name, const model::Cloth& cloth,
                     const reference::Reference& reference, double most_work) {
   Refinement(cell, name, cloth, reference).add_rows(table, most_work);
 }

@@ -3,6 +3,7 @@
 #include <array>
 #include <limits>
 
+#include "bench/runs/record.hpp"
 #include "bench/studies/draping.hpp"
 #include "bench/studies/studies.hpp"
 #include "model/scene_file/scene_file.hpp"

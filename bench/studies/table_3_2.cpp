@@ -2,6 +2,7 @@
 
 #include <map>
 
+#include "bench/runs/record.hpp"
 #include "bench/runs/timing.hpp"
 #include "bench/studies/draping.hpp"
 #include "bench/studies/studies.hpp"
@@ -39,7 +40,7 @@ Group cells(const TableclothBlock& block, bool quick) {
   Group group;
   for (const solver::Method& method : solver::thesis_methods()) {
     if (block.loose() && !method.implicit()) continue;  // it has no tolerances
-    Cell cell{scene, "", &method, 0.01, solver::thesis_options()};
+    RunSpec cell{scene, "", &method, 0.01, solver::thesis_options()};
     cell.options.loop_tolerance = block.loop_tolerance;
     cell.options.cg_tolerance = block.cg_tolerance;
     group.push_back(cell);
@@ -49,7 +50,7 @@ Group cells(const TableclothBlock& block, bool quick) {
 
 int repetitions(bool quick) { return quick ? 1 : 3; }
 
-void add_row(results::TableBuilder& table, const TableclothBlock& block, const Cell& cell, const results::RunRecord& run) {
+void add_row(results::TableBuilder& table, const TableclothBlock& block, const RunSpec& cell, const results::RunRecord& run) {
   table.row();
   table.text("cloth", "cloth", "k and d as in the thesis, or those of the scene", block.name);
   table.number("damping", "d", "N s/m", "linear damping", cell.scene.sheet.material.damping.weft);
@@ -64,9 +65,9 @@ void add_row(results::TableBuilder& table, const TableclothBlock& block, const C
 
 std::vector<results::RunRecord> timed_runs(const Group& group, int count) {
   std::vector<results::RunRecord> runs;
-  Group timed;
-  for (const Cell& cell : group) timed.push_back(as_far_as(cell, runs.emplace_back(record(cell))));
-  const auto times = time_group(timed, count, [] {});
+  std::vector<std::size_t> steps;
+  for (const RunSpec& spec : group) steps.push_back(steps_to_time(runs.emplace_back(record(spec))));
+  const auto times = time_group(group, steps, count, [] {});
   for (std::size_t k = 0; k < runs.size(); ++k) runs[k].times_ms = times[k];
   return runs;
 }

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "bench/runs/certified_reference.hpp"
+#include "bench/runs/record.hpp"
 #include "bench/runs/sweep.hpp"
 #include "bench/studies/studies.hpp"
 #include "model/scene_file/scene_file.hpp"
@@ -78,13 +79,15 @@ class Measurement {
       : setting_(setting), scene_(scene), reference_(std::move(reference)) {}
 
   Controlled operator()(const Method& method, double tolerance) const {
-    Cell cell{scene_, "", &method, scene_.end / 5, {}};
+    RunSpec cell{scene_, "", &method, scene_.end / 5, {}};
     cell.options.error_control = {tolerance, model::size(scene_), scene_.end, true, setting_.most_steps};
     std::optional<solver::SmoothOutput> output;
-    const results::RunRecord run = record(cell, [&](const solver::StepReport& step) {
+    FunctionObserver sample([&](const solver::StepReport& step) {
       if (!output) return (void)output.emplace(reference_.trajectory.times, step.t, step.y);
       output->see(step.t, step.y);
     });
+    Observer* const observers[] = {&sample};
+    const results::RunRecord run = record(cell, observers);
     Controlled result;
     result.scene = scene_.name;
     result.set = set();

@@ -13,31 +13,6 @@ namespace {
 
 constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 
-struct Exhausted {};
-
-/// The same equation, whose functions count their calls and end the run that exceeds its budget.
-solver::SplitOde metered(solver::SplitOde ode, std::int64_t budget, Attempt& trial) {
-  const auto count = [budget, &trial] {
-    if (++trial.evaluations > budget) throw Exhausted();
-  };
-  ode.force = [=, force = ode.force](double t, const solver::Vectors& x, const solver::Vectors& v, solver::Vectors& f) {
-    count();
-    force(t, x, v, f);
-  };
-  ode.explicit_force = [=, force = ode.explicit_force](double t, const solver::Vectors& x, const solver::Vectors& v,
-                                                       solver::Vectors& f) {
-    count();
-    force(t, x, v, f);
-  };
-  ode.newton_matrix = [=, &trial, newton = ode.newton_matrix](double t, const solver::Vectors& x, const solver::Vectors& v,
-                                                              double gamma, bool lean, solver::SparseMatrix& J) {
-    count();
-    ++trial.newton_matrices;
-    newton(t, x, v, gamma, lean, J);
-  };
-  return ode;
-}
-
 double rms(const solver::Vectors& difference) { return difference.norm() / std::sqrt(difference.rows()); }
 
 double centre(const Eigen::VectorXd& mass, const solver::Vectors& difference) {
@@ -62,27 +37,19 @@ std::vector<Conditions> yardsticks(double size, double until) {
 }  // namespace
 
 std::string Attempt::reason() const {
-  if (!finished) return fmt::format("not finished in {} evaluations, at t = {:.4g} s", evaluations - 1, run.last_good_time);
+  if (!finished()) return fmt::format("not finished in {} evaluations, at t = {:.4g} s", evaluations - 1, run.last_good_time);
   return run.message;
 }
 
 Attempt attempt(const Specimen& specimen, const Conditions& conditions) {
-  Attempt trial;
-  const solver::SplitOde ode = metered(specimen.cloth.ode, conditions.budget, trial);
-  EnergyGuard guard(specimen.scene, specimen.cloth);
-  solver::Integrator integrator(ode, *conditions.method, conditions.options, specimen.cloth.start);
+  RunSpec spec{specimen.scene, "", conditions.method, conditions.step, conditions.options};
+  spec.scene.end = conditions.until;
+  EnergyGuardObserver guard;
+  Observer* const observers[] = {&guard};
   const std::clock_t begin = std::clock();
-  try {
-    trial.run = integrate(integrator, guard, conditions.until, conditions.step);
-  } catch (const Exhausted&) {
-    trial.finished = false;
-    trial.run.last_good_time = integrator.time();
-  } catch (const std::exception& error) {
-    trial.run = {.outcome = solver::Outcome::failed, .message = error.what(), .last_good_time = integrator.time()};
-  }
-  trial.cpu_ms = 1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
-  trial.end = integrator.state();
-  return trial;
+  RunEnd end = run(spec, specimen.cloth, observers, {.evaluations = conditions.budget});
+  const double cpu_ms = 1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+  return {std::move(end.result), std::move(end.state), end.evaluations, end.newton_matrices, cpu_ms};
 }
 
 Yardstick::Yardstick(const Specimen& specimen, double until, double effort)

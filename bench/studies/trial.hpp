@@ -43,20 +43,20 @@ struct Conditions {
 /// What became of it.
 struct Attempt {
   solver::RunResult run;
-  bool finished = true;
   solver::State end;
   std::int64_t evaluations = 0;
   std::int64_t newton_matrices = 0;
   double cpu_ms = 0;
 
-  bool succeeded() const { return finished && run.outcome == solver::Outcome::success; }
+  bool finished() const { return run.outcome != solver::Outcome::out_of_evaluations; }
+  bool succeeded() const { return run.outcome == solver::Outcome::success; }
 
   /// Why it did not; empty if it did.
   std::string reason() const;
 };
 
 /// As a unit of work it is kept without the state at its end.
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Attempt, run, finished, evaluations, newton_matrices, cpu_ms)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Attempt, run, evaluations, newton_matrices, cpu_ms)
 
 Attempt attempt(const Specimen& specimen, const Conditions& conditions);
 

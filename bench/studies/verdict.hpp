@@ -38,8 +38,7 @@ struct UncertainError {
 };
 
 /// The verdict on a run. Its error counts as below or above the bound only if it is so however the reference errs.
-constexpr Verdict judge(solver::Outcome outcome, bool finished, const UncertainError& measured, double bound) {
-  if (!finished) return Verdict::not_finished;
+constexpr Verdict judge(solver::Outcome outcome, const UncertainError& measured, double bound) {
   switch (outcome) {
     case solver::Outcome::success: break;
     case solver::Outcome::unstable:
@@ -48,6 +47,9 @@ constexpr Verdict judge(solver::Outcome outcome, bool finished, const UncertainE
     case solver::Outcome::breakdown:
     case solver::Outcome::failed:
     case solver::Outcome::inaccurate: return Verdict::not_converged;
+    case solver::Outcome::out_of_time:
+    case solver::Outcome::out_of_memory:
+    case solver::Outcome::out_of_evaluations: return Verdict::not_finished;
   }
   if (measured.error + measured.uncertainty <= bound) return Verdict::accurate;
   if (measured.error - measured.uncertainty > bound) return Verdict::wrong;

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "bench/runs/run.hpp"
 #include "model/scene_file/scene_file.hpp"
 
 namespace drape::verify::energy_guard_test {
@@ -43,11 +44,16 @@ double largest_part(const Scene& scene, const char* method, double until, double
   return largest;
 }
 
+bench::RunSpec spec_of(const Scene& scene, const char* method, double until, double h) {
+  bench::RunSpec spec{scene, "", &solver::method(method), h, {}};
+  spec.scene.end = until;
+  return spec;
+}
+
 solver::RunResult guarded(const Scene& scene, const char* method, double until, double h) {
-  const Cloth cloth = model::compile(scene);
-  EnergyGuard guard(scene, cloth);
-  solver::Integrator integrator(cloth.ode, solver::method(method), {}, cloth.start);
-  return integrate(integrator, guard, until, h);
+  bench::EnergyGuardObserver guard;
+  bench::Observer* const observers[] = {&guard};
+  return bench::run(spec_of(scene, method, until, h), model::compile(scene), observers).result;
 }
 
 TEST(EnergyGuard, IsReachedByFreeFall) {
@@ -134,9 +140,10 @@ TEST(EnergyGuard, EndsRunsThatGainMoreThanGravityGives) {
 TEST(EnergyGuard, EvaluatesForcesOnlyWhereTheyGive) {
   const auto count = [](const Scene& scene, bool guards) {
     const Cloth cloth = model::compile(scene);
-    EnergyGuard guard(scene, cloth);
-    solver::Integrator integrator(cloth.ode, solver::method("bdf2"), {}, cloth.start);
-    guards ? integrate(integrator, guard, 0.05, 0.01) : solver::integrate(integrator, 0.05, 0.01);
+    bench::EnergyGuardObserver guard;
+    std::vector<bench::Observer*> observers;
+    if (guards) observers.push_back(&guard);
+    bench::run(spec_of(scene, "bdf2", 0.05, 0.01), cloth, observers);
     return std::pair(cloth.ode.work->count("guard_forces"), cloth.ode.work->count("forces") + cloth.ode.work->count("normals"));
   };
   Scene scene = hung_sheet(1e3);
@@ -160,15 +167,17 @@ TEST(EnergyGuard, SaysWhereItCannotJudge) {
 solver::RunResult explicit_run(double fraction, double until) {
   const Scene scene = hung_sheet(1e4);
   const Cloth cloth = model::compile(scene);
-  solver::Options options;
-  options.verlet_fraction = fraction;
-  solver::Integrator integrator(cloth.ode, solver::method("verlet"), options, cloth.start);
-  EnergyGuard guard(scene, cloth);
+  bench::RunSpec spec = spec_of(scene, "verlet", until, 0.01);
+  spec.options.verlet_fraction = fraction;
+  bench::EnergyGuardObserver guard;
   int seen = 0;
-  const auto result = integrate(integrator, guard, until, 0.01, [&](const solver::StepReport& step) {
+  bench::FunctionObserver look([&](const solver::StepReport& step) {
+    if (step.h == 0) return;  // the start
     ++seen;
-    EXPECT_LE(solver::kinetic_energy(cloth.ode, step.y.v), guard.limit()) << "steps beyond it are not shown";
+    EXPECT_LE(solver::kinetic_energy(cloth.ode, step.y.v), guard.guard().limit()) << "steps beyond it are not shown";
   });
+  bench::Observer* const observers[] = {&guard, &look};
+  const auto result = bench::run(spec, cloth, observers).result;
   EXPECT_EQ(result.steps, seen);
   return result;
 }

@@ -228,7 +228,7 @@ results::Table check_bar(const Atlas& atlas) {
       if (cell.row != &row || !cell.expected->good()) continue;
       ++stable;
       const Attempt& attempt = cell.judged.trial;
-      const bool rises = attempt.finished && attempt.run.outcome == solver::Outcome::unstable;
+      const bool rises = attempt.run.outcome == solver::Outcome::unstable;
       if (rises) ++rise;
       if (rises || attempt.succeeded()) ++converge;
     }

@@ -9,7 +9,7 @@ namespace drape::bench {
 Judged judged(Attempt trial, const Yardstick& yardstick) {
   Judged result{std::move(trial), {}, {}};
   result.error = yardstick.measure(result.trial, error_bound);
-  result.verdict = judge(result.trial.run.outcome, result.trial.finished, result.error, error_bound);
+  result.verdict = judge(result.trial.run.outcome, result.error, error_bound);
   return result;
 }
 

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "bench/runs/motion_error.hpp"
 #include "bench/runs/run.hpp"
 #include "bench/studies/work_precision/energy.hpp"
 #include "bench/studies/work_precision/peers.hpp"
-#include "solver/dense_output.hpp"
 
 namespace drape::bench {
 namespace {
@@ -28,58 +28,58 @@ constexpr const char* other_solvers[] = {"bdf2/anderson", "midpoint/anderson", "
 
 bool tries_few(Search search) { return search == Search::quick || search == Search::large; }
 
-std::vector<Vectors> solve_ours(const Cell& cell, const model::Cloth& cloth, std::span<const double> times) {
-  solver::Integrator integrator(cloth.ode, *cell.method, cell.options, cloth.start);
-  solver::DenseOutput output(times, integrator.time(), integrator.state());
-  solver::Observer observer;
-  if (times.size() > 1) observer = [&](const solver::StepReport& report) { output.see(report.t, report.y); };
-  const solver::RunResult run = integrate(integrator, times.back(), cell.step, observer);
-  if (run.outcome != solver::Outcome::success) throw std::runtime_error(run.message);
-  if (!observer) output.states.push_back(integrator.state());
-  return positions_of(std::move(output.states));
+/// Where only the end is asked for, nothing looks at the run, as it is timed.
+std::vector<Vectors> solve_ours(const RunSpec& spec, const model::Cloth& cloth, std::span<const double> times) {
+  Samples samples({times.begin(), times.end()});
+  std::vector<Observer*> observers;
+  if (times.size() > 1) observers.push_back(&samples);
+  RunEnd end = run(spec, cloth, observers);
+  if (end.result.outcome != solver::Outcome::success) throw std::runtime_error(end.result.message);
+  if (times.size() > 1) return positions_of(samples.states());
+  return {std::move(end.state.x)};
 }
 
-Candidate ours(const Cell& cell, double value) {
-  return {value, [cell](const model::Cloth& cloth, std::span<const double> times) { return solve_ours(cell, cloth, times); },
-          [cell] { return energy_fault(cell); }};
+Candidate ours(const RunSpec& spec, double value) {
+  return {value, [spec](const model::Cloth& cloth, std::span<const double> times) { return solve_ours(spec, cloth, times); },
+          [spec] { return energy_fault(spec); }};
 }
 
-Cell cell(const model::Scene& scene, const std::string& name, const solver::Options& options = {}) {
-  Cell result{scene, "", nullptr, scene.end / 10, options};
+RunSpec spec_of(const model::Scene& scene, const std::string& name, const solver::Options& options = {}) {
+  RunSpec result{scene, "", nullptr, scene.end / 10, options};
   choose_method(result, name);
   return result;
 }
 
-bool by_default(const Cell& cell) {
-  const solver::Options usual, &options = cell.options;
+bool by_default(const RunSpec& spec) {
+  const solver::Options usual, &options = spec.options;
   return options.stage == usual.stage && options.linear_solver == usual.linear_solver &&
          options.stage_accuracy == usual.stage_accuracy;
 }
 
-Family by_steps(Cell cell, const std::string& code, int parts) {
-  Family family{cell.method_name() + " by steps", code, "step", by_default(cell) ? std::string(cell.method->name) : "", {}};
-  for (const double h : divided_steps(cell.scene.end, parts)) {
-    cell.step = h;
-    family.candidates.push_back(ours(cell, h));
+Family by_steps(RunSpec spec, const std::string& code, int parts) {
+  Family family{spec.method_name() + " by steps", code, "step", by_default(spec) ? std::string(spec.method->name) : "", {}};
+  for (const double h : divided_steps(spec.scene.end, parts)) {
+    spec.step = h;
+    family.candidates.push_back(ours(spec, h));
   }
   return family;
 }
 
-Family by_tolerance(Cell cell) {
-  Family family{cell.method_name() + " by tolerance", "drape", "tolerance", std::string(cell.method->name), {}};
+Family by_tolerance(RunSpec spec) {
+  Family family{spec.method_name() + " by tolerance", "drape", "tolerance", std::string(spec.method->name), {}};
   for (const double tolerance : tolerances(9)) {
-    cell.options.error_control = {tolerance, model::size(cell.scene), cell.scene.end};
-    family.candidates.push_back(ours(cell, tolerance));
+    spec.options.error_control = {tolerance, model::size(spec.scene), spec.scene.end};
+    family.candidates.push_back(ours(spec, tolerance));
   }
   return family;
 }
 
 /// Explicit sub-steps follow the stability limit, however long the step.
-Family by_fraction(Cell cell, int halvings) {
-  Family family{cell.method_name() + " by fraction", "explicit", "fraction", std::string(cell.method->name), {}};
+Family by_fraction(RunSpec spec, int halvings) {
+  Family family{spec.method_name() + " by fraction", "explicit", "fraction", std::string(spec.method->name), {}};
   for (int k = 0; k <= 2 * halvings; ++k) {
-    cell.options.verlet_fraction = 0.9 * std::pow(2.0, -0.5 * k);
-    family.candidates.push_back(ours(cell, cell.options.verlet_fraction));
+    spec.options.verlet_fraction = 0.9 * std::pow(2.0, -0.5 * k);
+    family.candidates.push_back(ours(spec, spec.options.verlet_fraction));
   }
   return family;
 }
@@ -89,12 +89,12 @@ void add_loose(std::vector<Family>& all, const model::Scene& scene, const std::s
   solver::Options options;
   for (const double tolerance : {0.1, 0.01}) {
     options.loop_tolerance = tolerance;
-    all.push_back(by_steps(cell(scene, method + "/fixed-point/cholesky", options), "drape", parts));
+    all.push_back(by_steps(spec_of(scene, method + "/fixed-point/cholesky", options), "drape", parts));
     all.back().name += fmt::format(" to {:.0e}", tolerance);
   }
   options = {};
   options.stage_accuracy = 1;
-  all.push_back(by_steps(cell(scene, method, options), "drape", parts));
+  all.push_back(by_steps(spec_of(scene, method, options), "drape", parts));
   all.back().name += fmt::format(" to {:g}", options.stage_accuracy);
 }
 
@@ -113,15 +113,15 @@ void add_ours(std::vector<Family>& all, const model::Scene& scene, Search search
     const std::string name(method.name);
     if (!reason_against(method, scene, search, !methods.empty()).empty()) continue;
     if (method.sub_steps) {
-      all.push_back(by_fraction(cell(scene, name), tries_few(search) ? 3 : 10));
+      all.push_back(by_fraction(spec_of(scene, name), tries_few(search) ? 3 : 10));
       continue;
     }
-    all.push_back(by_steps(cell(scene, name), "drape", parts));
-    all.push_back(by_tolerance(cell(scene, name)));
+    all.push_back(by_steps(spec_of(scene, name), "drape", parts));
+    all.push_back(by_tolerance(spec_of(scene, name)));
     if (search == Search::full && std::ranges::find(looped, name) != std::end(looped)) add_loose(all, scene, name, parts);
   }
   if (search != Search::full || !methods.empty()) return;
-  for (const char* name : other_solvers) all.push_back(by_steps(cell(scene, name), "drape", parts));
+  for (const char* name : other_solvers) all.push_back(by_steps(spec_of(scene, name), "drape", parts));
 }
 
 std::vector<int> loop_digits(Search search) {
@@ -136,7 +136,8 @@ void add_thesis(std::vector<Family>& all, const model::Scene& scene, Search sear
     for (const int digits : loop_digits(search)) {
       solver::Options options = solver::thesis_options();
       options.loop_tolerance = std::pow(10.0, -digits);
-      Family family = by_steps(cell(scene, fmt::format("{}/fixed-point/ic0", method), options), "thesis", finest_parts(search));
+      Family family =
+          by_steps(spec_of(scene, fmt::format("{}/fixed-point/ic0", method), options), "thesis", finest_parts(search));
       family.name += fmt::format(" to {:.0e}", options.loop_tolerance);
       all.push_back(std::move(family));
     }
@@ -170,7 +171,7 @@ std::vector<double> divided_steps(double end, int parts) {
 }
 
 Family ladder(const model::Scene& scene, const std::string& method) {
-  const Cell chosen = cell(scene, method);
+  const RunSpec chosen = spec_of(scene, method);
   return chosen.method->sub_steps ? by_fraction(chosen, 10) : by_steps(chosen, "drape", finest_parts(Search::usual));
 }
 

@@ -8,12 +8,11 @@
 
 namespace drape::bench {
 
-std::string energy_fault(const Cell& cell) {
-  const model::Cloth cloth = model::compile(cell.scene);
-  solver::Integrator integrator(cloth.ode, *cell.method, cell.options, cloth.start);
-  EnergyGuard guard(cell.scene, cloth);
-  const solver::RunResult run = integrate(integrator, guard, cell.scene.end, cell.step);
-  return run.outcome == solver::Outcome::unstable ? run.message : "";
+std::string energy_fault(const RunSpec& spec) {
+  EnergyGuardObserver guard;
+  Observer* const observers[] = {&guard};
+  const solver::RunResult result = run(spec, model::compile(spec.scene), observers).result;
+  return result.outcome == solver::Outcome::unstable ? result.message : "";
 }
 
 std::string energy_fault(const model::Scene& scene, const States& solve, int parts) {

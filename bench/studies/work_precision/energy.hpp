@@ -12,7 +12,7 @@
 namespace drape::bench {
 
 /// Why the energy guard ends a run of ours; empty if it does not.
-std::string energy_fault(const Cell& cell);
+std::string energy_fault(const RunSpec& spec);
 
 /// The states of a compiled scene at some times.
 using States = std::function<std::vector<solver::State>(const model::Cloth& cloth, std::span<const double> times)>;

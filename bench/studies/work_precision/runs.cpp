@@ -76,7 +76,8 @@ Tried attempt(const Problem& problem, const Family& family, std::size_t candidat
   check_interruption();  // SUNDIALS' failure of the one before may have been one
   Tried trial{.candidate = candidate};
   model::Cloth cloth = model::compile(problem.scene);
-  watch(cloth.ode, effort.cap);
+  Meter meter({.seconds = effort.cap});
+  meter.watch(cloth.ode);
   try {
     const double begin = seconds(effort.time_of);
     const auto positions = family.candidates[candidate].solve(cloth, problem.times);

@@ -97,16 +97,13 @@ void find_truth(Problem& problem, Units& units) {
 /// Velocity Verlet, so many times below its stability limit, and extrapolated from twice that.
 std::vector<solver::Vectors> leapfrog(const Problem& problem, double fraction) {
   const auto positions = [&](double part) {
-    solver::Options options;
-    options.verlet_fraction = part;
-    const model::Cloth cloth = model::compile(problem.scene);
-    solver::Integrator integrator(cloth.ode, solver::method("verlet"), options, cloth.start);
-    std::vector<solver::Vectors> all;
-    for (const double t : problem.times) {
-      if (integrate(integrator, t, t).outcome != solver::Outcome::success) throw std::runtime_error("verlet failed");
-      all.push_back(integrator.state().x);
-    }
-    return all;
+    RunSpec spec{problem.scene, "", &solver::method("verlet"), problem.times.front(), {}};
+    spec.options.verlet_fraction = part;
+    Samples samples(problem.times);
+    Observer* const observers[] = {&samples};
+    const solver::RunResult result = run(spec, model::compile(problem.scene), observers).result;
+    if (result.outcome != solver::Outcome::success) throw std::runtime_error("verlet: " + result.message);
+    return positions_of(samples.states());
   };
   auto fine = positions(fraction);
   const auto coarse = positions(2 * fraction);

@@ -1,0 +1,120 @@
+#include "bench/runs/record.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+#include <optional>
+#include <span>
+#include <sstream>
+#include <stdexcept>
+
+#include "bench/runs/contact_observer.hpp"
+#include "bench/runs/energy_guard.hpp"
+#include "bench/runs/trajectory_observer.hpp"
+#include "model/at_rest.hpp"
+#include "model/scene_file/scene_file.hpp"
+#include "solver/base/printable.hpp"
+#include "solver/base/threads.hpp"
+
+namespace drape::bench {
+namespace {
+
+std::vector<results::Parameter> parameters(const RunSpec& spec, int particles) {
+  const solver::Options& o = spec.options;
+  std::vector<results::Parameter> all{{"size", model::size(spec.scene), "m", "length by which errors are divided"}};
+  if (spec.method->implicit()) {
+    all.push_back(
+        {"cg_tolerance", o.cg_tolerance, "1", "residual of a linear solve over |b|; in the loop at most half of its"});
+    all.push_back(
+        {"threads", double(base::threads_for(particles)), "1", "that the linear algebra of a sheet of this size may use"});
+    all.push_back({"max_cg_iterations", double(o.max_cg_iterations), "1", "iterations a solve before it counts as failed"});
+  } else if (spec.method->sub_steps) {
+    all.push_back({"verlet_fraction", o.verlet_fraction, "1", "sub-step over its stability limit"});
+  }
+  if (spec.method->nonlinear()) {
+    if (o.stage->accelerated)
+      all.push_back({"stage_accuracy", o.stage_accuracy, "1", "error left in a stage over the error of the time step"});
+    else
+      all.push_back({"loop_tolerance", o.loop_tolerance, "1", "residual of the fixed-point loop over |b|"});
+    all.push_back({"max_updates", double(o.max_updates), "1", "updates a stage before it counts as failed"});
+  }
+  if (o.error_control.enabled())
+    all.push_back({"tolerance", o.error_control.tolerance, "1",
+                   o.error_control.global ? "of the largest error at the tenths of the run, over the size"
+                                          : "of the local error, over the size"});
+  if (o.control.enabled()) {
+    all.push_back({"control_min_updates", double(o.control.min_updates), "1", "the step grows after fewer updates"});
+    all.push_back({"control_max_updates", double(o.control.max_updates), "1", "the step shrinks after more updates"});
+    all.push_back({"control_factor", o.control.factor, "1", "by which the step grows and shrinks"});
+  }
+  return all;
+}
+
+std::string_view stage_solver(const RunSpec& spec) {
+  switch (spec.method->stages) {
+    case solver::Method::Stages::none: return "none";
+    case solver::Method::Stages::linear: return "linear";
+    case solver::Method::Stages::nonlinear: break;
+  }
+  return spec.options.stage->name;
+}
+
+/// What is known of a run before it begins, but for its plan.
+results::RunRecord describe(const RunSpec& spec) {
+  results::RunRecord run;
+  run.scene = spec.scene.name;
+  run.scene_toml = model::to_toml(spec.scene);
+  run.overrides = spec.overrides;
+  run.method = spec.method_name();
+  run.stage_solver = stage_solver(spec);
+  run.linear_solver = spec.method->implicit() ? spec.options.linear_solver->name : "none";
+  run.step = spec.step;
+  run.until = spec.scene.end;
+  run.parameters = parameters(spec, spec.scene.sheet.grid.particles());
+  run.numerical_stiffness = model::numerical_stiffness(spec.scene, spec.step);
+  run.stiffness_to_damping = model::stiffness_to_damping(spec.scene, spec.step);
+  return run;
+}
+
+/// Steps with their energies.
+class StepRecorder : public Observer {
+ public:
+  explicit StepRecorder(std::vector<results::StepRecord>& steps) : steps_(steps) {}
+
+  void begin(const model::Scene&, const model::Cloth& cloth, const solver::State&) override { ode_ = &cloth.ode; }
+  void observe(const solver::StepReport& step) override {
+    steps_.push_back({step.t, step.h, step.updates, step.cg_iterations, solver::kinetic_energy(*ode_, step.y.v),
+                      ode_->potential_energy(step.t, step.y.x), step.contacts.constrained});
+  }
+
+ private:
+  std::vector<results::StepRecord>& steps_;
+  const solver::SplitOde* ode_ = nullptr;
+};
+
+}  // namespace
+
+results::RunRecord record(const RunSpec& spec, std::span<Observer* const> observers, const Limits& limits) {
+  results::RunRecord record = describe(spec);
+  EnergyGuardObserver guard;
+  StepRecorder steps(record.steps);
+  ContactObserver contact;
+  std::vector<Observer*> all{&guard, &steps, &contact};
+  all.insert(all.end(), observers.begin(), observers.end());
+  std::optional<model::Cloth> cloth;
+  RunEnd end = run(spec, cloth, all, limits);
+  record.outcome = to_string(end.result.outcome);
+  record.message = std::move(end.result.message);
+  if (record.message.empty() && model::is_at_rest(spec.scene)) record.message = model::at_rest_remark;
+  record.last_good_time = end.result.last_good_time;
+  record.contact = contact.result();
+  if (!cloth) return record;
+  record.plan = model::to_string(cloth->plan);
+  record.final_state = std::move(end.state);
+  for (const auto& [name, description, count] : cloth->ode.work->kinds()) record.work.push_back({name, description, count});
+  return record;
+}
+
+}  // namespace drape::bench
