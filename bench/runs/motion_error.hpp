@@ -1,12 +1,10 @@
 #pragma once
 
-#include <optional>
 #include <vector>
 
-#include "bench/runs/observer.hpp"
+#include "model/cloth.hpp"
 #include "reference/reference.hpp"
 #include "results/run_record.hpp"
-#include "solver/dense_output.hpp"
 #include "solver/integrator.hpp"
 
 namespace drape::bench {
@@ -20,24 +18,6 @@ struct MotionScale {
 MotionScale motion_scale(const model::Cloth& cloth, const reference::Trajectory& trajectory, double size);
 
 double total_energy(const model::Cloth& cloth, double t, const solver::State& y);
-
-/// The states of a run at given times, taken out of its steps.
-class Samples : public Observer {
- public:
-  explicit Samples(std::vector<double> times) : times_(std::move(times)) {}
-
-  void begin(const model::Scene&, const model::Cloth&, const solver::State& start) override {
-    dense_.emplace(times_, 0, start);
-  }
-  void observe(const solver::StepReport& step) override { dense_->see(step.t, step.y); }
-
-  /// At all times that were reached.
-  const std::vector<solver::State>& states() const { return dense_->states; }
-
- private:
-  const std::vector<double> times_;
-  std::optional<solver::DenseOutput> dense_;
-};
 
 /// Distance of a run from a reference of its scene: `states` are the run's at all of the reference's times.
 results::MotionErrorRecord motion_error(const std::vector<solver::State>& states, const reference::Reference& reference,

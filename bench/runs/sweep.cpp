@@ -15,6 +15,7 @@
 #include "bench/runs/motion_error.hpp"
 #include "bench/runs/record.hpp"
 #include "bench/runs/recording.hpp"
+#include "bench/runs/samples.hpp"
 #include "bench/runs/timing.hpp"
 #include "bench/runs/trajectory_observer.hpp"
 #include "results/file/xdmf.hpp"

@@ -6,8 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "bench/runs/run.hpp"
+#include "bench/runs/limits.hpp"
+#include "bench/runs/run_spec.hpp"
 #include "results/provenance.hpp"
+#include "results/run_record.hpp"
+#include "solver/integrator.hpp"
 
 namespace drape::bench {
 

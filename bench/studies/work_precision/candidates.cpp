@@ -6,8 +6,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "bench/runs/motion_error.hpp"
 #include "bench/runs/run.hpp"
+#include "bench/runs/samples.hpp"
 #include "bench/studies/work_precision/energy.hpp"
 #include "bench/studies/work_precision/peers.hpp"
 

@@ -7,6 +7,8 @@
 #include <memory>
 
 #include "bench/runs/certified_reference.hpp"
+#include "bench/runs/run.hpp"
+#include "bench/runs/samples.hpp"
 #include "bench/studies/studies.hpp"
 #include "bench/studies/work_precision/tables.hpp"
 #include "model/scene_file/scene_file.hpp"
@@ -76,7 +78,8 @@ std::vector<Entry> with_all_scenes(std::vector<Entry> all) {
 
 Problem problem(const Entry& entry) {
   Problem result{entry.name, entry.scene, model::size(entry.scene)};
-  for (int tenth = 1; tenth <= tenths; ++tenth) result.times.push_back(entry.scene.end * tenth / tenths);
+  for (int tenth = 1; tenth < tenths; ++tenth) result.times.push_back(entry.scene.end * tenth / tenths);
+  result.times.push_back(entry.scene.end);
   return result;
 }
 
