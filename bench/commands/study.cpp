@@ -12,7 +12,6 @@
 #include "bench/commands/commands.hpp"
 #include "bench/commands/names_of.hpp"
 #include "bench/commands/output.hpp"
-#include "bench/commands/plot.hpp"
 #include "bench/runs/identity.hpp"
 #include "bench/runs/table_jobs.hpp"
 #include "bench/studies/studies.hpp"
@@ -93,9 +92,6 @@ std::filesystem::path run_study(const StudyArguments& a) {
   options.out = out_file(a.output, a.name);
   print_tables(compute(jobs, identity(a, scene), options), a.output.format);
   say_where(options.out, a.output.format);
-  if (chosen.plot.empty()) return options.out;
-  const std::string said = plot(chosen.plot, options.out);
-  if (a.output.format == "table") fmt::print("{}", base::printable_lines(said));
   return options.out;
 }
 
@@ -117,7 +113,10 @@ void add_study(CLI::App& app, const std::string& command_line) {
   add_overrides(command, a->choice);
   add_output_options(command, a->output);
   command.footer(paragraph("Studies", study_choices()));
-  command.callback([=] { run_study(*a); });
+  command.callback([=] {
+    const std::filesystem::path out = run_study(*a);
+    if (a->output.format == "table") fmt::print("to draw it: bench/run report {} --out DIR\n", base::printable(out.string()));
+  });
 }
 
 }  // namespace drape::bench

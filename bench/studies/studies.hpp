@@ -26,7 +26,6 @@ struct Study {
   std::string_view description;
   std::vector<Group> (*groups)(bool quick) = nullptr;                                 ///< runs, compared with references
   std::vector<TableJob> (*tables)(bool quick) = nullptr;                              ///< or tables
-  std::string_view plot = {};                                                         ///< script that draws them; empty: none
   std::vector<TableJob> (*of_methods)(bool quick, const Methods& methods) = nullptr;  ///< or tables of any methods
   std::vector<TableJob> (*of_scene)(const model::Scene& scene, bool quick,
                                     const Methods& methods) = nullptr;  ///< the same about another scene
