@@ -66,10 +66,6 @@ Reference reference_by(const Family& first, const Family& second, const Equation
 
 }  // namespace
 
-double rms_distance(const solver::Vectors& a, const solver::Vectors& b) {
-  return std::sqrt((a - b).squaredNorm() / static_cast<double>(a.rows()));
-}
-
 Reference reference(const Equations& equations, const State& y0, double t0, std::span<const double> times,
                     const SolveOptions& options) {
   const Family &bdf = family("cvode-bdf"), &runge_kutta = family("arkode-esdirk"), &residual = family("ida-bdf");

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "reference/distance.hpp"
 #include "reference/trajectory.hpp"
 
 namespace drape::reference {
@@ -15,9 +16,6 @@ struct Reference {
   Trajectory witnessed;  ///< what the witness computed
   Trajectory perturbed;  ///< what the perturbed start led to
 };
-
-/// Root mean square over the particles of the distance [m] between two sets of positions.
-double rms_distance(const solver::Vectors& a, const solver::Vectors& b);
 
 /// An equation of motion for each of two threads. If they are one and the same, its solutions are computed one after the other;
 /// else they must be equal and share no memory, as two compilations of a scene.

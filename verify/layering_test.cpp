@@ -56,7 +56,7 @@ const std::vector<Room> rooms = {
     {"model", {"model/"}, {"model/jacobian", "model/obstacles"}},
     {"model/scene_file", {"model/scene_file/"}, {"model"}},
 
-    {"reference's vocabulary", {"reference/newton_solves.", "reference/tableaux.", "reference/trajectory."}, {"solver"}},
+    {"reference's vocabulary", {"reference/newton_solves.", "reference/tableaux.", "reference/trajectory.", "reference/distance."}, {"solver"}},
     {"reference/sundials", {"reference/sundials/"}, {"reference's vocabulary"}},
     {"reference/exact", {"reference/exact/"}, {"solver"}},
     {"reference/theory", {"reference/theory/"}, {"reference/exact"}},

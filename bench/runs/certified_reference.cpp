@@ -17,7 +17,7 @@ namespace {
 using solver::State;
 
 double centre_distance(const model::Cloth& cloth, const State& a, const State& b) {
-  return (cloth.ode.mass.asDiagonal() * (a.x - b.x)).colwise().sum().norm() / cloth.ode.mass.sum();
+  return reference::centre_of_mass(cloth.ode.mass, a.x - b.x).norm();
 }
 
 constexpr double reference_tolerances[] = {1e-9, 1e-10, 1e-11, 1e-12};  ///< of references
@@ -107,7 +107,7 @@ results::ErrorRecord distance(const results::RunRecord& run, const reference::Re
   const State &y = reference.trajectory.states.back(), &perturbed = reference.perturbed.states.back();
   const double energy = total_energy(cloth, end, y), scale = motion_scale(cloth, reference.trajectory, size).energy;
   return {.rms = reference::rms_distance(run.final_state.x, y.x) / size,
-          .maximum = (run.final_state.x - y.x).rowwise().norm().maxCoeff() / size,
+          .maximum = reference::maximum_distance(run.final_state.x, y.x) / size,
           .reference = fmt::format("{} + {}", reference.name, reference.witness),
           .reference_tolerance = reference.tolerance,
           .reference_error = base::largest(reference.error) / size,

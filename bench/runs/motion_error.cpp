@@ -13,10 +13,6 @@ using solver::Vectors;
 
 constexpr double still = 1e-3;  ///< of its size: a scene that moves by less in a run is at rest
 
-Eigen::RowVector3d centre_of(const model::Cloth& cloth, const Vectors& x) {
-  return cloth.ode.mass.transpose() * x / cloth.ode.mass.sum();
-}
-
 Eigen::RowVector3d momentum(const model::Cloth& cloth, const State& y) { return cloth.ode.mass.transpose() * y.v; }
 
 Eigen::Vector3d angular_momentum(const model::Cloth& cloth, const Eigen::RowVector3d& centre, const State& y) {
@@ -51,7 +47,7 @@ results::MotionErrorRecord motion_error(const std::vector<State>& states, const 
   const reference::Trajectory& truth = reference.trajectory;
   const double size = model::size(scene), mass = cloth.ode.mass.sum();
   const MotionScale scale = motion_scale(cloth, truth, size);
-  const Eigen::RowVector3d centre = centre_of(cloth, cloth.start.x);
+  const Eigen::RowVector3d centre = reference::centre_of_mass(cloth.ode.mass, cloth.start.x);
   results::MotionErrorRecord largest{.amplitude = scale.distance / size};
   const auto note = [](double& number, double error) { number = base::larger(number, error); };
   for (std::size_t k = 0; k < truth.times.size(); ++k) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <ctime>
 #include <exception>
 #include <new>
 #include <optional>
@@ -71,6 +72,7 @@ class ObservedRun {
 /// `memory` is given back before the state at the end is copied.
 RunEnd run_within(const RunSpec& spec, const model::Cloth& cloth, std::span<Observer* const> observers, const Limits& limits,
                   std::optional<MemoryLimit>& memory) {
+  const std::clock_t begin = std::clock();
   RunEnd end;
   Meter meter(limits);
   std::optional<solver::SplitOde> watched;
@@ -103,6 +105,7 @@ RunEnd run_within(const RunSpec& spec, const model::Cloth& cloth, std::span<Obse
   if (integrator) end.state = integrator->state();
   end.evaluations = meter.evaluations();
   end.newton_matrices = meter.newton_matrices();
+  end.cpu_ms = 1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
   return end;
 }
 

@@ -15,6 +15,9 @@ struct RunEnd {
   solver::RunResult result;
   solver::State state = {};                           ///< after the last accepted step; empty if there was no start
   std::int64_t evaluations = 0, newton_matrices = 0;  ///< of forces and Newton matrices in all; of the latter
+  double cpu_ms = 0;                                  ///< processor time of the run with its observers
+
+  bool succeeded() const { return result.outcome == solver::Outcome::success; }
 };
 
 /// The only place that makes an integrator of a scene, a method and options, and runs it. Observers see the start and every

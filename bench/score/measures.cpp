@@ -75,7 +75,7 @@ std::vector<FrameScore> frame_scores(const ForeignMotion& foreign, const TrueMot
     const State &y = foreign.states[k], truly = state_at(truth.motion, t);
     FrameScore frame{t,
                      reference::rms_distance(y.x, truly.x),
-                     (y.x - truly.x).rowwise().norm().maxCoeff(),
+                     reference::maximum_distance(y.x, truly.x),
                      uncertainty_at(truth, t),
                      0,
                      observe(truth.scene, truth.cloth, t, y),

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "model/sheet/edges.hpp"
+#include "reference/distance.hpp"
 #include "solver/base/largest.hpp"
 
 namespace drape::bench {
@@ -47,7 +48,7 @@ Observables observe(const model::Scene& scene, const model::Cloth& cloth, double
   o.kinetic = solver::kinetic_energy(cloth.ode, y.v);
   o.potential = cloth.ode.potential_energy(t, y.x);
   o.total = o.kinetic + o.potential;
-  o.centre = (cloth.ode.mass.asDiagonal() * y.x).colwise().sum() / cloth.ode.mass.sum();
+  o.centre = reference::centre_of_mass(cloth.ode.mass, y.x);
   o.lowest = y.x.col(2).minCoeff();
   o.stretch = largest_strain(scene.sheet.grid, y.x);
   return o;

@@ -119,7 +119,7 @@ Table trials(const Scoring& s) {
   for (const Trial& trial : s.ours.trials) {
     table.row();
     table.text("method", "", "time integrator, with what controls it", trial.family->name);
-    table.number("value", "", "1", "step [s], or fraction of the stability limit", trial.candidate->value);
+    table.number("value", "", "1", "step [s], or fraction of the stability limit", trial.configuration().value);
     table.text("outcome", "", "success, or why there is none", trial.outcome);
     table.count("steps", "", "steps", trial.steps);
     if (trial.measured.times.empty()) continue;
@@ -137,7 +137,7 @@ Table trials(const Scoring& s) {
 void add_answer(TableBuilder& table, const std::string& prefix, const char* question, const Trial* trial, bool best) {
   if (trial == nullptr) return;
   const auto name = [&](const char* end) { return prefix + end; };
-  table.number(name("value").c_str(), question, "1", "step [s], or fraction of the stability limit", trial->candidate->value);
+  table.number(name("value").c_str(), question, "1", "step [s], or fraction of the stability limit", trial->configuration().value);
   table.number(name("error").c_str(), "rms error", "1", "largest of the frames' rms distances, over the size",
                trial->measured.error);
   table.number(name("time").c_str(), "time", "ms", "median wall time to the last frame",

@@ -162,7 +162,7 @@ results::Table cost(const std::string& method, Units& units) {
       if (best == nullptr) continue;
       const auto q = results::quartiles(best->measured.times);
       table.number("control", "h", "s", "step, or fraction of the stability limit, that is the quickest",
-                   best->candidate->value);
+                   best->configuration().value);
       table.number("error", "", "1", "its error", best->measured.error);
       table.number("time", "time", "ms", "median wall time", q.median);
       table.number("lower", "", "ms", "lower quartile", q.lower);

@@ -14,6 +14,7 @@
 #include "reference/sundials/sundials_build.hpp"
 #include "results/analysis/work_precision.hpp"
 #include "results/table_builder.hpp"
+#include "solver/base/largest.hpp"
 
 namespace drape::bench {
 namespace {
@@ -53,7 +54,7 @@ struct Case {
   double error(const std::vector<solver::Vectors>& positions, std::initializer_list<std::size_t> tenths) const {
     double largest = 0;
     for (const std::size_t k : tenths)
-      largest = std::max(largest, reference::rms_distance(positions.at(k - 1), truth.at(k - 1)) / size);
+      largest = base::larger(largest, reference::rms_distance(positions.at(k - 1), truth.at(k - 1)) / size);
     return largest;
   }
 };
@@ -65,13 +66,12 @@ Case make_case(const std::string& damping, bool quick) {
   result.size = model::size(result.scene);
   for (int k = 1; k <= 10; ++k) result.times.push_back(result.scene.end * k / 10);
   References references(1e-6, {}, 1e-10);
-  for (const solver::State& y : references(result.scene, model::compile(result.scene)).trajectory.states)
-    result.truth.push_back(y.x);
+  result.truth = reference::positions_of(references(result.scene, model::compile(result.scene)).trajectory.states);
   return result;
 }
 
 std::vector<solver::Vectors> solve(const PeerRow& row, const Case& on) {
-  return positions_of(solve_by_peer(row.setup, row.value, on.size, model::compile(on.scene), on.times));
+  return reference::positions_of(solve_by_peer(row.setup, row.value, on.size, model::compile(on.scene), on.times));
 }
 
 results::Measured measure(const PeerRow& row, const Case& on, Units& units) {

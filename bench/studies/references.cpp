@@ -10,7 +10,6 @@
 #include "reference/reference.hpp"
 #include "reference/sundials/families.hpp"
 #include "results/table_builder.hpp"
-#include "solver/base/largest.hpp"
 
 namespace drape::bench {
 namespace {
@@ -43,16 +42,13 @@ Solution solve(const std::string& family, const model::Scene& scene) {
   const std::string prefix = family.substr(0, family.find('-'));
   solution.steps = cloth.ode.work->count(prefix + "/steps");
   solution.factorisations = cloth.ode.work->count(prefix + "/factorisations");
-  for (const solver::State& y : trajectory.states) solution.positions.push_back(y.x);
+  solution.positions = reference::positions_of(trajectory.states);
   return solution;
 }
 
 /// Largest distance of positions at the output times, over the size of the scene.
 double largest_distance(const Solution& a, const Solution& b, double size) {
-  double largest = 0;
-  for (std::size_t k = 0; k < a.positions.size(); ++k)
-    largest = base::larger(largest, reference::rms_distance(a.positions[k], b.positions[k]) / size);
-  return largest;
+  return reference::largest_rms_distance(a.positions, b.positions) / size;
 }
 
 void add_row(results::TableBuilder& table, const model::Scene& scene, const std::string& family, const Solution& solution,

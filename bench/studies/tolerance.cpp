@@ -10,6 +10,7 @@
 #include "bench/runs/sweep.hpp"
 #include "bench/studies/studies.hpp"
 #include "model/scene_file/scene_file.hpp"
+#include "reference/distance.hpp"
 #include "solver/dense_output.hpp"
 
 namespace drape::bench {
@@ -115,10 +116,8 @@ class Measurement {
   }
 
   double error(const std::vector<solver::Vectors>& positions) const {
-    double largest = 0;
-    for (std::size_t k = 0; k < reference_.trajectory.times.size(); ++k)
-      largest = std::max(largest, reference::rms_distance(positions.at(k), reference_.trajectory.states[k].x));
-    return largest / model::size(scene_);
+    const auto truth = reference::positions_of(reference_.trajectory.states);
+    return reference::largest_rms_distance(positions, truth) / model::size(scene_);
   }
 
   const Setting& setting_;

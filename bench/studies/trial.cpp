@@ -3,21 +3,15 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <ctime>
 #include <limits>
 
 #include "bench/runs/energy_guard.hpp"
+#include "reference/distance.hpp"
 
 namespace drape::bench {
 namespace {
 
 constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
-
-double rms(const solver::Vectors& difference) { return difference.norm() / std::sqrt(difference.rows()); }
-
-double centre(const Eigen::VectorXd& mass, const solver::Vectors& difference) {
-  return (mass.transpose() * difference).norm() / mass.sum();
-}
 
 /// The methods of a yardstick, the best first. No two share an error: where artificial inertia or damping of one remain,
 /// it differs from the others.
@@ -36,49 +30,49 @@ std::vector<Conditions> yardsticks(double size, double until) {
 
 }  // namespace
 
-std::string Attempt::reason() const {
-  if (!finished()) return fmt::format("not finished in {} evaluations, at t = {:.4g} s", evaluations - 1, run.last_good_time);
-  return run.message;
+std::string reason(const RunEnd& end) {
+  const solver::RunResult& result = end.result;
+  if (result.outcome != solver::Outcome::out_of_evaluations) return result.message;
+  return fmt::format("not finished in {} evaluations, at t = {:.4g} s", end.evaluations - 1, result.last_good_time);
 }
 
-Attempt attempt(const Specimen& specimen, const Conditions& conditions) {
+RunEnd attempt(const Specimen& specimen, const Conditions& conditions) {
   RunSpec spec{specimen.scene, "", conditions.method, conditions.step, conditions.options};
   spec.scene.end = conditions.until;
   EnergyGuardObserver guard;
   Observer* const observers[] = {&guard};
-  const std::clock_t begin = std::clock();
-  RunEnd end = run(spec, specimen.cloth, observers, {.evaluations = conditions.budget});
-  const double cpu_ms = 1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
-  return {std::move(end.result), std::move(end.state), end.evaluations, end.newton_matrices, cpu_ms};
+  return run(spec, specimen.cloth, observers, {.evaluations = conditions.budget});
 }
 
 Yardstick::Yardstick(const Specimen& specimen, double until, double effort)
     : Yardstick(
           specimen, until, [&](const Conditions& conditions) { return attempt(specimen, conditions); }, effort) {}
 
-Yardstick::Yardstick(const Specimen& specimen, double until, const std::function<Attempt(const Conditions&)>& run,
-                     double effort)
+Yardstick::Yardstick(const Specimen& specimen, double until, const std::function<RunEnd(const Conditions&)>& run, double effort)
     : size_(model::size(specimen.scene)), mass_(specimen.cloth.ode.mass), positions_(not_known), centre_(not_known) {
   for (Conditions& conditions : yardsticks(size_, until)) {
     conditions.budget = static_cast<std::int64_t>(effort * static_cast<double>(conditions.budget));
-    const Attempt trial = run(conditions);
+    const RunEnd trial = run(conditions);
     if (!trial.succeeded()) continue;
     if (truth_.size() == 0) {
-      truth_ = trial.end.x;
+      truth_ = trial.state.x;
       continue;
     }
-    positions_ = rms(trial.end.x - truth_) / size_;
-    centre_ = centre(mass_, trial.end.x - truth_) / size_;
+    positions_ = reference::rms_distance(trial.state.x, truth_) / size_;
+    centre_ = centre_distance(trial.state.x);
     return;
   }
 }
 
-UncertainError Yardstick::measure(const Attempt& trial, double bound) const {
+double Yardstick::centre_distance(const solver::Vectors& x) const {
+  return reference::centre_of_mass(mass_, x - truth_).norm() / size_;
+}
+
+UncertainError Yardstick::measure(const RunEnd& trial, double bound) const {
   constexpr double telling = 0.25;  // part of the bound
   if (!trial.succeeded() || !(centre_ <= telling * bound)) return {};
-  const solver::Vectors difference = trial.end.x - truth_;
-  if (positions_ <= telling * bound) return {rms(difference) / size_, positions_};
-  return {centre(mass_, difference) / size_, centre_};
+  if (positions_ <= telling * bound) return {reference::rms_distance(trial.state.x, truth_) / size_, positions_};
+  return {centre_distance(trial.state.x), centre_};
 }
 
 }  // namespace drape::bench

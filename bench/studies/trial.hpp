@@ -5,6 +5,7 @@
 #include <string>
 
 #include "bench/runs/checkpoint_json.hpp"
+#include "bench/runs/run.hpp"
 #include "bench/studies/verdict.hpp"
 #include "model/cloth.hpp"
 #include "solver/integrator.hpp"
@@ -18,6 +19,9 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RunResult, outcome, message, last_good_time, 
 namespace drape::bench {
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(UncertainError, error, uncertainty)
+
+/// As a unit of work it is kept without the state at its end.
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RunEnd, result, evaluations, newton_matrices, cpu_ms)
 
 }  // namespace drape::bench
 
@@ -40,25 +44,10 @@ struct Conditions {
   std::int64_t budget = 10'000;
 };
 
-/// What became of it.
-struct Attempt {
-  solver::RunResult run;
-  solver::State end;
-  std::int64_t evaluations = 0;
-  std::int64_t newton_matrices = 0;
-  double cpu_ms = 0;
+RunEnd attempt(const Specimen& specimen, const Conditions& conditions);
 
-  bool finished() const { return run.outcome != solver::Outcome::out_of_evaluations; }
-  bool succeeded() const { return run.outcome == solver::Outcome::success; }
-
-  /// Why it did not; empty if it did.
-  std::string reason() const;
-};
-
-/// As a unit of work it is kept without the state at its end.
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Attempt, run, evaluations, newton_matrices, cpu_ms)
-
-Attempt attempt(const Specimen& specimen, const Conditions& conditions);
+/// Why it did not succeed; empty if it did.
+std::string reason(const RunEnd& end);
 
 /// The end of a specimen as two different methods find it, and how far they differ: the first two that succeed of ESDIRK3 and
 /// TR-BDF2 with controlled errors, velocity Verlet, the midpoint rule and SBDF(2) with many steps.
@@ -68,15 +57,17 @@ class Yardstick {
   Yardstick(const Specimen& specimen, double until, double effort = 1);
 
   /// The same for a specimen that `run` takes to its end as it is told.
-  Yardstick(const Specimen& specimen, double until, const std::function<Attempt(const Conditions&)>& run, double effort = 1);
+  Yardstick(const Specimen& specimen, double until, const std::function<RunEnd(const Conditions&)>& run, double effort = 1);
 
   /// Error of a trial over the size of the scene, with what the yardstick itself is uncertain by: root mean square of
   /// positions, or, where that cannot be told from `bound`, the distance of the centres of mass. NaN if that cannot either.
-  UncertainError measure(const Attempt& trial, double bound) const;
+  UncertainError measure(const RunEnd& trial, double bound) const;
 
   double uncertainty() const { return positions_; }  ///< of positions; NaN if there are no two
 
  private:
+  double centre_distance(const solver::Vectors& x) const;  ///< from the truth's, over the size
+
   double size_;
   Eigen::VectorXd mass_;
   solver::Vectors truth_;

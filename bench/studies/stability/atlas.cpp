@@ -227,10 +227,10 @@ results::Table check_bar(const Atlas& atlas) {
     for (const AtlasCell& cell : atlas.cells) {
       if (cell.row != &row || !cell.expected->good()) continue;
       ++stable;
-      const Attempt& attempt = cell.judged.trial;
-      const bool rises = attempt.run.outcome == solver::Outcome::unstable;
+      const RunEnd& trial = cell.judged.trial;
+      const bool rises = trial.result.outcome == solver::Outcome::unstable;
       if (rises) ++rise;
-      if (rises || attempt.succeeded()) ++converge;
+      if (rises || trial.succeeded()) ++converge;
     }
     table.row();
     table.text("method", "method", "time integrator", row.name);

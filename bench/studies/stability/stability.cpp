@@ -6,10 +6,10 @@
 
 namespace drape::bench {
 
-Judged judged(Attempt trial, const Yardstick& yardstick) {
+Judged judged(RunEnd trial, const Yardstick& yardstick) {
   Judged result{std::move(trial), {}, {}};
   result.error = yardstick.measure(result.trial, error_bound);
-  result.verdict = judge(result.trial.run.outcome, result.error, error_bound);
+  result.verdict = judge(result.trial.result.outcome, result.error, error_bound);
   return result;
 }
 
@@ -32,12 +32,12 @@ void add_verdict(results::TableBuilder& table, const Judged& judged, bool shown)
     table.number("uncertainty", title("±"), "1", "of the error: how far two reference methods differ",
                  judged.error.uncertainty);
   }
-  table.count("steps", title("steps"), "accepted ones", judged.trial.run.steps);
-  table.count("rejected", title("rejected"), "steps that were cut", judged.trial.run.rejected_steps);
+  table.count("steps", title("steps"), "accepted ones", judged.trial.result.steps);
+  table.count("rejected", title("rejected"), "steps that were cut", judged.trial.result.rejected_steps);
   table.count("evaluations", title("evaluations"), "of forces, and of Newton matrices", judged.trial.evaluations);
   table.count("newton_matrices", title("Newton"), "matrices made", judged.trial.newton_matrices);
   table.number("cpu_ms", "", "ms", "processor time", judged.trial.cpu_ms);
-  table.text("reason", title("reason"), "why it did not succeed", judged.trial.reason());
+  table.text("reason", title("reason"), "why it did not succeed", reason(judged.trial));
 }
 
 std::vector<TableJob> stability(bool quick, const Methods& methods) {

@@ -12,7 +12,7 @@ inline constexpr double horizon = 0.24;      ///< [s], in which a free sheet fal
 
 /// A trial with its error and what follows from them.
 struct Judged {
-  Attempt trial;
+  RunEnd trial;
   UncertainError error;
   Verdict verdict = Verdict::bounded;
 
@@ -20,7 +20,7 @@ struct Judged {
 };
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Judged, trial, error, verdict)
 
-Judged judged(Attempt trial, const Yardstick& yardstick);
+Judged judged(RunEnd trial, const Yardstick& yardstick);
 
 /// A square sheet of n × n particles, horizontal, hung by two corners, with the shear modulus k/100.
 Specimen hung_by_corners(int n, double k, double d);

@@ -55,7 +55,7 @@ class FewestSteps {
 };
 
 /// A step that the solver had to cut is not the one that was asked for.
-bool uncut(const Judged& run) { return run.trial.run.rejected_steps == 0; }
+bool uncut(const Judged& run) { return run.trial.result.rejected_steps == 0; }
 
 /// All methods on one sheet.
 void add_largest_steps(results::TableBuilder& table, int n, const Softness& softness, const Methods& methods) {

@@ -84,14 +84,14 @@ constexpr Stress stresses[] = {
 };
 
 /// A trial to the end; half way the sheet turns into what it then is, if it does.
-Attempt endure(const Stress& stress, int n, Conditions conditions) {
+RunEnd endure(const Stress& stress, int n, Conditions conditions) {
   Specimen specimen = stress.make(n);
   if (!stress.then) return attempt(specimen, conditions);
   conditions.until /= 2;
-  Attempt first = attempt(specimen, conditions);
+  RunEnd first = attempt(specimen, conditions);
   if (!first.succeeded()) return first;
   specimen = stress.then(n);
-  specimen.cloth.start = first.end;
+  specimen.cloth.start = first.state;
   return attempt(specimen, conditions);
 }
 

@@ -10,6 +10,7 @@
 #include "bench/runs/samples.hpp"
 #include "bench/studies/work_precision/energy.hpp"
 #include "bench/studies/work_precision/peers.hpp"
+#include "reference/distance.hpp"
 
 namespace drape::bench {
 namespace {
@@ -35,7 +36,7 @@ std::vector<Vectors> solve_ours(const RunSpec& spec, const model::Cloth& cloth, 
   if (times.size() > 1) observers.push_back(&samples);
   RunEnd end = run(spec, cloth, observers);
   if (end.result.outcome != solver::Outcome::success) throw std::runtime_error(end.result.message);
-  if (times.size() > 1) return positions_of(samples.states());
+  if (times.size() > 1) return reference::positions_of(samples.states());
   return {std::move(end.state.x)};
 }
 
@@ -145,12 +146,6 @@ void add_thesis(std::vector<Family>& all, const model::Scene& scene, Search sear
 }
 
 }  // namespace
-
-std::vector<Vectors> positions_of(std::vector<solver::State> states) {
-  std::vector<Vectors> positions;
-  for (solver::State& state : states) positions.push_back(std::move(state.x));
-  return positions;
-}
 
 std::vector<double> tolerances(int finest) {
   std::vector<double> all;

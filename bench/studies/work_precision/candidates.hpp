@@ -67,8 +67,6 @@ std::vector<double> tolerances(int finest);
 /// Into how many parts a tenth of the end is divided at most.
 int finest_parts(Search search);
 
-std::vector<solver::Vectors> positions_of(std::vector<solver::State> states);
-
 /// A fifth of the end, and steps that divide a tenth of it into 1 to so many parts, each about √2 times the next.
 std::vector<double> divided_steps(double end, int parts);
 

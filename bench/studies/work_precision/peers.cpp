@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "bench/studies/work_precision/energy.hpp"
+#include "reference/distance.hpp"
 #include "reference/sundials/arkode.hpp"
 
 namespace drape::bench {
@@ -125,10 +126,11 @@ Family peer_family(const PeerSetup& setup, const model::Scene& scene, Search sea
       return solve_by_peer(setup, value, size, cloth, times);
     };
     const int parts = steps ? static_cast<int>(std::lround(scene.end / value)) : looks;
-    family.candidates.push_back(
-        {value,
-         [states](const model::Cloth& cloth, std::span<const double> times) { return positions_of(states(cloth, times)); },
-         [states, scene, parts] { return energy_fault(scene, states, parts); }});
+    family.candidates.push_back({value,
+                                 [states](const model::Cloth& cloth, std::span<const double> times) {
+                                   return reference::positions_of(states(cloth, times));
+                                 },
+                                 [states, scene, parts] { return energy_fault(scene, states, parts); }});
   }
   return family;
 }

@@ -41,13 +41,6 @@ double seconds(TimeOf time_of) {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-double largest_error(const Problem& problem, const std::vector<solver::Vectors>& positions) {
-  double largest = 0;
-  for (std::size_t k = 0; k < problem.truth.size(); ++k)
-    largest = base::larger(largest, reference::rms_distance(positions.at(k), problem.truth[k]) / problem.length);
-  return largest;
-}
-
 /// Of our counters and those of SUNDIALS' packages: each run knows some.
 std::int64_t count(const solver::Work& work, std::initializer_list<std::string_view> names) {
   std::int64_t sum = 0;
@@ -56,33 +49,24 @@ std::int64_t count(const solver::Work& work, std::initializer_list<std::string_v
   return sum;
 }
 
-/// A trial as a unit of work: the place of its candidate in its family, and what became of it.
-struct Tried {
-  std::size_t candidate = 0;
-  std::string outcome = "success";
-  results::Measured measured = {std::nan(""), {}};
-  std::int64_t forces = 0, factorisations = 0, steps = 0;
-};
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Tried, candidate, outcome, measured, forces, factorisations, steps)
-
-void note_work(const solver::Work& work, Tried& trial) {
+void note_work(const solver::Work& work, Trial& trial) {
   trial.forces = count(work, {"forces", "explicit_forces"});
   trial.factorisations = count(
       work, {"newton_factorizations", "factorizations", "cvode/factorisations", "arkode/factorisations", "ida/factorisations"});
   trial.steps = count(work, {"steps", "cvode/steps", "arkode/steps", "ida/steps"});
 }
 
-Tried attempt(const Problem& problem, const Family& family, std::size_t candidate, const Effort& effort) {
+Trial try_candidate(const Problem& problem, const Family& family, std::size_t candidate, const Effort& effort) {
   check_interruption();  // SUNDIALS' failure of the one before may have been one
-  Tried trial{.candidate = candidate};
+  Trial trial{.family = &family, .candidate = candidate};
   model::Cloth cloth = model::compile(problem.scene);
   Meter meter({.seconds = effort.cap});
   meter.watch(cloth.ode);
   try {
     const double begin = seconds(effort.time_of);
-    const auto positions = family.candidates[candidate].solve(cloth, problem.times);
+    const auto positions = trial.configuration().solve(cloth, problem.times);
     const double milliseconds = 1e3 * (seconds(effort.time_of) - begin);
-    trial.measured = {largest_error(problem, positions), {milliseconds}};
+    trial.measured = {reference::largest_rms_distance(positions, problem.truth) / problem.length, {milliseconds}};
     if (!std::isfinite(trial.measured.error)) throw std::runtime_error("not finite");
   } catch (const std::exception& error) {
     trial.outcome = error.what();
@@ -105,15 +89,15 @@ bool outdone(const results::Measured& trial, const std::vector<results::Measured
 }
 
 /// `rivals`: other trials of the same code.
-std::vector<Tried> try_family(const Problem& problem, const Family& family, const Effort& effort,
+std::vector<Trial> try_family(const Problem& problem, const Family& family, const Effort& effort,
                               std::vector<results::Measured> rivals) {
-  std::vector<Tried> trials;
+  std::vector<Trial> trials;
   int times_outdone = 0;
   double before = INFINITY;
   bool succeeded = false;
   for (std::size_t k = 0; k < family.candidates.size();) {
     const double begin = seconds(effort.time_of);
-    const Tried& trial = trials.emplace_back(attempt(problem, family, k, effort));
+    const Trial& trial = trials.emplace_back(try_candidate(problem, family, k, effort));
     const double taken = seconds(effort.time_of) - begin;
     const bool too_long = taken > 0.7 * effort.cap;
     succeeded |= trial.outcome == "success";
@@ -157,10 +141,11 @@ std::vector<Trial> try_all(const Problem& problem, const std::vector<Family>& fa
   std::vector<Trial> trials;
   for (const Family& family : families) {
     units.show(fmt::format("{}: {}", problem.name, family.name));
-    const auto tried = units(family.name, [&] { return try_family(problem, family, effort, rivals_of(family, trials)); });
-    for (const Tried& t : tried)
-      trials.push_back(
-          {&family, &family.candidates.at(t.candidate), t.outcome, t.measured, false, t.forces, t.factorisations, t.steps});
+    auto tried = units(family.name, [&] { return try_family(problem, family, effort, rivals_of(family, trials)); });
+    for (Trial& trial : tried) {
+      trial.family = &family;
+      trials.push_back(std::move(trial));
+    }
     units.advance();
   }
   return trials;
@@ -205,9 +190,9 @@ void judge_energies(const Problem& problem, const std::vector<Contender>& who, s
     failed = false;
     for (const std::size_t k : near_fronts(problem, who, trials)) {
       Trial& trial = trials[k];
-      if (!judged.insert(k).second || !trial.candidate->energy_fault) continue;
-      const std::string name = fmt::format("energy of {} {}", trial.family->name, trial.candidate->value);
-      const std::string fault = units(name, [&] { return trial.candidate->energy_fault(); });
+      if (!judged.insert(k).second || !trial.configuration().energy_fault) continue;
+      const std::string name = fmt::format("energy of {} {}", trial.family->name, trial.configuration().value);
+      const std::string fault = units(name, [&] { return trial.configuration().energy_fault(); });
       if (fault.empty()) continue;
       trial.outcome = fault;
       trial.measured = {std::nan(""), {}};
@@ -233,7 +218,7 @@ void time_fronts(const Problem& problem, const std::vector<Contender>& who, std:
   const std::set<std::size_t> chosen = near_fronts(problem, who, trials);
   std::vector<Repeated> runs;
   for (const std::size_t k : chosen) {
-    const auto prepare = [&problem, &solve = trials[k].candidate->solve] {
+    const auto prepare = [&problem, &solve = trials[k].configuration().solve] {
       return [&problem, &solve, cloth = std::make_shared<model::Cloth>(model::compile(problem.scene))] {
         solve(*cloth, problem.times);
       };

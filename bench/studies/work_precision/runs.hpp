@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <set>
 #include <string>
 #include <vector>
@@ -37,15 +38,21 @@ std::vector<double> levels(const Problem& problem);
 /// These, and those that are asked for besides.
 std::vector<double> asked(const Problem& problem);
 
-/// What became of a candidate.
+/// What became of a candidate of a family.
 struct Trial {
-  const Family* family;
-  const Candidate* candidate;
-  std::string outcome;         ///< "success", or why it failed
-  results::Measured measured;  ///< the largest error at all times; the one time of the first run, or those of repetitions
-  bool timed = false;          ///< repeatedly
+  const Family* family = nullptr;
+  std::size_t candidate = 0;        ///< its place in the family
+  std::string outcome = "success";  ///< or why it failed
+  /// The largest error at all times; the one time of the first run, or those of repetitions.
+  results::Measured measured = {std::nan(""), {}};
+  bool timed = false;  ///< repeatedly
   std::int64_t forces = 0, factorisations = 0, steps = 0;
+
+  const Candidate& configuration() const { return family->candidates.at(candidate); }
 };
+
+/// As a unit of work, to which its family is known.
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Trial, candidate, outcome, measured, forces, factorisations, steps)
 
 /// How long a study may take, and what times are.
 struct Effort {

@@ -94,7 +94,7 @@ results::Table trials_table(const SceneTrials& scene) {
     table.text("method", "", "ours with the program's defaults: the method", trial.family->method);
     table.text("build", "", "how the program and SUNDIALS were built", reference::sundials_build());
     table.text("control", "", "the number: step [s], tolerance, or fraction of the stability limit", trial.family->control);
-    table.number("value", "", "1", "its value", trial.candidate->value);
+    table.number("value", "", "1", "its value", trial.configuration().value);
     table.text("outcome", "", "success, or why there is none", trial.outcome);
     table.number("uncertainty", "", "1", "of the reference, as the error", scene.problem.uncertainty);
     table.count("steps", "", "steps", trial.steps);

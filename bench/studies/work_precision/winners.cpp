@@ -24,7 +24,7 @@ void add(Score& score, const Winner& best, const Winner& winner) {
 }  // namespace
 
 std::string Winner::name() const {
-  return trial == nullptr ? "none" : fmt::format("{}: {:.2g}", trial->family->name, trial->candidate->value);
+  return trial == nullptr ? "none" : fmt::format("{}: {:.2g}", trial->family->name, trial->configuration().value);
 }
 
 bool tie(const Winner& a, const Winner& b) { return a.trial == b.trial || results::tied(a.trial->measured, b.trial->measured); }

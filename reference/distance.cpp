@@ -1,0 +1,35 @@
+#include "reference/distance.hpp"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "solver/base/largest.hpp"
+
+namespace drape::reference {
+
+using solver::Vectors;
+
+double rms_distance(const Vectors& a, const Vectors& b) {
+  return std::sqrt((a - b).squaredNorm() / static_cast<double>(a.rows()));
+}
+
+double maximum_distance(const Vectors& a, const Vectors& b) { return (a - b).rowwise().norm().maxCoeff(); }
+
+double largest_rms_distance(std::span<const Vectors> a, std::span<const Vectors> b) {
+  if (a.size() != b.size()) throw std::invalid_argument("motions with different numbers of times cannot be compared");
+  double largest = 0;
+  for (std::size_t k = 0; k < b.size(); ++k) largest = base::larger(largest, rms_distance(a[k], b[k]));
+  return largest;
+}
+
+Eigen::RowVector3d centre_of_mass(const Eigen::VectorXd& mass, const Vectors& x) {
+  return (mass.asDiagonal() * x).colwise().sum() / mass.sum();
+}
+
+std::vector<Vectors> positions_of(std::span<const solver::State> states) {
+  std::vector<Vectors> all;
+  for (const solver::State& y : states) all.push_back(y.x);
+  return all;
+}
+
+}  // namespace drape::reference
