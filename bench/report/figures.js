@@ -19,7 +19,7 @@ function workPrecisionTrace(name, rows, look, text, mode = "lines+markers") {
     hovertemplate: "%{text}<br>error %{x:.3e}, %{y:.4g} ms<extra></extra>",
     error_y: {type: "data", symmetric: false, array: rows.map((row) => row.upper - row.time), arrayminus: rows.map((row) => row.time - row.lower),
               color: look.color, thickness: 1, width: 2},
-    line: {color: look.color, dash: look.dash, width: 1.5},
+    line: {color: look.color, dash: look.dash, width: look.width ?? 1.5},
     marker: {color: look.color, symbol: rows.map((row) => (row.unresolved ? `${look.symbol}-open` : look.symbol)), size: 7},
   };
 }
@@ -34,25 +34,33 @@ function workPrecisionLayout(width, colours, rows, uncertainty, entries) {
   };
 }
 
-/** A study's trials: all of ours as dots, and what nobody of the same kind beats in both as curves. */
+/** The kinds of trials, in marks that black and white tell apart; the first lies below others that it consists of. */
+const kindLooks = {"our best": {symbol: "circle", width: 6}, "automatic": {symbol: "square"}, "explicit": {symbol: "triangle-up"}, "thesis": {symbol: "triangle-down"},
+                   "SUNDIALS, tuned": {symbol: "diamond", width: 2.5}};
+
+/** A study's trials: all of them as dots, and what nobody of the same kind beats in both as curves. */
 function trialsFigure(file, table) {
   const rows = rowsOf(table).filter((row) => finitePositive(row.error) && finitePositive(row.time));
   if (!rows.length) return [];
   const scene = table.name.replace("trials: ", ""), own = ["drape", "explicit", "thesis"];
-  const kinds = new Map([["our best", rows.filter((row) => own.includes(row.code))], ["automatic", rows.filter((row) => row.method !== "")]]);
-  for (const [code, of] of groupBy(rows, (row) => row.code)) if (code !== "drape") kinds.set(code, of);
+  const codes = groupBy(rows, (row) => row.code), ours = rows.filter((row) => own.includes(row.code)), others = rows.filter((row) => !own.includes(row.code));
+  const kinds = new Map([["our best", ours], ["automatic", rows.filter((row) => row.method !== "")]]);
+  for (const code of ["explicit", "thesis"]) kinds.set(code, codes.get(code) ?? []);
+  kinds.set("SUNDIALS, tuned", others);
+  for (const [code, of] of codes) if (!own.includes(code)) kinds.set(code, of);
+  const look = (name) => ({...style(name), ...kindLooks[name]});
   const uncertainty = Math.max(...rows.map((row) => row.uncertainty || 0));
   const text = (row) => `${row.family}<br>${row.control} ${shortNumber(row.value)}: ${row.steps} steps, ${row.forces} forces, ${row.factorisations} factorisations`;
   const make = (width, colours) => {
-    const dots = rows.filter((row) => own.includes(row.code));
-    const all = {type: "scatter", mode: "markers", name: "all of ours", x: dots.map((row) => row.error), y: dots.map((row) => row.time), text: dots.map(text),
-                 hovertemplate: "%{text}<br>error %{x:.3e}, %{y:.4g} ms<extra></extra>", marker: {color: "#999999", size: 3}};
-    const curves = labelled([...kinds].filter(([, of]) => of.length).map(([name, of]) => workPrecisionTrace(name, paretoFront(of), style(name), text)), width);
-    return {data: [all, ...curves], layout: workPrecisionLayout(width, colours, rows, uncertainty, curves.length + 1)};
+    const dots = (name, of, symbol) => ({type: "scatter", mode: "markers", name, x: of.map((row) => row.error), y: of.map((row) => row.time), text: of.map(text),
+                                         hovertemplate: "%{text}<br>error %{x:.3e}, %{y:.4g} ms<extra></extra>", marker: {color: "#999999", size: 3, symbol}});
+    const curves = labelled([...kinds].filter(([, of]) => of.length).map(([name, of]) => workPrecisionTrace(name, paretoFront(of), look(name), text)), width, along);
+    const all = [dots("all of ours", ours, "circle"), dots("all of SUNDIALS", others, "x")];
+    return {data: [...all, ...curves], layout: workPrecisionLayout(width, colours, rows, uncertainty, curves.length + all.length)};
   };
   return [{
     file, make, title: `Work–precision: ${scene}`, columns: () => table.columns.map(exactCells),
-    says: `Lower is quicker, further right more accurate; curves join what no other of its kind beats in both. Bars are quartiles of the times; in the grey band, below 10 × the reference's uncertainty of ${shortNumber(uncertainty)}, errors say nothing.`,
+    says: `Lower is quicker, further right more accurate; curves join what no other of its kind beats in both. Bars are quartiles of the times; in the grey band, below 10 × the reference's uncertainty of ${shortNumber(uncertainty)}, errors say nothing. ${rows[0].build ?? ""}`,
   }];
 }
 

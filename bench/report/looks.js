@@ -1,6 +1,5 @@
 "use strict";
-// How curves look, here and in the plots beside the HDF5 files, which read the object as JSON: one colour for each method or package,
-// one mark and one dash for each way to solve its stages, in every figure.
+// How curves look: one colour for each method or package, one mark and one dash for each way to solve its stages, in every figure.
 const looks = {
   "methods": {
     "imex-euler": "#E69F00", "implicit-euler": "#D55E00", "sbdf2": "#56B4E9", "bdf2": "#0072B2", "midpoint": "#009E73",
@@ -8,7 +7,7 @@ const looks = {
     "bdf3": "#5B5BD6", "bdf4": "#2E8B8B", "bdf5": "#7B3F8C",
     "cvode-bdf": "#C2185B", "cvode-adams": "#E57373", "arkode-dirk": "#6D4C41", "arkode-esdirk": "#F4511E", "arkode-imex": "#9E9D24", "arkode-erk": "#558B2F",
     "ida-bdf": "#607D8B",
-    "our best": "#7A7A7A", "automatic": "#1F77B4", "explicit": "#8C8C8C", "thesis": "#D62728"
+    "our best": "#7A7A7A", "automatic": "#1F77B4", "explicit": "#009E73", "thesis": "#D62728", "SUNDIALS, tuned": "#AA4499"
   },
   "solvers": {
     "": ["circle", "solid"], "ic0": ["square", "dash"], "fixed-point/ic0": ["square", "dash"], "cholesky": ["cross", "dot"],

@@ -37,15 +37,19 @@ class ObservedRun {
       return solver::integrate(integrator_, t_end, h, [this](const solver::StepReport& step) { see(step); });
     } catch (const Enough&) {
       if (thrown_) std::rethrow_exception(thrown_);
-      return {.last_good_time = integrator_.time(), .steps = steps_};
+      return end_as(solver::Outcome::success, {});
     } catch (const LimitReached&) {
       throw;
     } catch (const std::bad_alloc&) {
       throw;
     } catch (const std::exception& error) {
-      return {
-          .outcome = solver::Outcome::failed, .message = error.what(), .last_good_time = integrator_.time(), .steps = steps_};
+      return end_as(solver::Outcome::failed, error.what());
     }
+  }
+
+  /// The result of a run that ends after the last accepted step.
+  solver::RunResult end_as(solver::Outcome outcome, std::string message) const {
+    return {outcome, std::move(message), integrator_.time(), steps_, 0};
   }
 
   int steps() const { return steps_; }  ///< that all observers have let pass
