@@ -16,8 +16,6 @@
 #include <string_view>
 #include <vector>
 
-#include "verify/support/run_program.hpp"
-
 namespace drape::verify::layering_test {
 namespace {
 
@@ -56,7 +54,9 @@ const std::vector<Room> rooms = {
     {"model", {"model/"}, {"model/jacobian", "model/obstacles"}},
     {"model/scene_file", {"model/scene_file/"}, {"model"}},
 
-    {"reference's vocabulary", {"reference/newton_solves.", "reference/tableaux.", "reference/trajectory.", "reference/distance."}, {"solver"}},
+    {"reference's vocabulary",
+     {"reference/newton_solves.", "reference/tableaux.", "reference/trajectory.", "reference/distance."},
+     {"solver"}},
     {"reference/sundials", {"reference/sundials/"}, {"reference's vocabulary"}},
     {"reference/exact", {"reference/exact/"}, {"solver"}},
     {"reference/theory", {"reference/theory/"}, {"reference/exact"}},
@@ -209,16 +209,6 @@ TEST(Layering, GoesFromTheGroundUp) {
   for (const Room& room : rooms) {
     for (const std::string& name : room.below) EXPECT_LT(&room_named(name), &room) << room.name << " and " << name;
   }
-}
-
-/// Unity builds hide what a header does not include itself.
-TEST(Layering, HeadersCompileAlone) {
-  const ProgramResult result = run_program({.program = DRAPE_CMAKE,
-                                            .arguments = {"--build", ".", "--target", "headers"},
-                                            .folder = DRAPE_BINARY_DIR,
-                                            .environment = {},
-                                            .output = {}});
-  EXPECT_EQ(result.exit_code, 0) << result.out << result.err;
 }
 
 std::vector<std::string> include_of(const std::string& header, const std::string& by) {

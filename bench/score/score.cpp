@@ -137,7 +137,8 @@ Table trials(const Scoring& s) {
 void add_answer(TableBuilder& table, const std::string& prefix, const char* question, const Trial* trial, bool best) {
   if (trial == nullptr) return;
   const auto name = [&](const char* end) { return prefix + end; };
-  table.number(name("value").c_str(), question, "1", "step [s], or fraction of the stability limit", trial->configuration().value);
+  table.number(name("value").c_str(), question, "1", "step [s], or fraction of the stability limit",
+               trial->configuration().value);
   table.number(name("error").c_str(), "rms error", "1", "largest of the frames' rms distances, over the size",
                trial->measured.error);
   table.number(name("time").c_str(), "time", "ms", "median wall time to the last frame",

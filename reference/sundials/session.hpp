@@ -3,6 +3,7 @@
 #include <cvode/cvode.h>
 #include <sundials/sundials_context.h>
 
+#include <initializer_list>
 #include <memory>
 #include <stdexcept>
 #include <string>

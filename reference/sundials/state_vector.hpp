@@ -2,6 +2,8 @@
 
 #include <sundials/sundials_nvector.h>
 
+#include <cstdint>
+
 #include "solver/state.hpp"
 
 namespace drape::reference::sundials_tools {

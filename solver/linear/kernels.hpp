@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+
 #include "solver/state.hpp"
 
 namespace drape::solver {

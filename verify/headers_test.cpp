@@ -1,0 +1,135 @@
+// Each header includes what it uses: unity builds hide what it does not.
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "verify/support/run_program.hpp"
+
+namespace drape::verify::headers_test {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+using Read = std::function<std::string(const std::string& header)>;
+
+/// Headers of the standard library, and what is used of them.
+const std::map<std::string, std::vector<std::string>> standard_headers = {
+    {"algorithm", {"clamp", "max", "min", "sort"}},
+    {"array", {"array"}},
+    {"atomic", {"atomic"}},
+    {"chrono", {"chrono"}},
+    {"cmath", {"abs", "hypot", "isfinite", "isnan", "nan", "pow", "sqrt"}},
+    {"complex", {"complex"}},
+    {"cstddef", {"byte"}},
+    {"cstdint", {"int32_t", "int64_t", "uint8_t", "uint64_t", "uintmax_t"}},
+    {"exception", {"current_exception", "exception_ptr"}},
+    {"filesystem", {"filesystem"}},
+    {"functional", {"function"}},
+    {"future", {"future"}},
+    {"initializer_list", {"initializer_list"}},
+    {"limits", {"numeric_limits"}},
+    {"map", {"map"}},
+    {"memory", {"make_shared", "make_unique", "shared_ptr", "unique_ptr"}},
+    {"mutex", {"mutex"}},
+    {"optional", {"nullopt", "optional"}},
+    {"random", {"mt19937"}},
+    {"set", {"set"}},
+    {"span", {"span"}},
+    {"stdexcept", {"invalid_argument", "out_of_range", "runtime_error"}},
+    {"string", {"string", "to_string"}},
+    {"string_view", {"string_view"}},
+    {"system_error", {"system_error"}},
+    {"tuple", {"tuple"}},
+    {"variant", {"get_if", "variant", "visit"}},
+    {"vector", {"vector"}},
+};
+
+std::string from_sources(const std::string& header) {
+  std::ifstream file(std::filesystem::path(DRAPE_SOURCE_DIR) / header);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+std::string without_comments(const std::string& text) { return std::regex_replace(text, std::regex("//[^\n]*"), ""); }
+
+/// All that a header of ours includes, itself and by headers of ours, other libraries' and the standard's.
+void gather(const std::string& header, const Read& read, std::set<std::string>& included) {
+  static const std::regex include("#include ([<\"])([^>\"]+)[>\"]");
+  const std::string code = without_comments(read(header));
+  for (std::sregex_iterator match(code.begin(), code.end(), include), end; match != end; ++match)
+    if (const std::string other = (*match)[2]; included.insert(other).second && (*match)[1] == "\"")
+      gather(other, read, included);
+}
+
+bool uses(const std::string& code, const std::string& name) {
+  return std::regex_search(code, std::regex(fmt::format("\\bstd::{}\\b", name)));
+}
+
+/// What a header uses but does not include: other libraries may include it, but need not.
+std::vector<std::string> missing(const std::string& header, const Read& read) {
+  std::set<std::string> included;
+  gather(header, read, included);
+  const std::string code = without_comments(read(header));
+  std::vector<std::string> lacking;
+  for (const auto& [standard, names] : standard_headers)
+    if (!included.contains(standard) && std::ranges::any_of(names, [&](const auto& name) { return uses(code, name); }))
+      lacking.push_back(fmt::format("{} does not include <{}>", header, standard));
+  const bool eigen = std::ranges::any_of(included, [](const auto& name) { return name.starts_with("Eigen/"); });
+  if (!eigen && code.find("Eigen::") != std::string::npos) lacking.push_back(header + " does not include Eigen");
+  return lacking;
+}
+
+TEST(Headers, IncludeWhatTheyUseOfTheStandardLibrary) {
+  int count = 0;
+  for (const char* folder : {"solver", "model", "reference", "results", "bench"}) {
+    const std::filesystem::path root = DRAPE_SOURCE_DIR;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(root / folder)) {
+      if (entry.path().extension() != ".hpp") continue;
+      EXPECT_THAT(missing(entry.path().lexically_relative(root).generic_string(), from_sources), IsEmpty());
+      ++count;
+    }
+  }
+  EXPECT_GT(count, 150);
+}
+
+/// With Eigen at hand, which all of them would take long to read each for itself: what Eigen includes is checked above.
+TEST(Headers, CompileAlone) {
+  const ProgramResult result = run_program({.program = DRAPE_CMAKE,
+                                            .arguments = {"--build", ".", "--target", "headers"},
+                                            .folder = DRAPE_BINARY_DIR,
+                                            .environment = {},
+                                            .output = {}});
+  EXPECT_EQ(result.exit_code, 0) << result.out << result.err;
+}
+
+std::vector<std::string> missing_in(const std::string& text, const std::string& other = "") {
+  return missing("a.hpp", [&](const std::string& header) { return header == "a.hpp" ? text : other; });
+}
+
+TEST(HeadersChecker, ReportsWhatIsNotIncluded) {
+  EXPECT_THAT(missing_in("std::vector<int> a();"), ElementsAre("a.hpp does not include <vector>"));
+  EXPECT_THAT(missing_in("#include <fmt/format.h>\nstd::string a();"), ElementsAre("a.hpp does not include <string>"));
+  EXPECT_THAT(missing_in("// #include <span>\nstd::span<int> a();"), ElementsAre("a.hpp does not include <span>"));
+  EXPECT_THAT(missing_in("Eigen::Vector3d a();"), ElementsAre("a.hpp does not include Eigen"));
+}
+
+TEST(HeadersChecker, AcceptsWhatIsIncludedByTheHeaderOrAnotherOfOurs) {
+  EXPECT_THAT(missing_in("#include <vector>\nstd::vector<int> a();"), IsEmpty());
+  EXPECT_THAT(missing_in("#include \"b.hpp\"\nstd::vector<int> a();", "#include <vector>\n"), IsEmpty());
+  EXPECT_THAT(missing_in("/// A std::vector.\nint a(const std::vectors& b);"), IsEmpty());
+}
+
+}  // namespace
+}  // namespace drape::verify::headers_test
