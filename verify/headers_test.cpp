@@ -5,14 +5,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <functional>
 #include <iterator>
 #include <map>
-#include <regex>
 #include <set>
+#include <sstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "verify/support/run_program.hpp"
@@ -62,32 +64,51 @@ std::string from_sources(const std::string& header) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-std::string without_comments(const std::string& text) { return std::regex_replace(text, std::regex("//[^\n]*"), ""); }
+/// std::regex would do, but g++ 12 warns of its insides in builds with sanitizers.
+std::vector<std::string> lines_of_code(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line.substr(0, line.find("//")));
+  return lines;
+}
 
 /// All that a header of ours includes, itself and by headers of ours, other libraries' and the standard's.
 void gather(const std::string& header, const Read& read, std::set<std::string>& included) {
-  static const std::regex include("#include ([<\"])([^>\"]+)[>\"]");
-  const std::string code = without_comments(read(header));
-  for (std::sregex_iterator match(code.begin(), code.end(), include), end; match != end; ++match)
-    if (const std::string other = (*match)[2]; included.insert(other).second && (*match)[1] == "\"")
-      gather(other, read, included);
+  constexpr std::string_view include = "#include ";
+  for (const std::string& line : lines_of_code(read(header))) {
+    if (!line.starts_with(include)) continue;
+    const std::size_t end = line.find_first_of(">\"", include.size() + 1);
+    const std::string other = line.substr(include.size() + 1, end - include.size() - 1);
+    if (included.insert(other).second && line[include.size()] == '"') gather(other, read, included);
+  }
 }
 
-bool uses(const std::string& code, const std::string& name) {
-  return std::regex_search(code, std::regex(fmt::format("\\bstd::{}\\b", name)));
+bool uses(const std::string& line, const std::string& name) {
+  const std::string whole = "std::" + name;
+  for (std::size_t at = line.find(whole); at != std::string::npos; at = line.find(whole, at + 1)) {
+    const std::size_t end = at + whole.size();
+    if (end == line.size() || (std::isalnum(static_cast<unsigned char>(line[end])) == 0 && line[end] != '_')) return true;
+  }
+  return false;
 }
 
 /// What a header uses but does not include: other libraries may include it, but need not.
 std::vector<std::string> missing(const std::string& header, const Read& read) {
   std::set<std::string> included;
   gather(header, read, included);
-  const std::string code = without_comments(read(header));
+  const std::vector<std::string> code = lines_of_code(read(header));
+  const auto in_code = [&](const auto& found) { return std::ranges::any_of(code, found); };
   std::vector<std::string> lacking;
-  for (const auto& [standard, names] : standard_headers)
-    if (!included.contains(standard) && std::ranges::any_of(names, [&](const auto& name) { return uses(code, name); }))
+  for (const auto& [standard, names] : standard_headers) {
+    const auto used = [&](const std::string& name) {
+      return in_code([&](const std::string& line) { return uses(line, name); });
+    };
+    if (!included.contains(standard) && std::ranges::any_of(names, used))
       lacking.push_back(fmt::format("{} does not include <{}>", header, standard));
-  const bool eigen = std::ranges::any_of(included, [](const auto& name) { return name.starts_with("Eigen/"); });
-  if (!eigen && code.find("Eigen::") != std::string::npos) lacking.push_back(header + " does not include Eigen");
+  }
+  const bool eigen = std::ranges::any_of(included, [](const std::string& name) { return name.starts_with("Eigen/"); });
+  if (!eigen && in_code([](const std::string& line) { return line.find("Eigen::") != std::string::npos; }))
+    lacking.push_back(header + " does not include Eigen");
   return lacking;
 }
 
