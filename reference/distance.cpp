@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "solver/base/largest.hpp"
 
@@ -26,9 +27,9 @@ Eigen::RowVector3d centre_of_mass(const Eigen::VectorXd& mass, const Vectors& x)
   return (mass.asDiagonal() * x).colwise().sum() / mass.sum();
 }
 
-std::vector<Vectors> positions_of(std::span<const solver::State> states) {
+std::vector<Vectors> positions_of(std::vector<solver::State> states) {
   std::vector<Vectors> all;
-  for (const solver::State& y : states) all.push_back(y.x);
+  for (solver::State& y : states) all.push_back(std::move(y.x));
   return all;
 }
 

@@ -22,6 +22,6 @@ double largest_rms_distance(std::span<const solver::Vectors> a, std::span<const 
 Eigen::RowVector3d centre_of_mass(const Eigen::VectorXd& mass, const solver::Vectors& x);
 
 /// Positions of states.
-std::vector<solver::Vectors> positions_of(std::span<const solver::State> states);
+std::vector<solver::Vectors> positions_of(std::vector<solver::State> states);
 
 }  // namespace drape::reference

@@ -3,6 +3,7 @@
 #include <sys/resource.h>
 
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <stdexcept>
@@ -20,6 +21,12 @@ struct Limits {
   /// Forces and Newton matrices: a limit that does not depend on the machine.
   std::int64_t evaluations = std::numeric_limits<std::int64_t>::max();
   std::size_t steps = std::numeric_limits<std::size_t>::max();  ///< accepted ones, after which the run ends as it stands
+  bool interruptible_steps = false;  ///< whether an interruption ends a step, and not only the run after it
+
+  /// Whether evaluations must be watched: what is timed has none of these.
+  bool within_steps() const {
+    return interruptible_steps || std::isfinite(seconds) || evaluations < std::numeric_limits<std::int64_t>::max();
+  }
 };
 
 /// A limit of time or evaluations was reached.

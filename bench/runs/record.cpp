@@ -96,7 +96,8 @@ class StepRecorder : public Observer {
 
 }  // namespace
 
-results::RunRecord record(const RunSpec& spec, std::span<Observer* const> observers, const Limits& limits) {
+results::RunRecord record(const RunSpec& spec, std::span<Observer* const> observers, Limits limits) {
+  limits.interruptible_steps = true;
   results::RunRecord record = describe(spec);
   EnergyGuardObserver guard;
   StepRecorder steps(record.steps);

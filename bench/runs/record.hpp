@@ -9,6 +9,6 @@ namespace drape::bench {
 
 /// Runs under the energy guard and records everything but times and errors. A run that exceeds its limits is recorded as far as
 /// it came. Throws Interrupted, and what an observer throws.
-results::RunRecord record(const RunSpec& spec, std::span<Observer* const> observers = {}, const Limits& limits = {});
+results::RunRecord record(const RunSpec& spec, std::span<Observer* const> observers = {}, Limits limits = {});
 
 }  // namespace drape::bench

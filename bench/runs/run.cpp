@@ -21,11 +21,6 @@ std::string memory_message(const Limits& limits) {
   return std::isfinite(limits.megabytes) ? fmt::format("more than {:g} MB", limits.megabytes) : "more than the machine has";
 }
 
-bool metered(std::span<Observer* const> observers, const Limits& limits) {
-  const Limits none;
-  return !observers.empty() || limits.seconds < none.seconds || limits.evaluations < none.evaluations;
-}
-
 /// solver::integrate, seen by observers and limited to a number of steps.
 class ObservedRun {
  public:
@@ -87,7 +82,7 @@ RunEnd run_within(const RunSpec& spec, const model::Cloth& cloth, std::span<Obse
   };
   const auto time = [&] { return integrator ? integrator->time() : 0; };
   try {
-    if (metered(observers, limits)) meter.watch(watched.emplace(cloth.ode));
+    if (limits.within_steps()) meter.watch(watched.emplace(cloth.ode));
     integrator.emplace(watched ? *watched : cloth.ode, *spec.method, spec.options, cloth.start);
     for (Observer* observer : observers) observer->begin(spec.scene, cloth, integrator->state());
     observed.emplace(*integrator, observers, limits.steps);

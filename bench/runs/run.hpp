@@ -14,7 +14,7 @@ namespace drape::bench {
 struct RunEnd {
   solver::RunResult result;
   solver::State state = {};                           ///< after the last accepted step; empty if there was no start
-  std::int64_t evaluations = 0, newton_matrices = 0;  ///< of forces and Newton matrices in all; of the latter
+  std::int64_t evaluations = 0, newton_matrices = 0;  ///< of forces and Newton matrices in all; of the latter; 0 if not watched
   double cpu_ms = 0;                                  ///< processor time of the run with its observers
 
   bool succeeded() const { return result.outcome == solver::Outcome::success; }
@@ -25,8 +25,7 @@ struct RunEnd {
 /// Interrupted. A run that exceeds its limits ends out of time, out of memory or out of evaluations; one that reaches its most
 /// steps succeeds.
 ///
-/// A run without observers and limits but of steps is how runs are timed: nothing is counted, and interruptions wait for the
-/// end of a step.
+/// Runs without limits within steps are how runs are timed: nothing is counted, and interruptions wait for the end of a step.
 RunEnd run(const RunSpec& spec, const model::Cloth& cloth, std::span<Observer* const> observers = {},
            const Limits& limits = {});
 

@@ -20,7 +20,8 @@ class Samples : public Observer {
   void observe(const solver::StepReport& step) override { dense_->see(step.t, step.y); }
 
   /// At all times that were reached.
-  const std::vector<solver::State>& states() const { return dense_->states; }
+  const std::vector<solver::State>& states() const& { return dense_->states; }
+  std::vector<solver::State> states() && { return std::move(dense_->states); }
 
  private:
   const std::vector<double> times_;

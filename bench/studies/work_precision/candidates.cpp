@@ -29,14 +29,14 @@ constexpr const char* other_solvers[] = {"bdf2/anderson", "midpoint/anderson", "
 
 bool tries_few(Search search) { return search == Search::quick || search == Search::large; }
 
-/// Where only the end is asked for, nothing looks at the run, as it is timed.
+/// This is timed: where only the end is asked for, nothing looks at the run.
 std::vector<Vectors> solve_ours(const RunSpec& spec, const model::Cloth& cloth, std::span<const double> times) {
   Samples samples({times.begin(), times.end()});
   std::vector<Observer*> observers;
   if (times.size() > 1) observers.push_back(&samples);
   RunEnd end = run(spec, cloth, observers);
-  if (end.result.outcome != solver::Outcome::success) throw std::runtime_error(end.result.message);
-  if (times.size() > 1) return reference::positions_of(samples.states());
+  if (!end.succeeded()) throw std::runtime_error(end.result.message);
+  if (times.size() > 1) return reference::positions_of(std::move(samples).states());
   return {std::move(end.state.x)};
 }
 

@@ -106,7 +106,7 @@ std::vector<solver::Vectors> leapfrog(const Problem& problem, double fraction) {
     Observer* const observers[] = {&samples};
     const solver::RunResult result = run(spec, model::compile(problem.scene), observers).result;
     if (result.outcome != solver::Outcome::success) throw std::runtime_error("verlet: " + result.message);
-    return reference::positions_of(samples.states());
+    return reference::positions_of(std::move(samples).states());
   };
   auto fine = positions(fraction);
   const auto coarse = positions(2 * fraction);
