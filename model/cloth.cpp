@@ -30,7 +30,7 @@ constexpr Part whole_part{&Term::law, &Term::force}, explicit_part{&Term::explic
 /// The forces of one compiled scene with the memory they need.
 class Forces {
  public:
-  Forces(const Sheet& sheet, solver::Work& work, Plan& plan);
+  Forces(const Sheet& sheet, solver::Counters& work, Plan& plan);
 
   /// Sets f and counts.
   void force(double t, const Vectors& x, const Vectors& v, Vectors& f, bool whole);
@@ -60,7 +60,7 @@ class Forces {
   std::int64_t &forces_, &explicit_forces_, &jacobians_, &newton_matrices_, &normal_evaluations_;
 };
 
-Forces::Forces(const Sheet& sheet, solver::Work& work, Plan& plan)
+Forces::Forces(const Sheet& sheet, solver::Counters& work, Plan& plan)
     : particles_(sheet.grid.particles()),
       vertex_normals_(sheet.grid),
       forces_(work.counter("forces", "evaluations of the whole force")),

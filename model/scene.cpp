@@ -90,7 +90,7 @@ std::vector<solver::Pin> pins(const Scene& scene) {
   return all;
 }
 
-Contacts contacts(const Scene& scene, solver::Work& work) {
+Contacts contacts(const Scene& scene, solver::Counters& work) {
   return {scene.obstacles, scene.contact, scene.sheet.gravity.norm(), scene.sheet.grid.particles(), work};
 }
 

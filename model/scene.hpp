@@ -55,7 +55,7 @@ const std::vector<std::string>& pin_places();
 std::vector<solver::Pin> pins(const Scene& scene);
 
 /// What finds the contacts of its obstacles. Throws as Contacts does.
-Contacts contacts(const Scene& scene, solver::Work& work);
+Contacts contacts(const Scene& scene, solver::Counters& work);
 
 /// The state at t = 0 without prescribed velocities.
 solver::State start(const Scene& scene);

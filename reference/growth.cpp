@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "reference/linear_motion.hpp"
-#include "reference/sundials/families.hpp"
+#include "reference/sundials/peer_solvers.hpp"
 #include "solver/base/largest.hpp"
 
 namespace drape::reference {
@@ -51,7 +51,7 @@ std::unique_ptr<LinearMotion> linearised(const SplitOde& ode, const State& y0, d
   std::vector<double> middles;
   for (int k = 0; k < steps; ++k) middles.push_back(t0 + (k + 0.5) * h);
   const SolveOptions options{.rtol = base_rtol, .size = size};
-  return std::make_unique<LinearMotion>(ode, solve_by_either(family("cvode-bdf"), ode, y0, t0, middles, options), h);
+  return std::make_unique<LinearMotion>(ode, solve_by_either(peer_solver("cvode-bdf"), ode, y0, t0, middles, options), h);
 }
 
 /// The times [s] at which growth counts, and the steps from t0 on whose ends are nearest to them.

@@ -10,7 +10,7 @@
 
 #include "reference/growth.hpp"
 #include "reference/stepped.hpp"
-#include "reference/sundials/families.hpp"
+#include "reference/sundials/peer_solvers.hpp"
 #include "solver/base/largest.hpp"
 
 namespace drape::reference {
@@ -50,10 +50,10 @@ Reference compare(const Equations& equations, const State& y0, double t0, double
   return result;
 }
 
-Reference reference_by(const Family& first, const Family& second, const Equations& equations, const State& y0, double t0,
-                       std::span<const double> times, const SolveOptions& options) {
+Reference reference_by(const PeerSolver& first, const PeerSolver& second, const Equations& equations, const State& y0,
+                       double t0, std::span<const double> times, const SolveOptions& options) {
   SolveOptions witness_options = options;
-  if (&second == &family("arkode-esdirk")) witness_options.rtol *= looser;
+  if (&second == &peer_solver("arkode-esdirk")) witness_options.rtol *= looser;
   Reference result = compare(
       equations, y0, t0, options.size,
       [&](const State& start) { return solve_by_either(first, equations.first, start, t0, times, options); },
@@ -68,11 +68,12 @@ Reference reference_by(const Family& first, const Family& second, const Equation
 
 Reference reference(const Equations& equations, const State& y0, double t0, std::span<const double> times,
                     const SolveOptions& options) {
-  const Family &bdf = family("cvode-bdf"), &runge_kutta = family("arkode-esdirk"), &residual = family("ida-bdf");
+  const PeerSolver &bdf = peer_solver("cvode-bdf"), &runge_kutta = peer_solver("arkode-esdirk"),
+                   &residual = peer_solver("ida-bdf");
   try {
     return reference_by(bdf, runge_kutta, equations, y0, t0, times, options);
   } catch (const ReferenceError&) {
-    for (const Family* left : {&bdf, &runge_kutta}) try {
+    for (const PeerSolver* left : {&bdf, &runge_kutta}) try {
         return reference_by(*left, residual, equations, y0, t0, times, options);
       } catch (const std::runtime_error&) {  // IDA's start may fail outside its own code; the first reason is the one to report
       }

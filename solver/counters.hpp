@@ -9,7 +9,7 @@ namespace drape::solver {
 
 /// Counts what a run did, one counter per kind of work. Every kind that could occur is registered with 0 before the run, so
 /// that "skipped" is a recorded number. Counters are exact and repeatable where times are not.
-class Work {
+class Counters {
  public:
   struct Kind {
     std::string name;         ///< for example "cg_iterations" or "force/tension"
@@ -17,9 +17,9 @@ class Work {
     std::int64_t count = 0;
   };
 
-  Work() = default;
-  Work(const Work&) = delete;  // callers keep references to the counters
-  Work& operator=(const Work&) = delete;
+  Counters() = default;
+  Counters(const Counters&) = delete;  // callers keep references to the counters
+  Counters& operator=(const Counters&) = delete;
 
   /// Registers a kind (once; later calls return the same counter). The reference stays valid as long as this object.
   std::int64_t& counter(std::string_view name, std::string_view description);

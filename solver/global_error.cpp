@@ -45,7 +45,7 @@ struct Pilot {
 /// Counters that are those of the run itself.
 class OwnSteps {
  public:
-  explicit OwnSteps(Work& work)
+  explicit OwnSteps(Counters& work)
       : pilots_(work.counter("pilot_steps", "steps of runs that measured the error, accepted or not")) {
     for (const char* name : {"steps", "rejected_steps", "starting_steps"}) counters_.push_back(&work.counter(name, ""));
     for (const std::int64_t* counter : counters_) before_.push_back(*counter);

@@ -71,7 +71,7 @@ Integrator::Integrator(const SplitOde& ode, const Method& method, const Options&
   if (ode.contacts && !method.meets_obstacles)
     throw std::invalid_argument("method '" + std::string(method.name) +
                                 "': expected a method of one stage in a scene with obstacles");
-  const LinearWork registered(*ode.work);  // so that explicit methods record zeros
+  const LinearCounters registered(*ode.work);  // so that explicit methods record zeros
   if (method.implicit()) {
     ContactResponse* const contacts = ode.contacts ? &contacts_.emplace(ode) : nullptr;
     step_.stage = &stage_.emplace(ode, options_, contacts);

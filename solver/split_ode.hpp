@@ -48,7 +48,7 @@ struct SplitOde {
   /// Finds what particles may touch in a step from t to t + h, ordered by particle; absent: there are no obstacles.
   std::function<void(double t, double h, const State& y, std::vector<Contact>& found)> contacts;
 
-  std::shared_ptr<Work> work = std::make_shared<Work>();
+  std::shared_ptr<Counters> work = std::make_shared<Counters>();
 
   int particles() const { return static_cast<int>(mass.size()); }
 };

@@ -26,12 +26,12 @@ struct ScoreArguments {
 void score(const ScoreArguments& a) {
   const model::Scene scene = a.choice.load();
   check_methods(a.methods, scene);
-  const ForeignMotion foreign = read_foreign(a.files, a.frame_time, scene);
+  const ExternalMotion external = read_external_motion(a.files, a.frame_time, scene);
   const ScoreOptions options{a.cost, a.methods, a.output.sweep.agreement, a.output.sweep.repetitions};
   SweepOptions sweep = a.output.sweep;
   sweep.out = out_file(a.output, "score");
   const std::vector<results::Table> tables =
-      compute(score_jobs(scene, foreign, options), score_identity(scene, foreign, options), sweep);
+      compute(score_jobs(scene, external, options), score_identity(scene, external, options), sweep);
   if (a.output.format == "table") fmt::print("{}", base::printable_lines(score_summary(tables)));
   print_tables(tables, a.output.format);
   say_where(sweep.out, a.output.format);

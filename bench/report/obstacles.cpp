@@ -115,7 +115,7 @@ Json page_obstacles(const results::RunRecord& run, Json& surfaces) {
     const Readable read = read_obstacles(run);
     Json page{{"drawn", drawn_obstacles(read, *run.trajectory, surfaces)}, {"missing", read.missing}};
     if (!read.missing.empty() || read.scene.obstacles.empty()) return page;
-    solver::Work work;
+    solver::Counters work;
     page["clearance"] = clearances(model::contacts(read.scene, work), *run.trajectory);
     page["distance"] = read.scene.contact.distance;
     return page;

@@ -11,12 +11,12 @@
 
 namespace drape::bench {
 
-/// The units of work of a sweep, each with an id that stays the same from start to start: what a killed process has finished is
-/// not done again. And the progress of all that.
-class Units {
+/// Checkpoints of a sweep: each piece of work has an id that is the same in every process, and a restarted sweep takes the
+/// results of finished pieces from the journal. Also shows the progress of the sweep.
+class Checkpoint {
  public:
   /// `parts`: how often advance() will be called.
-  Units(results::Journal& journal, int parts) : journal_(journal), progress_(parts) {}
+  Checkpoint(results::Journal& journal, int parts) : journal_(journal), progress_(parts) {}
 
   /// The ids that follow belong to this.
   void begin(const std::string& part) { prefix_ = part + ": "; }
@@ -29,7 +29,7 @@ class Units {
   /// What compute() returns, or what it returned to a process before this one: something that json holds. A result during which
   /// the sweep was interrupted is not kept: it may be cut short.
   template <class Compute>
-  std::invoke_result_t<Compute> operator()(const std::string& id, const Compute& compute) {
+  std::invoke_result_t<Compute> once(const std::string& id, const Compute& compute) {
     using Result = std::invoke_result_t<Compute>;
     if (const auto* known = journal_.find(prefix_ + id)) return nlohmann::json::from_cbor(*known).get<Result>();
     check_interruption();
@@ -42,7 +42,7 @@ class Units {
   /// Adds the rows that fill(table) adds to an empty table.
   template <class Fill>
   void rows(results::TableBuilder& table, const std::string& id, const Fill& fill) {
-    table.append((*this)(id, [&] {
+    table.append(once(id, [&] {
       results::TableBuilder part("", "");
       fill(part);
       return part.finish();

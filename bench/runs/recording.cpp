@@ -12,9 +12,9 @@ void record_in_file(const SweepOptions& options, const std::string& sweep, int p
   results::RunFile file(options.out, facts, options.start);
   if (!file.finished()) {
     if (file.begun() || !journal.empty()) file.note_resumption();
-    Units units(journal, parts);
+    Checkpoint checkpoint(journal, parts);
     try {
-      work(file, units);
+      work(file, checkpoint);
     } catch (Interrupted& interrupted) {
       if (file.begun() || !journal.empty()) interrupted.out = options.out;  // else there is nothing to continue
       throw;

@@ -114,7 +114,8 @@ void require_trajectories(const std::vector<Group>& groups, const SweepOptions& 
 }
 
 /// Times those runs of a group that have kept their limits, as far as they went; the others have no times.
-std::vector<TimedRun> time_all(const Group& group, int repetitions, const std::vector<MeasuredRun>& runs, Units& units) {
+std::vector<TimedRun> time_all(const Group& group, int repetitions, const std::vector<MeasuredRun>& runs,
+                               Checkpoint& checkpoint) {
   Group timed;
   std::vector<std::size_t> places, most_steps, steps;
   for (std::size_t k = 0; k < group.size(); ++k) {
@@ -126,7 +127,7 @@ std::vector<TimedRun> time_all(const Group& group, int repetitions, const std::v
     places.push_back(k);
   }
   auto times = time_group(
-      timed, most_steps, repetitions, [&] { units.advance(); }, &steps);
+      timed, most_steps, repetitions, [&] { checkpoint.advance(); }, &steps);
   std::vector<TimedRun> all(group.size());
   for (std::size_t k = 0; k < timed.size(); ++k) all[places[k]] = {std::move(times[k]), static_cast<std::int64_t>(steps[k])};
   return all;
@@ -139,44 +140,46 @@ std::string preview(const results::RunRecord& run) {
   return line + "; its error follows";
 }
 
-void add_errors(const model::Scene& scene, std::vector<MeasuredRun>& runs, const SweepOptions& options, Units& units) {
-  units.show("reference of " + scene.name);
+void add_errors(const model::Scene& scene, std::vector<MeasuredRun>& runs, const SweepOptions& options,
+                Checkpoint& checkpoint) {
+  checkpoint.show("reference of " + scene.name);
   bool previewed = false;
   References references(options.agreement, {options.limits.seconds, [&](const std::string& pace) {
                                               if (!std::exchange(previewed, true))
-                                                for (const MeasuredRun& measured : runs) units.note(preview(measured.run));
-                                              units.report("reference of " + scene.name + ": " + pace);
+                                                for (const MeasuredRun& measured : runs) checkpoint.note(preview(measured.run));
+                                              checkpoint.report("reference of " + scene.name + ": " + pace);
                                             }});
   measure_errors(scene, runs, references);
   check_interruption();
-  units.advance();
+  checkpoint.advance();
 }
 
 /// Runs a group and records it as a whole: each cell is a unit of work, and so are their repetitions together, which must be
 /// interleaved. The reference comes last, since it may take longer than all the rest.
-void run_group(const Group& group, const SweepOptions& options, results::RunFile& file, Units& units) {
+void run_group(const Group& group, const SweepOptions& options, results::RunFile& file, Checkpoint& checkpoint) {
   const model::Scene& scene = group.front().scene;
   std::vector<MeasuredRun> measured;
   std::string ids;
   for (const RunSpec& cell : group) {
     const std::string id = identity(cell, options);
     ids += id;
-    measured.push_back(units(id, [&] {
-      units.show(title(cell));
+    measured.push_back(checkpoint.once(id, [&] {
+      checkpoint.show(title(cell));
       MeasuredRun one = measure(cell, options);
       one.run.cell = id;
       return one;
     }));
-    units.advance();
+    checkpoint.advance();
   }
-  units.show("timing " + scene.name);
-  auto timed = units("times " + hash_of(ids), [&] { return time_all(group, options.repetitions, measured, units); });
+  checkpoint.show("timing " + scene.name);
+  auto timed =
+      checkpoint.once("times " + hash_of(ids), [&] { return time_all(group, options.repetitions, measured, checkpoint); });
   for (std::size_t k = 0; k < measured.size(); ++k) {
     if (timed[k].times.empty()) continue;
     measured[k].run.times_ms = std::move(timed[k].times);
     measured[k].run.work.push_back({"timed_steps", "accepted steps of a repetition that was timed", timed[k].steps});
   }
-  if (options.reference) add_errors(scene, measured, options, units);
+  if (options.reference) add_errors(scene, measured, options, checkpoint);
   std::vector<results::RunRecord> runs;
   for (MeasuredRun& one : measured) runs.push_back(std::move(one.run));
   file.add(runs);
@@ -191,14 +194,14 @@ std::vector<results::RunRecord> sweep(const std::vector<Group>& groups, const Sw
   };
   int parts = 0;
   for (const Group& group : groups) parts += parts_of(group);
-  record_in_file(options, identity(groups, options), parts, [&](results::RunFile& file, Units& units) {
+  record_in_file(options, identity(groups, options), parts, [&](results::RunFile& file, Checkpoint& checkpoint) {
     const std::size_t recorded = file.run_count();
     std::size_t before = 0;  // runs of the groups before this one
     for (const Group& group : groups) {
       if (before >= recorded)
-        run_group(group, options, file, units);
+        run_group(group, options, file, checkpoint);
       else
-        for (int k = 0; k < parts_of(group); ++k) units.advance();
+        for (int k = 0; k < parts_of(group); ++k) checkpoint.advance();
       before += group.size();
     }
   });

@@ -11,10 +11,11 @@ std::vector<results::Table> compute(const std::vector<TableJob>& jobs, const std
   int parts = 0;
   for (const TableJob& job : jobs) parts += job.parts;
   std::vector<results::Table> tables;
-  record_in_file(options, identity, parts, [&](results::RunFile& file, Units& units) {
+  record_in_file(options, identity, parts, [&](results::RunFile& file, Checkpoint& checkpoint) {
     for (std::size_t k = 0; k < jobs.size(); ++k) {
-      units.begin(fmt::format("table {}", k));
-      tables.push_back(jobs[k].compute(units));  // also if the file has it: later tables may be made from what this one saw
+      checkpoint.begin(fmt::format("table {}", k));
+      tables.push_back(
+          jobs[k].compute(checkpoint));  // also if the file has it: later tables may be made from what this one saw
       if (!file.has_table(tables.back().name)) file.add(tables.back());
     }
   });

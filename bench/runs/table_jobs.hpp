@@ -9,11 +9,11 @@
 
 namespace drape::bench {
 
-/// A table to be computed in `parts` pieces of work; `compute` says what it does and calls units.advance() after each. What
-/// takes seconds is a unit, which a process that was killed does not lose.
+/// A table to be computed in `parts` pieces of work; `compute` says what it does and calls checkpoint.advance() after each.
+/// What takes seconds is a unit, which a process that was killed does not lose.
 struct TableJob {
   int parts;
-  std::function<results::Table(Units& units)> compute;
+  std::function<results::Table(Checkpoint& checkpoint)> compute;
 };
 
 /// Computes all tables and returns them; after each it is in the file. Tables and units of work that a process before this one

@@ -119,27 +119,28 @@ std::vector<Eigen::Index> match(const Vectors& vertices, const Vectors& particle
   return matched;
 }
 
-ForeignMotion read_foreign(const std::vector<std::string>& files, std::optional<double> frame_time, const model::Scene& scene) {
+ExternalMotion read_external_motion(const std::vector<std::string>& files, std::optional<double> frame_time,
+                                    const model::Scene& scene) {
   check_choice(files, frame_time);
   const results::Motion motion = read(files, frame_time);
-  ForeignMotion foreign{title(files), 0, motion.times, {}, motion.velocities.empty()};
-  check_times(foreign.name, motion.times, scene.end);
-  check_finite(foreign.name, "positions", motion.positions);
-  check_finite(foreign.name, "velocities", motion.velocities);
-  foreign.vertices = static_cast<int>(motion.positions.front().rows());
+  ExternalMotion external{title(files), 0, motion.times, {}, motion.velocities.empty()};
+  check_times(external.name, motion.times, scene.end);
+  check_finite(external.name, "positions", motion.positions);
+  check_finite(external.name, "velocities", motion.velocities);
+  external.vertices = static_cast<int>(motion.positions.front().rows());
   std::vector<Eigen::Index> order;
   try {
     order = match(motion.positions.front(), model::start(scene).x, scene.sheet.grid);
   } catch (const std::invalid_argument& error) {
-    throw std::invalid_argument(fmt::format("{}: {}", foreign.name, error.what()));
+    throw std::invalid_argument(fmt::format("{}: {}", external.name, error.what()));
   }
   for (std::size_t k = 0; k < motion.times.size(); ++k) {
     solver::State y{motion.positions[k](order, Eigen::all), {}};
-    if (!foreign.differenced) y.v = motion.velocities[k](order, Eigen::all);
-    foreign.states.push_back(std::move(y));
+    if (!external.differenced) y.v = motion.velocities[k](order, Eigen::all);
+    external.states.push_back(std::move(y));
   }
-  if (foreign.differenced) difference(foreign.times, foreign.states);
-  return foreign;
+  if (external.differenced) difference(external.times, external.states);
+  return external;
 }
 
 }  // namespace drape::bench

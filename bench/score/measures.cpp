@@ -22,29 +22,29 @@ struct Misfit {
   double speed = 0;   ///< of |v_ref|² [m²/s²]
 };
 
-Misfit misfit(const ForeignMotion& foreign, const reference::Trajectory& motion, double tau) {
+Misfit misfit(const ExternalMotion& external, const reference::Trajectory& motion, double tau) {
   Misfit sum;
   int count = 0;
-  for (std::size_t k = 0; k < foreign.times.size(); ++k) {
-    const double t = foreign.times[k] - tau;
+  for (std::size_t k = 0; k < external.times.size(); ++k) {
+    const double t = external.times[k] - tau;
     if (t > motion.times.back() * (1 + 1e-9)) break;
     const State y = state_at(motion, t);
-    const solver::Vectors r = foreign.states[k].x - y.x;
+    const solver::Vectors r = external.states[k].x - y.x;
     sum.square += r.squaredNorm(), sum.slope += y.v.cwiseProduct(r).sum(), sum.speed += y.v.squaredNorm();
     ++count;
   }
-  const double n = count * static_cast<double>(foreign.states.front().x.rows());
+  const double n = count * static_cast<double>(external.states.front().x.rows());
   return {sum.square / n, sum.slope / n, sum.speed / n};
 }
 
 /// The best delay of a scan over a quarter of the motion either way, and how far apart they were [s].
-std::pair<double, double> scan(const ForeignMotion& foreign, const reference::Trajectory& motion) {
+std::pair<double, double> scan(const ExternalMotion& external, const reference::Trajectory& motion) {
   constexpr int each_way = 50;
-  const double step = longest_lag * foreign.times.back() / each_way;
-  double best = 0, least = misfit(foreign, motion, 0).square;
+  const double step = longest_lag * external.times.back() / each_way;
+  double best = 0, least = misfit(external, motion, 0).square;
   for (int k = 1; k <= each_way; ++k)
     for (const double tau : {k * step, -k * step})
-      if (const double square = misfit(foreign, motion, tau).square; square < least) best = tau, least = square;
+      if (const double square = misfit(external, motion, tau).square; square < least) best = tau, least = square;
   return {best, step};
 }
 
@@ -67,12 +67,12 @@ double rate(std::span<const double> times, const std::vector<double>& K, const s
 
 }  // namespace
 
-std::vector<FrameScore> frame_scores(const ForeignMotion& foreign, const TrueMotion& truth) {
-  const auto expected = observe(truth, foreign.times, foreign.differenced);
+std::vector<FrameScore> frame_scores(const ExternalMotion& external, const TrueMotion& truth) {
+  const auto expected = observe(truth, external.times, external.differenced);
   std::vector<FrameScore> all;
-  for (std::size_t k = 0; k < foreign.times.size(); ++k) {
-    const double t = foreign.times[k];
-    const State &y = foreign.states[k], truly = state_at(truth.motion, t);
+  for (std::size_t k = 0; k < external.times.size(); ++k) {
+    const double t = external.times[k];
+    const State &y = external.states[k], truly = state_at(truth.motion, t);
     FrameScore frame{t,
                      reference::rms_distance(y.x, truly.x),
                      reference::maximum_distance(y.x, truly.x),
@@ -87,34 +87,34 @@ std::vector<FrameScore> frame_scores(const ForeignMotion& foreign, const TrueMot
   return all;
 }
 
-Lag lag(const ForeignMotion& foreign, const TrueMotion& truth) {
+Lag lag(const ExternalMotion& external, const TrueMotion& truth) {
   constexpr int steps = 20;
   const double between = interpolation_error(truth.motion), known = std::ranges::max(truth.uncertainty);
   const double uncertainty = std::hypot(between, known);
-  const double longest = longest_lag * foreign.times.back();
-  auto [tau, width] = scan(foreign, truth.motion);
-  Misfit best = misfit(foreign, truth.motion, tau);
+  const double longest = longest_lag * external.times.back();
+  auto [tau, width] = scan(external, truth.motion);
+  Misfit best = misfit(external, truth.motion, tau);
   if (!(best.speed > 0)) return {{}, {std::sqrt(best.square), uncertainty}};
   for (int k = 0; k < steps; ++k) {  // r(τ) = x(t) − x_ref(t − τ), dr/dτ = v_ref
     const double next = std::clamp(tau - std::clamp(best.slope / best.speed, -width, width), -longest, longest);
-    const Misfit there = misfit(foreign, truth.motion, next);
+    const Misfit there = misfit(external, truth.motion, next);
     if (!(there.square < best.square)) break;
     tau = next, best = there;
   }
   return {{tau, uncertainty / std::sqrt(best.speed)}, {std::sqrt(best.square), uncertainty}};
 }
 
-Uncertain damping(const ForeignMotion& foreign, const TrueMotion& truth, const Lag& late) {
+Uncertain damping(const ExternalMotion& external, const TrueMotion& truth, const Lag& late) {
   const double tau = std::isnan(late.seconds.value) ? 0 : late.seconds.value, end = truth.motion.times.back() * (1 + 1e-9);
-  std::vector<double> times = foreign.times, earlier;
+  std::vector<double> times = external.times, earlier;
   std::erase_if(times, [&](double t) { return t - tau > end; });
   for (const double t : times) earlier.push_back(t - tau);
   const auto energies = [&](std::vector<State> states) {
     states.resize(times.size());
-    return kinetic_energies(truth.cloth, times, std::move(states), foreign.differenced);
+    return kinetic_energies(truth.cloth, times, std::move(states), external.differenced);
   };
   const std::vector<double> R = energies(states_at(truth.motion, times));
-  return {rate(times, energies(foreign.states), energies(states_at(truth.motion, earlier))),
+  return {rate(times, energies(external.states), energies(states_at(truth.motion, earlier))),
           std::abs(rate(times, energies(states_at(truth.witness, times)), R))};
 }
 

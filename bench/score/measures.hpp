@@ -37,18 +37,18 @@ struct Lag {
   Uncertain left;     ///< root mean square distance over frames and particles from the reference so much earlier [m]
 };
 
-std::vector<FrameScore> frame_scores(const ForeignMotion& foreign, const TrueMotion& truth);
+std::vector<FrameScore> frame_scores(const ExternalMotion& external, const TrueMotion& truth);
 
 /// The delay τ that minimises the mean over frames and particles of |x(t) − x_ref(t − τ)|²: the best of a scan up to a quarter
 /// of the motion either way, improved by Gauss-Newton steps. Before the start the reference rests at its start; frames for
 /// which it would have to go on beyond its end are left out. A lag at either bound may be more. The uncertainty is that of
 /// positions over the mean velocity. NaN if nothing moves.
-Lag lag(const ForeignMotion& foreign, const TrueMotion& truth);
+Lag lag(const ExternalMotion& external, const TrueMotion& truth);
 
 /// How much faster than the reference's the kinetic energy of a motion falls: the rate δ [1/s] for which (1 − δ t) K_ref(t − τ)
 /// comes nearest to K(t), in the sum of squares over all frames. The lag τ is taken out first: what is late is not damped.
 /// Where velocities are differences of frames, the reference's are, too. Below zero: the motion is too lively. The uncertainty
 /// is the δ of the reference's other family. NaN if nothing moves.
-Uncertain damping(const ForeignMotion& foreign, const TrueMotion& truth, const Lag& late);
+Uncertain damping(const ExternalMotion& external, const TrueMotion& truth, const Lag& late);
 
 }  // namespace drape::bench

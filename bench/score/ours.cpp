@@ -56,7 +56,7 @@ double known_error(const std::vector<FrameScore>& frames) {
 }
 
 Ours try_ours(const TrueMotion& truth, const std::vector<FrameScore>& frames, const std::vector<std::string>& methods,
-              std::optional<double> cost, int repetitions, Units& units) {
+              std::optional<double> cost, int repetitions, Checkpoint& checkpoint) {
   Problem problem = problem_of(truth, frames);
   const double error = known_error(frames) / problem.length;
   Effort effort{.repetitions = repetitions, .time_of = TimeOf::wall};  // as the other simulator's
@@ -66,13 +66,13 @@ Ours try_ours(const TrueMotion& truth, const std::vector<FrameScore>& frames, co
     problem.enough = error / well;
   Ours ours;
   for (const std::string& method : methods) ours.families.push_back(ladder(problem.scene, method));
-  ours.trials = try_all(problem, ours.families, effort, units);
+  ours.trials = try_all(problem, ours.families, effort, checkpoint);
   const double longest = cost ? 1e3 * *cost : NAN;
   problem.asked = {error};
   for (const Answers& answers : answers_of(ours, error, longest))  // by a first run each, to know what to time
     if (answers.at_cost != nullptr) problem.asked.push_back(answers.at_cost->measured.error);
-  units.show("timing " + problem.name);
-  time_fronts(problem, ours.trials, effort, {}, units);
+  checkpoint.show("timing " + problem.name);
+  time_fronts(problem, ours.trials, effort, {}, checkpoint);
   ours.answers = answers_of(ours, error, longest);
   for (const Trial& trial : ours.trials) take_in(ours.best, trial, error, longest);
   return ours;

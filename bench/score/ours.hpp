@@ -33,7 +33,7 @@ double known_error(const std::vector<FrameScore>& frames);
 /// Tries the methods from coarse to fine until they are well below the error, or, if its cost [s] is known, take well longer
 /// than that; what may be the quickest is timed, interleaved.
 Ours try_ours(const TrueMotion& truth, const std::vector<FrameScore>& frames, const std::vector<std::string>& methods,
-              std::optional<double> cost, int repetitions, Units& units);
+              std::optional<double> cost, int repetitions, Checkpoint& checkpoint);
 
 /// Throws std::invalid_argument if one of the methods does not exist or cannot do the scene.
 void check_methods(const std::vector<std::string>& methods, const model::Scene& scene);

@@ -20,7 +20,7 @@ using results::TableBuilder;
 /// What the tables share.
 struct Scoring {
   model::Scene scene;
-  ForeignMotion foreign;
+  ExternalMotion external;
   ScoreOptions options;
   std::optional<TrueMotion> truth;
   std::vector<FrameScore> frames;
@@ -41,15 +41,15 @@ void add_energies(TableBuilder& table, const FrameScore& frame) {
   energy("energy", "total", &Observables::total);
 }
 
-Table over_time(Scoring& s, Units& units) {
-  units.show("reference of " + s.scene.name);
-  const auto say = [&](const std::string& pace) { units.report("reference of " + s.scene.name + ": " + pace); };
-  s.truth = true_motion(s.scene, s.foreign.times, s.options.agreement, {.say = say});
-  s.frames = frame_scores(s.foreign, *s.truth);
-  units.advance();
+Table over_time(Scoring& s, Checkpoint& checkpoint) {
+  checkpoint.show("reference of " + s.scene.name);
+  const auto say = [&](const std::string& pace) { checkpoint.report("reference of " + s.scene.name + ": " + pace); };
+  s.truth = true_motion(s.scene, s.external.times, s.options.agreement, {.say = say});
+  s.frames = frame_scores(s.external, *s.truth);
+  checkpoint.advance();
   TableBuilder table(
-      "score", fmt::format("{} on {}, frame by frame; reference {}; energies by our model{}", s.foreign.name, s.scene.name,
-                           s.truth->families, s.foreign.differenced ? ", velocities by differences of the frames" : ""));
+      "score", fmt::format("{} on {}, frame by frame; reference {}; energies by our model{}", s.external.name, s.scene.name,
+                           s.truth->families, s.external.differenced ? ", velocities by differences of the frames" : ""));
   for (const FrameScore& frame : s.frames) {
     table.row();
     table.number("t", "t", "s", "time of the frame", frame.t);
@@ -77,14 +77,14 @@ void add(TableBuilder& table, const std::string& name, const char* title, const 
 
 Table summary(const Scoring& s) {
   const double size = s.size();
-  TableBuilder table("score-summary", fmt::format("{} on {} in numbers", s.foreign.name, s.scene.name));
+  TableBuilder table("score-summary", fmt::format("{} on {} in numbers", s.external.name, s.scene.name));
   const FrameScore &worst = std::ranges::max(s.frames, {}, &FrameScore::rms), &last = s.frames.back();
   double mean = 0;
   for (const FrameScore& frame : s.frames) mean += frame.rms * frame.rms / static_cast<double>(s.frames.size());
   table.row();
   table.text("scene", "", "its name", s.scene.name);
-  table.text("file", "", "what was measured", s.foreign.name);
-  table.text("velocities", "", "where they are from", s.foreign.differenced ? "differences of the frames" : "the file");
+  table.text("file", "", "what was measured", s.external.name);
+  table.text("velocities", "", "where they are from", s.external.differenced ? "differences of the frames" : "the file");
   table.text("reference", "", "the families that agree", s.truth->families);
   table.count("frames", "", "how many", std::ssize(s.frames));
   table.number("end", "", "s", "time of the last frame", last.t);
@@ -97,11 +97,11 @@ Table summary(const Scoring& s) {
   table.number("end_error", "at the end", "1", "rms distance of the last frame, over the size", last.rms / size);
   table.number("reference_error", "reference error", "1", "largest uncertainty of the reference at the frames, as rms",
                std::ranges::max(s.frames, {}, &FrameScore::uncertainty).uncertainty / size);
-  const Lag late = lag(s.foreign, *s.truth);
+  const Lag late = lag(s.external, *s.truth);
   add(table, "lag", "lag", "s", "delay against the reference", late.seconds);
   add(table, "left", "left", "1", "as mean_error, the delay taken out", late.left, size);
   add(table, "damping", "damping", "1/s", "rate at which the kinetic energy falls behind the reference's, the delay taken out",
-      damping(s.foreign, *s.truth, late));
+      damping(s.external, *s.truth, late));
   add(table, "energy", "", "J", "total at the last frame", {last.own.total, last.truth.uncertainty.total});
   table.number("reference_energy", "", "J", "the same of the reference", last.truth.value.total);
   if (!s.truth->cloth.contacts) return table.finish();
@@ -146,14 +146,14 @@ void add_answer(TableBuilder& table, const std::string& prefix, const char* ques
   if (best) table.text(name("best").c_str(), "best", "which method it is", "best");
 }
 
-Table beside_ours(Scoring& s, Units& units) {
-  s.ours = try_ours(*s.truth, s.frames, s.options.methods, s.options.cost, s.options.repetitions, units);
+Table beside_ours(Scoring& s, Checkpoint& checkpoint) {
+  s.ours = try_ours(*s.truth, s.frames, s.options.methods, s.options.cost, s.options.repetitions, checkpoint);
   const double error = known_error(s.frames) / s.size();
   TableBuilder table(
       "score-ours",
       fmt::format(
           "Our methods on {} to {:g} s: the quickest at most as wrong as {} (rms error {:.3g}){}", s.scene.name,
-          s.frames.back().t, s.foreign.name, error,
+          s.frames.back().t, s.external.name, error,
           s.options.cost ? fmt::format(", and the least wrong that take no longer ({:g} ms)", 1e3 * *s.options.cost) : ""));
   for (std::size_t k = 0; k < s.ours.families.size(); ++k) {
     const Answers &answers = s.ours.answers[k], &best = s.ours.best;
@@ -178,18 +178,18 @@ std::string bits(const std::vector<solver::State>& states) {
 
 }  // namespace
 
-std::vector<TableJob> score_jobs(const model::Scene& scene, const ForeignMotion& foreign, const ScoreOptions& options) {
-  const auto shared = std::make_shared<Scoring>(Scoring{scene, foreign, options, {}, {}, {}});
-  return {{1, [=](Units& units) { return over_time(*shared, units); }},
-          {0, [=](Units&) { return summary(*shared); }},
-          {static_cast<int>(options.methods.size()), [=](Units& units) { return beside_ours(*shared, units); }},
-          {0, [=](Units&) { return trials(*shared); }}};
+std::vector<TableJob> score_jobs(const model::Scene& scene, const ExternalMotion& external, const ScoreOptions& options) {
+  const auto shared = std::make_shared<Scoring>(Scoring{scene, external, options, {}, {}, {}});
+  return {{1, [=](Checkpoint& checkpoint) { return over_time(*shared, checkpoint); }},
+          {0, [=](Checkpoint&) { return summary(*shared); }},
+          {static_cast<int>(options.methods.size()), [=](Checkpoint& checkpoint) { return beside_ours(*shared, checkpoint); }},
+          {0, [=](Checkpoint&) { return trials(*shared); }}};
 }
 
-std::string score_identity(const model::Scene& scene, const ForeignMotion& foreign, const ScoreOptions& options) {
-  return hash_of(fmt::format("score\n{}\n{} {} {}\n{} {} {} {}\n{}", model::to_toml(scene), foreign.name, foreign.differenced,
-                             fmt::join(foreign.times, " "), fmt::join(options.methods, " "), options.cost.value_or(0),
-                             options.agreement, options.repetitions, bits(foreign.states)));
+std::string score_identity(const model::Scene& scene, const ExternalMotion& external, const ScoreOptions& options) {
+  return hash_of(fmt::format("score\n{}\n{} {} {}\n{} {} {} {}\n{}", model::to_toml(scene), external.name, external.differenced,
+                             fmt::join(external.times, " "), fmt::join(options.methods, " "), options.cost.value_or(0),
+                             options.agreement, options.repetitions, bits(external.states)));
 }
 
 }  // namespace drape::bench

@@ -9,7 +9,7 @@
 
 namespace drape::bench {
 
-/// What a foreign motion is measured by.
+/// What an external motion is measured by.
 struct ScoreOptions {
   std::optional<double> cost;        ///< what it took on this machine [s]
   std::vector<std::string> methods;  ///< of ours, to stand beside it
@@ -18,10 +18,10 @@ struct ScoreOptions {
 };
 
 /// The tables `score` (over time), `score-summary`, `score-ours` and, for files, `score-trials`.
-std::vector<TableJob> score_jobs(const model::Scene& scene, const ForeignMotion& foreign, const ScoreOptions& options);
+std::vector<TableJob> score_jobs(const model::Scene& scene, const ExternalMotion& external, const ScoreOptions& options);
 
 /// Of all that determines them.
-std::string score_identity(const model::Scene& scene, const ForeignMotion& foreign, const ScoreOptions& options);
+std::string score_identity(const model::Scene& scene, const ExternalMotion& external, const ScoreOptions& options);
 
 /// These tables in a few lines, for people.
 std::string score_summary(const std::vector<results::Table>& tables);

@@ -196,19 +196,19 @@ std::string conclusion(const Experiment& experiment, const std::optional<results
 
 /// The curve of one experiment, and its order.
 results::Table figure(const std::string& name, const std::string& title, const std::vector<Experiment>& experiments,
-                      const std::vector<int>& resolutions, Units& units) {
+                      const std::vector<int>& resolutions, Checkpoint& checkpoint) {
   results::TableBuilder table(name, title);
   for (const Experiment& experiment : experiments) {
     std::vector<double> spacings, rms;
     for (const int n : resolutions) {
-      units.show(fmt::format("{}, {}, {} × {}", experiment.name, experiment.form, n, n));
+      checkpoint.show(fmt::format("{}, {}, {} × {}", experiment.name, experiment.form, n, n));
       table.row();
       table.text("experiment", "experiment", "which, with what differs from the scene of that name", experiment.name);
       table.text("form", "form", "of the forces: consistent, or as the algorithms of the thesis print them", experiment.form);
       table.count("n", "n", "particles in one direction", n);
       if (n <= experiment.finest) {
-        const Errors e =
-            units(fmt::format("{} {} {}", experiment.name, experiment.form, n), [&] { return errors(experiment, n); });
+        const Errors e = checkpoint.once(fmt::format("{} {} {}", experiment.name, experiment.form, n),
+                                         [&] { return errors(experiment, n); });
         if (e.remark.empty()) {
           table.number("rms", "rms error", "m", "root mean square distance of the nodes from the exact equilibrium (L2)",
                        e.rms);
@@ -224,7 +224,7 @@ results::Table figure(const std::string& name, const std::string& title, const s
         }
       }
       table.number("uncertainty", "", "m", "of the exact solution", experiment.uncertainty);
-      units.advance();
+      checkpoint.advance();
     }
     const auto fit = results::fit_order(spacings, rms, experiment.uncertainty);
     results::add_fit(table, fit, conclusion(experiment, fit, rms.empty() ? NAN : rms.back()));
@@ -237,9 +237,9 @@ results::Table figure(const std::string& name, const std::string& title, const s
 std::vector<TableJob> convergence(bool quick) {
   const std::vector<int> resolutions = quick ? std::vector{20, 28, 36, 48} : std::vector{5, 10, 20, 40, 80, 160};
   const auto job = [&](const char* name, const char* title, int experiments, auto make) {
-    return TableJob{experiments * static_cast<int>(resolutions.size()), [=](Units& units) {
-                      units.show(fmt::format("exact solution of {}", name));
-                      return figure(name, title, make(), resolutions, units);
+    return TableJob{experiments * static_cast<int>(resolutions.size()), [=](Checkpoint& checkpoint) {
+                      checkpoint.show(fmt::format("exact solution of {}", name));
+                      return figure(name, title, make(), resolutions, checkpoint);
                     }};
   };
   return {job("figure-2.11a", "Figure 2.11 (a), tension: error of the equilibrium against the resolution", 2, tension),

@@ -115,15 +115,16 @@ constexpr const char* dampings[] = {"0.2", "0.02", "0.002"};
 constexpr const char* figure_methods[] = {"implicit-euler", "bdf2", "verlet"};
 using Flutters = std::array<Flutter, 3>;
 
-Flutters compare(const char* damping, bool quick, Units& units) {
+Flutters compare(const char* damping, bool quick, Checkpoint& checkpoint) {
   std::vector<model::Override> overrides{{"material.damping", damping}};
   if (quick) overrides.insert(overrides.end(), {{"grid.n", "8"}, {"end.time", "1.5"}});
   const model::Scene scene = model::load_scene("wind", overrides);
   Flutters all;
   for (std::size_t k = 0; k < all.size(); ++k) {
-    units.show(fmt::format("{}, d = {}, {}", scene.name, damping, figure_methods[k]));
-    all[k] = units(fmt::format("{} {}", damping, figure_methods[k]), [&] { return flutter(scene, figure_methods[k]); });
-    units.advance();
+    checkpoint.show(fmt::format("{}, d = {}, {}", scene.name, damping, figure_methods[k]));
+    all[k] =
+        checkpoint.once(fmt::format("{} {}", damping, figure_methods[k]), [&] { return flutter(scene, figure_methods[k]); });
+    checkpoint.advance();
   }
   return all;
 }
@@ -201,11 +202,11 @@ results::Table spectrum(const Runs& runs) {
 std::vector<TableJob> figure_3_2(bool quick) {
   const auto runs = std::make_shared<Runs>();  // of the first table, for the second
   return {{static_cast<int>(std::size(dampings) * std::size(figure_methods)),
-           [=](Units& units) {
-             for (const char* damping : dampings) runs->push_back(compare(damping, quick, units));
+           [=](Checkpoint& checkpoint) {
+             for (const char* damping : dampings) runs->push_back(compare(damping, quick, checkpoint));
              return swings(*runs);
            }},
-          {0, [=](Units&) { return spectrum(*runs); }}};
+          {0, [=](Checkpoint&) { return spectrum(*runs); }}};
 }
 
 }  // namespace drape::bench

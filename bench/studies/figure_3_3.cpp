@@ -168,15 +168,15 @@ void add_row(results::TableBuilder& table, double nu, double ratio) {
 std::vector<TableJob> figure_3_3(bool quick) {
   const std::vector<double> stiffnesses = quick ? std::vector{1e2, 1e4} : std::vector{1e2, 1e3, 5e3, 1e4, 1e5};
   const std::vector<double> ratios = quick ? std::vector{1.0, 100.0} : std::vector{1.0, 10.0, 100.0, 1000.0};
-  return {{static_cast<int>(stiffnesses.size() * ratios.size()), [=](Units& units) {
+  return {{static_cast<int>(stiffnesses.size() * ratios.size()), [=](Checkpoint& checkpoint) {
              results::TableBuilder table("figure-3.3",
                                          "Figure 3.3: by what time semi-implicit methods lag behind BDF(2), h = 0.01 s");
              for (const double nu : stiffnesses)
                for (const double ratio : ratios) {
-                 units.show(fmt::format("ν = {}, h k/d = {}", nu, ratio));
-                 units.rows(table, fmt::format("{} {}", nu, ratio),
-                            [&](results::TableBuilder& row) { add_row(row, nu, ratio); });
-                 units.advance();
+                 checkpoint.show(fmt::format("ν = {}, h k/d = {}", nu, ratio));
+                 checkpoint.rows(table, fmt::format("{} {}", nu, ratio),
+                                 [&](results::TableBuilder& row) { add_row(row, nu, ratio); });
+                 checkpoint.advance();
                }
              return table.finish();
            }}};

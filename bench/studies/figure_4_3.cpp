@@ -107,17 +107,18 @@ void add_bars(results::TableBuilder& table, const Group& group, int repetitions)
           most_time);
 }
 
-results::Table bars(bool quick, Units& units) {
+results::Table bars(bool quick, Checkpoint& checkpoint) {
   results::TableBuilder table("figure-4.3-bars", "Figure 4.3: what contact costs; the sheet swings with and without the box");
   const model::Scene scene = swing(quick);
   model::Scene without_box = scene;
   without_box.obstacles.clear();
   for (const solver::Method& method : solver::thesis_methods()) {
     if (!method.implicit()) continue;
-    units.show(fmt::format("cost of contact, {}", method.name));
+    checkpoint.show(fmt::format("cost of contact, {}", method.name));
     const Group group{cell(scene, method.name), cell(without_box, method.name)};
-    units.rows(table, std::string(method.name), [&](results::TableBuilder& rows) { add_bars(rows, group, quick ? 1 : 5); });
-    units.advance();
+    checkpoint.rows(table, std::string(method.name),
+                    [&](results::TableBuilder& rows) { add_bars(rows, group, quick ? 1 : 5); });
+    checkpoint.advance();
   }
   return table.finish();
 }
@@ -128,16 +129,16 @@ std::vector<TableJob> figure_4_3(bool quick) {
   const auto runs = std::make_shared<std::vector<RunRecord>>();  // of the first table, for the last
   const auto implicit = std::ranges::count_if(solver::thesis_methods(), [](const solver::Method& m) { return m.implicit(); });
   return {{2,
-           [=](Units& units) {
+           [=](Checkpoint& checkpoint) {
              for (const char* method : {"bdf2", "sbdf2"}) {
-               units.show(fmt::format("{} against the box", method));
-               runs->push_back(units(method, [&] { return record(cell(swing(quick), method)); }));
-               units.advance();
+               checkpoint.show(fmt::format("{} against the box", method));
+               runs->push_back(checkpoint.once(method, [&] { return record(cell(swing(quick), method)); }));
+               checkpoint.advance();
              }
              return over_time("figure-4.3", "Figure 4.3: a sheet swings against a box; means over five steps", *runs, window);
            }},
-          {static_cast<int>(implicit), [=](Units& units) { return bars(quick, units); }},
-          {0, [=](Units&) { return over_time("figure-4.3-steps", "Figure 4.3: every step (in the file)", *runs, 1); }}};
+          {static_cast<int>(implicit), [=](Checkpoint& checkpoint) { return bars(quick, checkpoint); }},
+          {0, [=](Checkpoint&) { return over_time("figure-4.3-steps", "Figure 4.3: every step (in the file)", *runs, 1); }}};
 }
 
 }  // namespace drape::bench

@@ -21,21 +21,21 @@ using results::TableBuilder;
 /// Methods that everybody knows.
 constexpr const char* neighbours[] = {"bdf2", "midpoint", "implicit-euler", "verlet"};
 
-results::Table order(const std::string& method, Units& units) {
+results::Table order(const std::string& method, Checkpoint& checkpoint) {
   constexpr double most_work = 2e6;
   const model::Scene scene = smooth_scene();
   const model::Cloth cloth = model::compile(scene);
-  units.show("reference of " + scene.name);
+  checkpoint.show("reference of " + scene.name);
   References references(1e-7, {}, 1e-12);
   const reference::Reference reference = references(scene, cloth);
-  units.show(fmt::format("order of {}", method));
+  checkpoint.show(fmt::format("order of {}", method));
   TableBuilder table("check-order", fmt::format("Order of {} on a soft sheet, {:g} s", method, scene.end));
-  units.rows(table, method, [&](TableBuilder& rows) {
+  checkpoint.rows(table, method, [&](TableBuilder& rows) {
     const RunSpec cell = tight(scene, method);
     add_refinement(rows, cell, method, cloth, reference, most_work);
     rows.count("declared", "declared", "order of the method's row", cell.method->order);
   });
-  units.advance();
+  checkpoint.advance();
   return table.finish();
 }
 
@@ -47,19 +47,20 @@ std::string theory_of(const solver::Method& method, double h, double k, double d
   return std::pow(prediction->radius, horizon / h) < 10 ? "stable" : "unstable";
 }
 
-results::Table stability_of(const std::string& method, Units& units) {
+results::Table stability_of(const std::string& method, Checkpoint& checkpoint) {
   constexpr double k = 1e4;
   RunSpec cell{smooth_scene(), "", nullptr, 0, {}};
   choose_method(cell, method);
   TableBuilder table("check-stability",
                      fmt::format("Largest usable steps of {} on 10 x 10 particles hung by two corners, k = {:g}", method, k));
   for (const double d : {50.0, 0.5}) {
-    units.show(fmt::format("largest steps of {}, d = {:g}", method, d));
-    units.rows(table, fmt::format("{:g}", d), [&](TableBuilder& rows) {
+    checkpoint.show(fmt::format("largest steps of {}, d = {:g}", method, d));
+    checkpoint.rows(table, fmt::format("{:g}", d), [&](TableBuilder& rows) {
       const Specimen specimen = hung_by_corners(10, k, d);
       rows.row();
       rows.number("damping", "d", "N s/m", "damping, linear", d);
-      const LargestSteps largest = largest_steps(specimen, Yardstick(specimen, horizon), *cell.method, cell.options);
+      const LargestSteps largest =
+          largest_steps(specimen, CrossCheckedReference(specimen, horizon), *cell.method, cell.options);
       add_largest(rows, largest);
       rows.text("theory", "in theory", "linear theory of the largest of all steps", theory_of(*cell.method, horizon, k, d));
       rows.text("verdict", "verdict", "up to what steps it is stable",
@@ -67,7 +68,7 @@ results::Table stability_of(const std::string& method, Units& units) {
                 : largest.stable > 0      ? "limited"
                                           : "NOT stable");
     });
-    units.advance();
+    checkpoint.advance();
   }
   return table.finish();
 }
@@ -82,15 +83,15 @@ std::vector<double> energy_changes(const results::RunRecord& run, const model::C
   return changes;
 }
 
-results::Table energy(const std::string& method, Units& units) {
+results::Table energy(const std::string& method, Checkpoint& checkpoint) {
   constexpr double small = 1e-2;  // part of the kinetic energy
   const model::Scene scene = model::load_scene(
       "hung-corners", std::vector<model::Override>{{"grid.n", "10"}, {"material.damping", "0"}, {"end.time", "1"}});
   const model::Cloth cloth = model::compile(scene);
   TableBuilder table("check-energy", fmt::format("Energy of an undamped sheet by {}, {:g} s", method, scene.end));
   for (const double h : {0.01, 0.0025}) {
-    units.show(fmt::format("energy of {}, h = {:g}", method, h));
-    units.rows(table, fmt::format("{:g}", h), [&](TableBuilder& rows) {
+    checkpoint.show(fmt::format("energy of {}, h = {:g}", method, h));
+    checkpoint.rows(table, fmt::format("{:g}", h), [&](TableBuilder& rows) {
       RunSpec cell{scene, "", nullptr, h, {}};
       choose_method(cell, method);
       const results::RunRecord run = record(cell);
@@ -107,7 +108,7 @@ results::Table energy(const std::string& method, Units& units) {
                 : end < -small ? "loses energy"
                                : "keeps energy");
     });
-    units.advance();
+    checkpoint.advance();
   }
   return table.finish();
 }
@@ -120,7 +121,7 @@ struct Compared {
   std::vector<Trial> trials;
 };
 
-void compare(Compared& all, const std::string& method, Units& units) {
+void compare(Compared& all, const std::string& method, Checkpoint& checkpoint) {
   constexpr Effort effort{.cap = 1, .repetitions = 5};
   std::vector<std::string> names{method};
   for (const char* neighbour : neighbours)
@@ -129,11 +130,11 @@ void compare(Compared& all, const std::string& method, Units& units) {
     all.families.push_back(ladder(all.problem.scene, name));
     all.contenders.push_back({name, {}});
   }
-  all.trials = try_all(all.problem, all.families, effort, units);
+  all.trials = try_all(all.problem, all.families, effort, checkpoint);
   for (std::size_t k = 0; k < all.trials.size(); ++k)
     all.contenders[static_cast<std::size_t>(all.trials[k].family - all.families.data())].members.push_back(k);
-  units.show("timing");
-  time_fronts(all.problem, all.contenders, all.trials, effort, units);
+  checkpoint.show("timing");
+  time_fronts(all.problem, all.contenders, all.trials, effort, checkpoint);
 }
 
 /// The quickest of a contender at an error; null if none reaches it.
@@ -142,14 +143,14 @@ const Trial* quickest_of(const Contender& contender, const std::vector<Trial>& t
   return best ? &trials[contender.members[*best]] : nullptr;
 }
 
-results::Table cost(const std::string& method, Units& units) {
+results::Table cost(const std::string& method, Checkpoint& checkpoint) {
   const model::Scene scene = model::load_scene(
       "hung-corners", std::vector<model::Override>{{"grid.n", "10"}, {"material.damping", "5"}, {"end.time", "0.3"}});
-  units.show("reference of " + scene.name);
-  Compared all{certified_problem(scene.name, scene, units), {}, {}, {}};
+  checkpoint.show("reference of " + scene.name);
+  Compared all{certified_problem(scene.name, scene, checkpoint), {}, {}, {}};
   all.problem.asked = {1e-2, 1e-3, 1e-4};
   all.problem.enough = 5e-5;
-  compare(all, method, units);
+  compare(all, method, checkpoint);
   TableBuilder table(
       "check-cost",
       fmt::format("Cost of {} beside others on 10 x 10 particles hung by two corners, d = 5, {:g} s", method, scene.end));
@@ -175,10 +176,10 @@ results::Table cost(const std::string& method, Units& units) {
 }  // namespace
 
 std::vector<TableJob> check_jobs(const std::string& method) {
-  return {{1, [=](Units& units) { return order(method, units); }},
-          {2, [=](Units& units) { return stability_of(method, units); }},
-          {2, [=](Units& units) { return energy(method, units); }},
-          {static_cast<int>(std::size(neighbours)) + 1, [=](Units& units) { return cost(method, units); }}};
+  return {{1, [=](Checkpoint& checkpoint) { return order(method, checkpoint); }},
+          {2, [=](Checkpoint& checkpoint) { return stability_of(method, checkpoint); }},
+          {2, [=](Checkpoint& checkpoint) { return energy(method, checkpoint); }},
+          {static_cast<int>(std::size(neighbours)) + 1, [=](Checkpoint& checkpoint) { return cost(method, checkpoint); }}};
 }
 
 }  // namespace drape::bench

@@ -162,12 +162,13 @@ constexpr MethodTable method_tables[] = {
     {"stability", "Largest stable W = h² ω² by bisection, for shares ω²/κ of the implicit part", stability},
     {"artificial", "Artificial inertia and damping of a transverse mode, h ω = 0.01, undamped", artificial}};
 
-results::Table compute(const MethodTable& what, bool quick, const Methods& methods, Units& units) {
+results::Table compute(const MethodTable& what, bool quick, const Methods& methods, Checkpoint& checkpoint) {
   results::TableBuilder table(what.name, what.description);
   for (const Method* method : methods) {
-    units.show(fmt::format("{} of {}", what.name, method->name));
-    units.rows(table, std::string(method->name), [&](results::TableBuilder& rows) { what.add_rows(rows, *method, quick); });
-    units.advance();
+    checkpoint.show(fmt::format("{} of {}", what.name, method->name));
+    checkpoint.rows(table, std::string(method->name),
+                    [&](results::TableBuilder& rows) { what.add_rows(rows, *method, quick); });
+    checkpoint.advance();
   }
   return table.finish();
 }
@@ -178,7 +179,8 @@ std::vector<TableJob> modes(bool quick, const Methods& methods) {
   const Methods chosen = all_or(methods);
   std::vector<TableJob> jobs;
   for (const MethodTable& table : method_tables)
-    jobs.push_back({static_cast<int>(chosen.size()), [=](Units& units) { return compute(table, quick, chosen, units); }});
+    jobs.push_back(
+        {static_cast<int>(chosen.size()), [=](Checkpoint& checkpoint) { return compute(table, quick, chosen, checkpoint); }});
   return jobs;
 }
 

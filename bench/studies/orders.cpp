@@ -21,22 +21,22 @@ std::vector<model::Scene> scenes(bool quick) {
   return all;
 }
 
-results::Table orders_on(const model::Scene& scene, bool quick, const Methods& methods, Units& units) {
+results::Table orders_on(const model::Scene& scene, bool quick, const Methods& methods, Checkpoint& checkpoint) {
   const model::Cloth cloth = model::compile(scene);
-  units.show("reference of " + scene.name);
-  const auto say = [&](const std::string& pace) { units.report("reference of " + scene.name + ": " + pace); };
+  checkpoint.show("reference of " + scene.name);
+  const auto say = [&](const std::string& pace) { checkpoint.report("reference of " + scene.name + ": " + pace); };
   References references(SweepOptions().agreement, {.say = say}, 1e-12);  // the more of a curve is resolved
   const reference::Reference reference = references(scene, cloth);
-  units.advance();
+  checkpoint.advance();
   results::TableBuilder table("orders-" + scene.name, fmt::format("Order in time on {}, {:g} s; reference {} + {}", scene.name,
                                                                   scene.end, reference.name, reference.witness));
   for (const solver::Method* method : methods) {
-    units.show(fmt::format("{} on {}", method->name, scene.name));
-    units.rows(table, std::string(method->name), [&](results::TableBuilder& rows) {
+    checkpoint.show(fmt::format("{} on {}", method->name, scene.name));
+    checkpoint.rows(table, std::string(method->name), [&](results::TableBuilder& rows) {
       const std::string name(method->name);
       add_refinement(rows, tight(scene, name), name, cloth, reference, quick ? 1e6 : 4e7);
     });
-    units.advance();
+    checkpoint.advance();
   }
   return table.finish();
 }
@@ -47,7 +47,8 @@ std::vector<TableJob> orders(bool quick, const Methods& methods) {
   const Methods chosen = all_or(methods);
   std::vector<TableJob> jobs;
   for (const model::Scene& scene : scenes(quick))
-    jobs.push_back({1 + static_cast<int>(chosen.size()), [=](Units& units) { return orders_on(scene, quick, chosen, units); }});
+    jobs.push_back({1 + static_cast<int>(chosen.size()),
+                    [=](Checkpoint& checkpoint) { return orders_on(scene, quick, chosen, checkpoint); }});
   return jobs;
 }
 

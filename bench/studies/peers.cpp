@@ -74,22 +74,22 @@ std::vector<solver::Vectors> solve(const PeerRow& row, const Case& on) {
   return reference::positions_of(solve_by_peer(row.setup, row.value, on.size, model::compile(on.scene), on.times));
 }
 
-results::Measured measure(const PeerRow& row, const Case& on, Units& units) {
+results::Measured measure(const PeerRow& row, const Case& on, Checkpoint& checkpoint) {
   constexpr int repetitions = 15;
   const auto prepare = [&] {
     return [&, cloth = std::make_shared<model::Cloth>(model::compile(on.scene))] {
       solve_by_peer(row.setup, row.value, on.size, *cloth, on.times);
     };
   };
-  return {0, units(fmt::format("{} {} {}", row.damping, row.setup.name(), row.value), [&] {
+  return {0, checkpoint.once(fmt::format("{} {} {}", row.damping, row.setup.name(), row.value), [&] {
             return time_runs(
                 {{prepare, repetitions}}, [] {}, TimeOf::process);
           })[0]};
 }
 
-void add_row(results::TableBuilder& table, const PeerRow& row, const Case& on, Units& units) {
+void add_row(results::TableBuilder& table, const PeerRow& row, const Case& on, Checkpoint& checkpoint) {
   const auto positions = solve(row, on);
-  const auto q = results::quartiles(measure(row, on, units).times);
+  const auto q = results::quartiles(measure(row, on, checkpoint).times);
   table.row();
   table.text("damping", "d", "linear damping [N s/m] of hung-corners", row.damping);
   table.text("setup", "setup", "of SUNDIALS", row.setup.name());
@@ -106,16 +106,16 @@ void add_row(results::TableBuilder& table, const PeerRow& row, const Case& on, U
                row.their_ms);
 }
 
-results::Table reproduce(bool quick, Units& units) {
+results::Table reproduce(bool quick, Checkpoint& checkpoint) {
   results::TableBuilder table("peers",
                               fmt::format("SUNDIALS as an independent driver has set it up; {}", reference::sundials_build()));
   std::string damping;
   std::optional<Case> on;
   for (const PeerRow& row : rows(quick)) {
-    units.show(fmt::format("d = {}, {}: {:g}", row.damping, row.setup.name(), row.value));
+    checkpoint.show(fmt::format("d = {}, {}: {:g}", row.damping, row.setup.name(), row.value));
     if (row.damping != damping) on = make_case(damping = row.damping, quick);
-    add_row(table, row, *on, units);
-    units.advance();
+    add_row(table, row, *on, checkpoint);
+    checkpoint.advance();
   }
   return table.finish();
 }
@@ -123,7 +123,7 @@ results::Table reproduce(bool quick, Units& units) {
 }  // namespace
 
 std::vector<TableJob> peers(bool quick) {
-  return {{static_cast<int>(rows(quick).size()), [quick](Units& units) { return reproduce(quick, units); }}};
+  return {{static_cast<int>(rows(quick).size()), [quick](Checkpoint& checkpoint) { return reproduce(quick, checkpoint); }}};
 }
 
 }  // namespace drape::bench

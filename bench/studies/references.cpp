@@ -8,7 +8,7 @@
 #include "model/cloth.hpp"
 #include "model/scene_file/scene_file.hpp"
 #include "reference/reference.hpp"
-#include "reference/sundials/families.hpp"
+#include "reference/sundials/peer_solvers.hpp"
 #include "results/table_builder.hpp"
 
 namespace drape::bench {
@@ -35,8 +35,8 @@ Solution solve(const std::string& family, const model::Scene& scene) {
   std::vector<double> times;
   for (int k = 1; k <= outputs; ++k) times.push_back(scene.end * k / outputs);
   const auto begin = std::chrono::steady_clock::now();
-  const reference::Trajectory trajectory =
-      reference::family(family).solve(cloth.ode, cloth.start, 0, times, {.rtol = reference_rtol, .size = model::size(scene)});
+  const reference::Trajectory trajectory = reference::peer_solver(family).solve(
+      cloth.ode, cloth.start, 0, times, {.rtol = reference_rtol, .size = model::size(scene)});
   Solution solution;
   solution.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   const std::string prefix = family.substr(0, family.find('-'));
@@ -66,7 +66,7 @@ void add_row(results::TableBuilder& table, const model::Scene& scene, const std:
   table.text("verdict", "verdict", "whether it agrees with CVODE to 1e-8", apart <= closest ? "agrees" : "NOT in agreement");
 }
 
-results::Table compare(bool quick, Units& units) {
+results::Table compare(bool quick, Checkpoint& checkpoint) {
   results::TableBuilder table(
       "references", fmt::format("Three families of solvers on the same equation of motion, rtol = {:g}", reference_rtol));
   for (const std::string& name : reference_scenes)
@@ -76,9 +76,10 @@ results::Table compare(bool quick, Units& units) {
       const model::Scene scene = model::load_scene(name, overrides);
       std::vector<Solution> solutions;
       for (const std::string& family : family_names) {
-        units.show(fmt::format("{}, d = {}, {}", name, damping, family));
-        solutions.push_back(units(fmt::format("{} {} {}", name, damping, family), [&] { return solve(family, scene); }));
-        units.advance();
+        checkpoint.show(fmt::format("{}, d = {}, {}", name, damping, family));
+        solutions.push_back(
+            checkpoint.once(fmt::format("{} {} {}", name, damping, family), [&] { return solve(family, scene); }));
+        checkpoint.advance();
       }
       for (std::size_t k = 0; k < family_names.size(); ++k)
         add_row(table, scene, family_names[k], solutions[k], solutions.front());
@@ -90,8 +91,8 @@ results::Table compare(bool quick, Units& units) {
 
 std::vector<TableJob> references(bool quick) {
   const auto parts = static_cast<int>(reference_scenes.size() * reference_dampings.size() * family_names.size());
-  return {{parts, [quick](Units& units) { return compare(quick, units); }},
-          {growth_parts, [quick](Units& units) { return growth_of_perturbations(quick, units); }}};
+  return {{parts, [quick](Checkpoint& checkpoint) { return compare(quick, checkpoint); }},
+          {growth_parts, [quick](Checkpoint& checkpoint) { return growth_of_perturbations(quick, checkpoint); }}};
 }
 
 }  // namespace drape::bench

@@ -67,7 +67,7 @@ void add_row(results::TableBuilder& table, const model::Scene& scene, const Grow
 
 }  // namespace
 
-results::Table growth_of_perturbations(bool quick, Units& units) {
+results::Table growth_of_perturbations(bool quick, Checkpoint& checkpoint) {
   results::TableBuilder table("growth",
                               "Growth of a small perturbation of the start: of the one that grows most, as rounds of the "
                               "power method find it, and of any");
@@ -77,9 +77,9 @@ results::Table growth_of_perturbations(bool quick, Units& units) {
     model::Scene scene = model::load_scene(sheet.scene, overrides);
     scene.end = quick ? sheet.end / 2 : sheet.end;
     const std::string name = fmt::format("growth on {}, d = {}", sheet.scene, sheet.damping);
-    units.show(name);
-    add_row(table, scene, units(name, [&] { return grow(scene); }));
-    units.advance();
+    checkpoint.show(name);
+    add_row(table, scene, checkpoint.once(name, [&] { return grow(scene); }));
+    checkpoint.advance();
   }
   return table.finish();
 }

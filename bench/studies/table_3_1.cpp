@@ -63,15 +63,15 @@ std::string verdict(const RunsOfBlock& runs) {
                      falls ? "falls" : "does NOT always fall");
 }
 
-results::Table compute(bool quick, Units& units) {
+results::Table compute(bool quick, Checkpoint& checkpoint) {
   results::TableBuilder table("table-3.1", "Table 3.1: the work of BDF(2) on the tablecloth against stiffness k and damping d");
   for (const Block& block : blocks()) {
     RunsOfBlock runs;
     for (const int i : {0, 1})
       for (const int j : {0, 1}) {
-        units.show(fmt::format("tablecloth, k = {}, d = {}", block.k[i], block.d[j]));
+        checkpoint.show(fmt::format("tablecloth, k = {}, d = {}", block.k[i], block.d[j]));
         const model::Scene cloth = scene(block.k[i], block.d[j], quick);
-        runs[i][j] = units(fmt::format("{} {} {}", block.name, i, j), [&] { return run_bdf2(cloth); });
+        runs[i][j] = checkpoint.once(fmt::format("{} {} {}", block.name, i, j), [&] { return run_bdf2(cloth); });
         table.row();
         table.text("rows", "rows", "the thesis' parameters, or such that the cloth drapes within the time", block.name);
         table.number("tension", "k", "N/m", "tension modulus", block.k[i]);
@@ -79,7 +79,7 @@ results::Table compute(bool quick, Units& units) {
         table.number("stiffness_to_damping", "h k/d", "1", "what the fixed-point loop's contraction depends on",
                      draping_step * block.k[i] / block.d[j]);
         add_draping(table, cloth, runs[i][j], block.thesis[i][j]);
-        units.advance();
+        checkpoint.advance();
       }
     table.text("verdict", "work", "of the four runs: whether updates and CG iterations do as the thesis says", verdict(runs));
   }
@@ -89,7 +89,7 @@ results::Table compute(bool quick, Units& units) {
 }  // namespace
 
 std::vector<TableJob> table_3_1(bool quick) {
-  return {{static_cast<int>(4 * blocks().size()), [quick](Units& units) { return compute(quick, units); }}};
+  return {{static_cast<int>(4 * blocks().size()), [quick](Checkpoint& checkpoint) { return compute(quick, checkpoint); }}};
 }
 
 }  // namespace drape::bench

@@ -72,16 +72,16 @@ std::vector<results::RunRecord> timed_runs(const Group& group, int count) {
   return runs;
 }
 
-results::Table compute_tablecloth(bool quick, Units& units) {
+results::Table compute_tablecloth(bool quick, Checkpoint& checkpoint) {
   results::TableBuilder table("table-3.2",
                               "Table 3.2: the methods on the tablecloth; the thesis' figures are from a Pentium III");
   for (const TableclothBlock& block : tablecloth_blocks()) {
-    units.show("tablecloth, " + block.name);
+    checkpoint.show("tablecloth, " + block.name);
     const Group group = cells(block, quick);
-    const auto runs = units(block.name, [&] { return timed_runs(group, repetitions(quick)); });
+    const auto runs = checkpoint.once(block.name, [&] { return timed_runs(group, repetitions(quick)); });
     for (std::size_t k = 0; k < group.size(); ++k) {
       add_row(table, block, group[k], runs[k]);
-      units.advance();
+      checkpoint.advance();
     }
   }
   return table.finish();
@@ -92,7 +92,7 @@ results::Table compute_tablecloth(bool quick, Units& units) {
 std::vector<TableJob> table_3_2(bool quick) {
   int parts = 0;
   for (const TableclothBlock& block : tablecloth_blocks()) parts += static_cast<int>(cells(block, quick).size());
-  return {{parts, [quick](Units& units) { return compute_tablecloth(quick, units); }}};
+  return {{parts, [quick](Checkpoint& checkpoint) { return compute_tablecloth(quick, checkpoint); }}};
 }
 
 }  // namespace drape::bench

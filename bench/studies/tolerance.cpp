@@ -145,22 +145,22 @@ void add_row(results::TableBuilder& table, const Controlled& run) {
   table.text("verdict", "verdict", "whether the error is within ten times of the tolerance, to both sides", run.verdict);
 }
 
-results::Table tolerances_on(const Setting& setting, const Methods& methods, ControlledRuns& all, Units& units) {
+results::Table tolerances_on(const Setting& setting, const Methods& methods, ControlledRuns& all, Checkpoint& checkpoint) {
   const model::Scene scene = model::load_scene(setting.scene, setting.overrides);
   results::TableBuilder table("tolerance-" + setting.name, "Error over tolerance on " + scene.name);
-  units.show("reference of " + scene.name);
+  checkpoint.show("reference of " + scene.name);
   References references(SweepOptions().agreement, {}, 1e-10);
   const Measurement measure(setting, scene, references(scene, model::compile(scene)));
-  units.advance();
+  checkpoint.advance();
   for (const Method* const chosen : methods) {
     const Method& method = *chosen;
     for (int digits = 2; digits <= setting.digits; ++digits) {
-      units.show(fmt::format("{} on {}, 1e-{}", method.name, scene.name, digits));
+      checkpoint.show(fmt::format("{} on {}, 1e-{}", method.name, scene.name, digits));
       const double tolerance = std::pow(10.0, -digits);
-      all.push_back(units(fmt::format("{} {}", method.name, digits), [&] { return measure(method, tolerance); }));
+      all.push_back(checkpoint.once(fmt::format("{} {}", method.name, digits), [&] { return measure(method, tolerance); }));
       add_row(table, all.back());
     }
-    units.advance();
+    checkpoint.advance();
   }
   return table.finish();
 }
@@ -205,9 +205,9 @@ std::vector<TableJob> tolerance(bool quick, const Methods& chosen) {
   const Methods methods = all_or(chosen);
   std::vector<TableJob> jobs;
   for (const Setting& setting : settings(quick))
-    jobs.push_back(
-        {1 + static_cast<int>(methods.size()), [=](Units& units) { return tolerances_on(setting, methods, *all, units); }});
-  jobs.push_back({0, [=](Units&) { return summary(*all, methods); }});
+    jobs.push_back({1 + static_cast<int>(methods.size()),
+                    [=](Checkpoint& checkpoint) { return tolerances_on(setting, methods, *all, checkpoint); }});
+  jobs.push_back({0, [=](Checkpoint&) { return summary(*all, methods); }});
   return jobs;
 }
 

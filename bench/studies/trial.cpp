@@ -13,9 +13,9 @@ namespace {
 
 constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 
-/// The methods of a yardstick, the best first. No two share an error: where artificial inertia or damping of one remain,
+/// The methods of a reference, the best first. No two share an error: where artificial inertia or damping of one remain,
 /// it differs from the others.
-std::vector<Conditions> yardsticks(double size, double until) {
+std::vector<Conditions> reference_runs(double size, double until) {
   constexpr double tolerance = 3e-4;
   std::vector<Conditions> all;
   for (const char* name : {"esdirk3", "tr-bdf2"}) {
@@ -44,13 +44,14 @@ RunEnd attempt(const Specimen& specimen, const Conditions& conditions) {
   return run(spec, specimen.cloth, observers, {.evaluations = conditions.budget});
 }
 
-Yardstick::Yardstick(const Specimen& specimen, double until, double effort)
-    : Yardstick(
+CrossCheckedReference::CrossCheckedReference(const Specimen& specimen, double until, double effort)
+    : CrossCheckedReference(
           specimen, until, [&](const Conditions& conditions) { return attempt(specimen, conditions); }, effort) {}
 
-Yardstick::Yardstick(const Specimen& specimen, double until, const std::function<RunEnd(const Conditions&)>& run, double effort)
+CrossCheckedReference::CrossCheckedReference(const Specimen& specimen, double until,
+                                             const std::function<RunEnd(const Conditions&)>& run, double effort)
     : size_(model::size(specimen.scene)), mass_(specimen.cloth.ode.mass), positions_(not_known), centre_(not_known) {
-  for (Conditions& conditions : yardsticks(size_, until)) {
+  for (Conditions& conditions : reference_runs(size_, until)) {
     conditions.budget = static_cast<std::int64_t>(effort * static_cast<double>(conditions.budget));
     const RunEnd trial = run(conditions);
     if (!trial.succeeded()) continue;
@@ -64,11 +65,11 @@ Yardstick::Yardstick(const Specimen& specimen, double until, const std::function
   }
 }
 
-double Yardstick::centre_distance(const solver::Vectors& x) const {
+double CrossCheckedReference::centre_distance(const solver::Vectors& x) const {
   return reference::centre_of_mass(mass_, x - truth_).norm() / size_;
 }
 
-UncertainError Yardstick::measure(const RunEnd& trial, double bound) const {
+UncertainError CrossCheckedReference::measure(const RunEnd& trial, double bound) const {
   constexpr double telling = 0.25;  // part of the bound
   if (!trial.succeeded() || !(centre_ <= telling * bound)) return {};
   if (positions_ <= telling * bound) return {reference::rms_distance(trial.state.x, truth_) / size_, positions_};

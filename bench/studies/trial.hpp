@@ -51,15 +51,16 @@ std::string reason(const RunEnd& end);
 
 /// The end of a specimen as two different methods find it, and how far they differ: the first two that succeed of ESDIRK3 and
 /// TR-BDF2 with controlled errors, velocity Verlet, the midpoint rule and SBDF(2) with many steps.
-class Yardstick {
+class CrossCheckedReference {
  public:
   /// `effort`: part of what the methods may usually cost.
-  Yardstick(const Specimen& specimen, double until, double effort = 1);
+  CrossCheckedReference(const Specimen& specimen, double until, double effort = 1);
 
   /// The same for a specimen that `run` takes to its end as it is told.
-  Yardstick(const Specimen& specimen, double until, const std::function<RunEnd(const Conditions&)>& run, double effort = 1);
+  CrossCheckedReference(const Specimen& specimen, double until, const std::function<RunEnd(const Conditions&)>& run,
+                        double effort = 1);
 
-  /// Error of a trial over the size of the scene, with what the yardstick itself is uncertain by: root mean square of
+  /// Error of a trial over the size of the scene, with what the reference itself is uncertain by: root mean square of
   /// positions, or, where that cannot be told from `bound`, the distance of the centres of mass. NaN if that cannot either.
   UncertainError measure(const RunEnd& trial, double bound) const;
 

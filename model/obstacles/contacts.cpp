@@ -6,7 +6,7 @@
 namespace drape::model {
 
 Contacts::Contacts(std::span<const ObstacleRule> obstacles, const ContactRule& rule, double gravity, int particles,
-                   solver::Work& work)
+                   solver::Counters& work)
     : obstacles_(obstacles.begin(), obstacles.end()),
       distance_(rule.distance),
       relaxation_(rule.relaxation),

@@ -43,7 +43,8 @@ class Contacts {
  public:
   /// Of so many particles under this acceleration [m/s²]. Throws std::invalid_argument if the mesh of an obstacle cannot be
   /// read.
-  Contacts(std::span<const ObstacleRule> obstacles, const ContactRule& rule, double gravity, int particles, solver::Work& work);
+  Contacts(std::span<const ObstacleRule> obstacles, const ContactRule& rule, double gravity, int particles,
+           solver::Counters& work);
 
   /// Appends the contacts, ordered by particle.
   void find(double t, double h, const solver::State& y, std::vector<solver::Contact>& found);

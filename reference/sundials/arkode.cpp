@@ -47,7 +47,7 @@ class Arkode {
     return state(y_.get());
   }
 
-  void count_work(solver::Work& work) const {
+  void count_work(solver::Counters& work) const {
     add_counts({{ARKStepGetNumSteps, "arkode/steps", "steps of ARKODE"},
                 {ARKStepGetNumLinSolvSetups, "arkode/factorisations", "factorisations of the Newton matrix"}},
                memory_.get(), work);

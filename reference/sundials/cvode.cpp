@@ -24,7 +24,7 @@ class Cvode {
     return state(y_.get());
   }
 
-  void count_work(solver::Work& work) const {
+  void count_work(solver::Counters& work) const {
     add_counts(
         {{CVodeGetNumSteps, "cvode/steps", "steps of CVODE"},
          {CVodeGetNumLinSolvSetups, "cvode/factorisations", "factorisations of the Newton matrix"},

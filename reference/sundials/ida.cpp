@@ -199,7 +199,7 @@ class Ida {
 
   const StateVector& initial() { return content(y_.get()); }
 
-  void count_work(solver::Work& work) const {
+  void count_work(solver::Counters& work) const {
     add_counts({{IDAGetNumSteps, "ida/steps", "steps of IDA"},
                 {IDAGetNumLinSolvSetups, "ida/factorisations", "factorisations of the Newton matrix"}},
                memory_.get(), work);

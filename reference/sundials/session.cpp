@@ -32,7 +32,7 @@ void Session::on_error(int code, const char*, const char*, char* message, void* 
   if (code < 0 && reason.empty()) reason = message;  // what a callback said is nearer to the cause
 }
 
-void add_counts(std::initializer_list<SolverCount> counts, void* memory, solver::Work& work) {
+void add_counts(std::initializer_list<SolverCount> counts, void* memory, solver::Counters& work) {
   for (const auto& [get, name, description] : counts) {
     long count = 0;
     get(memory, &count);

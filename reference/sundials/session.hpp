@@ -95,6 +95,6 @@ struct SolverCount {
   const char* name;
   const char* description;
 };
-void add_counts(std::initializer_list<SolverCount> counts, void* memory, solver::Work& work);
+void add_counts(std::initializer_list<SolverCount> counts, void* memory, solver::Counters& work);
 
 }  // namespace drape::reference::sundials_tools

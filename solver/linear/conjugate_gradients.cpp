@@ -7,7 +7,7 @@
 
 namespace drape::solver {
 
-ConjugateGradients::ConjugateGradients(std::unique_ptr<Preconditioner> preconditioner, int max_iterations, Work& work)
+ConjugateGradients::ConjugateGradients(std::unique_ptr<Preconditioner> preconditioner, int max_iterations, Counters& work)
     : preconditioner_(std::move(preconditioner)), max_iterations_(max_iterations), work_(work) {}
 
 void ConjugateGradients::analyze(const SparseMatrix& A) {
@@ -16,10 +16,10 @@ void ConjugateGradients::analyze(const SparseMatrix& A) {
 }
 
 Outcome ConjugateGradients::factor(const SparseMatrix& A) {
-  ++work_.factorizations;
+  ++work_.factorisations;
   const Outcome outcome = preconditioner_->factor(A);
   star_ = preconditioner_->exact() ? std::nullopt : five_point(A);  // an exact factor needs no products
-  ++work_.factorizations_of(preconditioner_->name());
+  ++work_.factorisations_of(preconditioner_->name());
   return outcome;
 }
 

@@ -19,7 +19,7 @@ struct LinearResult {
 /// Preconditioned conjugate gradients for A d = r, all three coordinates as one system [Etzmuß 2002, 3.4.2].
 class ConjugateGradients {
  public:
-  ConjugateGradients(std::unique_ptr<Preconditioner> preconditioner, int max_iterations, Work& work);
+  ConjugateGradients(std::unique_ptr<Preconditioner> preconditioner, int max_iterations, Counters& work);
 
   /// Prepares for a pattern; allocates all that later calls need.
   void analyze(const SparseMatrix& A);
@@ -46,7 +46,7 @@ class ConjugateGradients {
   int max_iterations_;
   std::optional<FivePoint> star_;  ///< the matrix that was factored last, if it is one of a grid
   Vectors z_, p_, q_;
-  LinearWork work_;
+  LinearCounters work_;
 };
 
 }  // namespace drape::solver

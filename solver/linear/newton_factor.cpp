@@ -48,12 +48,12 @@ class NewtonFactor::Factor {
   cholmod_dense* work_e_ = nullptr;
 };
 
-NewtonFactor::NewtonFactor(Work& work)
-    : factorizations_(work.counter("newton_factorizations", "complete factorizations of a Newton matrix")) {}
+NewtonFactor::NewtonFactor(Counters& work)
+    : factorisations_(work.counter("newton_factorisations", "complete factorisations of a Newton matrix")) {}
 NewtonFactor::~NewtonFactor() = default;
 
 Outcome NewtonFactor::factor(const SparseMatrix& J) {
-  ++factorizations_;
+  ++factorisations_;
   if (!factor_) factor_ = std::make_unique<Factor>(J);
   return factor_->renew(J);
 }

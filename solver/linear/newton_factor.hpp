@@ -12,7 +12,7 @@ namespace drape::solver {
 class NewtonFactor {
  public:
   /// Registers its counter.
-  explicit NewtonFactor(Work& work);
+  explicit NewtonFactor(Counters& work);
   ~NewtonFactor();
 
   /// J: the upper triangle, 3N × 3N, with the pattern of the first call.
@@ -25,7 +25,7 @@ class NewtonFactor {
   class Factor;
 
   std::unique_ptr<Factor> factor_;
-  std::int64_t& factorizations_;
+  std::int64_t& factorisations_;
 };
 
 }  // namespace drape::solver

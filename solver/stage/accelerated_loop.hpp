@@ -85,7 +85,7 @@ class AcceleratedLoop {
   int newton_stages_ = 0;  ///< still to be solved with Newton's matrix
   int next_stay_ = 4;
   double mean_cost_ = 0;  ///< of a stage with Newton's matrix, in updates with A
-  LinearWork work_;
+  LinearCounters work_;
   std::int64_t& escalations_;
 };
 

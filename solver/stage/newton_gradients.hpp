@@ -37,7 +37,7 @@ class NewtonGradients {
   std::vector<Eigen::Matrix3d> blocks_;  ///< inverses of those on the diagonal of J
   Eigen::Array<double, 5, 1> falls_;     ///< of the squared error of d in the norm of J, over the last iterations
   Vectors r_, z_, p_, q_;
-  LinearWork work_;
+  LinearCounters work_;
 };
 
 }  // namespace drape::solver

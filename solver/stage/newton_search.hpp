@@ -27,7 +27,7 @@ class NewtonSearch {
   const Options& options_;
   StageSystem& system_;
   Vectors from_, d_;
-  LinearWork work_;
+  LinearCounters work_;
   std::int64_t& stages_;
 };
 

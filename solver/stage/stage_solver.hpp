@@ -38,7 +38,7 @@ class StageSolver {
   const Options options_;
   StageSystem system_;
   std::unique_ptr<AcceleratedLoop> accelerated_;  ///< if the options ask for it
-  LinearWork work_;
+  LinearCounters work_;
 };
 
 }  // namespace drape::solver

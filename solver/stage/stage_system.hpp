@@ -88,7 +88,7 @@ class StageSystem {
   Eigen::ArrayXd momentum_, spring_;           // mass and diagonal of K, each thrice a particle, as coordinates lie in memory
   double gamma_ = 0;
   Vectors r_, d_, q_;
-  LinearWork work_;
+  LinearCounters work_;
 };
 
 }  // namespace drape::solver

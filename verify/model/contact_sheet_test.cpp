@@ -122,7 +122,7 @@ TEST(FilteredConjugateGradients, SolveTheConstrainedSystem) {
     P.block<3, 3>(3 * i, 3 * i) = free;
   }
   for (const solver::LinearSolver& kind : solver::linear_solvers()) {
-    solver::Work work;
+    solver::Counters work;
     solver::ConjugateGradients cg(kind.make(), 1000, work);
     cg.analyze(A);
     ASSERT_EQ(cg.factor(A), Outcome::success);
@@ -144,7 +144,7 @@ TEST(NoObstacle, NoDetectionAndNoMemory) {
   run(trial, "bdf2", 0.01);
   EXPECT_EQ(trial.cloth.contacts, nullptr);
   EXPECT_FALSE(trial.cloth.ode.contacts);
-  for (const solver::Work::Kind& kind : trial.cloth.ode.work->kinds())
+  for (const solver::Counters::Kind& kind : trial.cloth.ode.work->kinds())
     if (kind.name == "obstacle_queries" || kind.name == "constrained_particles" || kind.name == "contact_changes") {
       EXPECT_EQ(kind.count, 0) << kind.name;
     }

@@ -10,7 +10,7 @@
 #include "model/scene_file/scene_file.hpp"
 #include "reference/reference.hpp"
 #include "reference/sundials/arkode.hpp"
-#include "reference/sundials/families.hpp"
+#include "reference/sundials/peer_solvers.hpp"
 #include "verify/support/small_problems.hpp"
 
 namespace drape::verify::peers_test {
@@ -32,12 +32,12 @@ struct Case {
 
 std::vector<Case> cases() {
   std::vector<Case> all;
-  for (const reference::Family& family : reference::families())
+  for (const reference::PeerSolver& solver : reference::peer_solvers())
     for (const NewtonSolve& newton : reference::newton_solves()) {
-      if (!family.implicit) continue;
+      if (!solver.implicit) continue;
       const bool constant = newton.matrix == NewtonSolve::Matrix::constant;
-      if (family.name == "arkode-imex" && newton.reduced() && !(constant && !newton.gmres)) continue;
-      all.push_back({std::string(family.name), std::string(newton.name)});
+      if (solver.name == "arkode-imex" && newton.reduced() && !(constant && !newton.gmres)) continue;
+      all.push_back({std::string(solver.name), std::string(newton.name)});
     }
   return all;
 }
@@ -45,11 +45,11 @@ std::vector<Case> cases() {
 class Peer : public testing::TestWithParam<Case> {
  protected:
   static reference::Trajectory solve(const model::Scene& scene, const std::string& family,
-                                     const reference::SolveOptions& options, solver::Work** work = nullptr) {
+                                     const reference::SolveOptions& options, solver::Counters** work = nullptr) {
     static model::Cloth cloth;
     cloth = model::compile(scene);
     if (work != nullptr) *work = cloth.ode.work.get();
-    return reference::family(family).solve(cloth.ode, cloth.start, 0, std::vector{scene.end}, options);
+    return reference::peer_solver(family).solve(cloth.ode, cloth.start, 0, std::vector{scene.end}, options);
   }
 };
 INSTANTIATE_TEST_SUITE_P(, Peer, testing::ValuesIn(cases()), [](const auto& test) {
@@ -73,7 +73,7 @@ TEST_P(Peer, ReproducesTheReference) {
 
 TEST_P(Peer, UsesTheLinearSolverItIsToldTo) {
   const auto& newton = reference::newton_solve(GetParam().newton);
-  solver::Work* work = nullptr;
+  solver::Counters* work = nullptr;
   const model::Scene scene = sheet("hung-corners");
   solve(scene, GetParam().family, {.rtol = 1e-4, .size = model::size(scene), .newton = &newton}, &work);
   const std::string prefix = GetParam().family.substr(0, GetParam().family.find('-'));
@@ -87,7 +87,7 @@ TEST_P(Peer, IsNotSlowedDownByAFactorThatIsNearlyExact) {
   if (newton.matrix == NewtonSolve::Matrix::constant && GetParam().family != "arkode-imex") return;
   const model::Scene scene = sheet("hung-corners");
   const auto evaluations = [&](const NewtonSolve& by) {
-    solver::Work* work = nullptr;
+    solver::Counters* work = nullptr;
     solve(scene, GetParam().family, {.rtol = 1e-6, .size = model::size(scene), .newton = &by}, &work);
     const std::string prefix = GetParam().family.substr(0, GetParam().family.find('-'));
     return work->count(prefix + "/steps") + work->count(prefix + "/factorisations");
@@ -100,8 +100,8 @@ TEST(Peers, TakeMoreStepsWithALowerOrder) {
   const model::Scene scene = sheet("hung-corners");
   const auto steps = [&](const std::string& family, int order) {
     const model::Cloth cloth = model::compile(scene);
-    reference::family(family).solve(cloth.ode, cloth.start, 0, std::vector{scene.end},
-                                    {.rtol = 1e-9, .size = model::size(scene), .max_order = order});
+    reference::peer_solver(family).solve(cloth.ode, cloth.start, 0, std::vector{scene.end},
+                                         {.rtol = 1e-9, .size = model::size(scene), .max_order = order});
     return cloth.ode.work->count(family.substr(0, family.find('-')) + "/steps");
   };
   for (const char* family : {"cvode-bdf", "ida-bdf"}) EXPECT_GT(steps(family, 2), 1.5 * steps(family, 5)) << family;
@@ -110,7 +110,7 @@ TEST(Peers, TakeMoreStepsWithALowerOrder) {
 
 /// A sheet with the work that a tuned CVODE takes for it, and its error.
 struct Tuned {
-  std::int64_t steps, factorizations;
+  std::int64_t steps, factorisations;
   double error;
 };
 
@@ -118,7 +118,7 @@ Tuned tuned(const reference::Tuning& tuning) {
   const model::Scene scene = sheet("hung-corners");
   const double size = model::size(scene);
   const auto solve = [&](const model::Cloth& cloth, double rtol, const reference::Tuning& with) {
-    return reference::family("cvode-bdf")
+    return reference::peer_solver("cvode-bdf")
         .solve(cloth.ode, cloth.start, 0, std::vector{scene.end},
                {.rtol = rtol, .size = size, .newton = &reference::newton_solve("constant-gmres"), .tuning = with})
         .states[0]
@@ -126,7 +126,7 @@ Tuned tuned(const reference::Tuning& tuning) {
   };
   const model::Cloth cloth = model::compile(scene), exact = model::compile(scene);
   const auto x = solve(cloth, 1e-5, tuning), truth = solve(exact, 1e-10, {});
-  return {cloth.ode.work->count("cvode/steps"), cloth.ode.work->count("factorizations"),
+  return {cloth.ode.work->count("cvode/steps"), cloth.ode.work->count("factorisations"),
           reference::rms_distance(x, truth) / size};
 }
 
@@ -139,7 +139,7 @@ TEST(Tuning, OfVelocitiesSavesStepsAndCostsAccuracy) {
 
 TEST(Tuning, KeepsTheFactorOfTheConstantMatrix) {
   const Tuned plain = tuned({}), kept = tuned({.kept_factor = 0.3});
-  EXPECT_LT(kept.factorizations, plain.factorizations);
+  EXPECT_LT(kept.factorisations, plain.factorisations);
   EXPECT_LT(kept.error, 1e-3);
 }
 

@@ -356,7 +356,7 @@ TEST(ReadRuns, RefusesForeignHdf5AndOtherVersions) {
     return complaint([&] { read_runs(path); });
   };
   const hdf5::Handle file = hdf5::create_in_memory();
-  EXPECT_THAT(publish_image(folder / "foreign.h5", file), HasSubstr("foreign.h5: schema_version: can't locate attribute"));
+  EXPECT_THAT(publish_image(folder / "external.h5", file), HasSubstr("external.h5: schema_version: can't locate attribute"));
   hdf5::write_integer(file, "schema_version", schema_version + 1);
   EXPECT_THAT(publish_image(folder / "newer.h5", file), HasSubstr("schema_version is 5, this program reads 4"));
 }

@@ -117,7 +117,7 @@ TEST(Auto, EscalatesOnAStiffSheetOnly) {
   EXPECT_EQ(run(soft, "bdf2", {}, 0.01).result.outcome, Outcome::success);
   EXPECT_EQ(soft.ode.work->count("escalations"), 0);
   EXPECT_EQ(soft.ode.work->count("newton_matrices"), 0);
-  EXPECT_EQ(soft.ode.work->count("newton_factorizations"), 0);
+  EXPECT_EQ(soft.ode.work->count("newton_factorisations"), 0);
   EXPECT_EQ(run(hard, "bdf2", {}, 0.01).result.outcome, Outcome::success);
   EXPECT_GE(hard.ode.work->count("escalations"), 1);
   EXPECT_GE(hard.ode.work->count("newton_matrices"), 1);
@@ -140,7 +140,7 @@ TEST(NewtonSearch, SolvesWhatNothingElseDoesWithoutCuttingSteps) {
     ASSERT_EQ(ours.result.outcome, Outcome::success) << method << ": " << ours.result.message;
     EXPECT_EQ(ours.result.rejected_steps, 0) << method;
     EXPECT_GE(cloth.ode.work->count("searched_stages"), 10) << method;
-    EXPECT_LE(cloth.ode.work->count("newton_factorizations"), 500) << method;
+    EXPECT_LE(cloth.ode.work->count("newton_factorisations"), 500) << method;
   }
 }
 
@@ -167,8 +167,8 @@ TEST(Newton, KeepsItsFactorWhileItConverges) {
   const model::Cloth cloth = sheet();
   const Ended lagged = run(cloth, "bdf2", stage("newton"), 0.005);
   EXPECT_EQ(lagged.result.outcome, Outcome::success);
-  EXPECT_LE(5 * cloth.ode.work->count("newton_factorizations"), lagged.result.steps);
-  EXPECT_GE(cloth.ode.work->count("newton_factorizations"), 1);
+  EXPECT_LE(5 * cloth.ode.work->count("newton_factorisations"), lagged.result.steps);
+  EXPECT_GE(cloth.ode.work->count("newton_factorisations"), 1);
 }
 
 TEST(Newton, LeavesTheConstantMatrixAlone) {
@@ -176,7 +176,7 @@ TEST(Newton, LeavesTheConstantMatrixAlone) {
     const model::Cloth cloth = sheet();
     EXPECT_EQ(run(cloth, "bdf2", stage(kind), 0.005).result.outcome, Outcome::success);
     EXPECT_EQ(cloth.ode.work->count("matrix_builds"), 0) << kind;
-    EXPECT_EQ(cloth.ode.work->count("factorizations"), 0) << kind;
+    EXPECT_EQ(cloth.ode.work->count("factorisations"), 0) << kind;
   }
 }
 

@@ -15,15 +15,15 @@ namespace {
 using namespace small_matrices;
 using namespace small_problems;
 using solver::ConjugateGradients;
+using solver::Counters;
 using solver::Filter;
 using solver::LinearResult;
 using solver::LinearSolver;
 using solver::Outcome;
-using solver::Work;
 
 /// Conjugate gradients with a factor of `factored`, which need not be the A of the system.
 struct Solver {
-  Work work;
+  Counters work;
   Filter filter;
   ConjugateGradients cg;
 

@@ -94,12 +94,12 @@ TEST_P(InexactNewtonWith, SolvesStiffUndampedStagesAsAFactorDoes) {
   const Vectors exact = run(factored, "cholesky"), ours = run(iterated, GetParam().c_str());
   EXPECT_LE(largest(ours - exact), 1e-6);
   const auto count = [&](const char* kind) { return iterated.ode.work->count(kind); };
-  EXPECT_EQ(count("newton_factorizations"), 0);
+  EXPECT_EQ(count("newton_factorisations"), 0);
   EXPECT_LE(count("newton_matrices"), 1.5 * factored.ode.work->count("newton_matrices"));
   EXPECT_GE(count("cg_iterations"), 5 * count("updates"));
   EXPECT_LE(count("cg_iterations"), 150 * count("updates"));
   EXPECT_EQ(factored.ode.work->count("cg_iterations"), 0);
-  EXPECT_EQ(factored.ode.work->count("newton_factorizations"), factored.ode.work->count("newton_matrices"));
+  EXPECT_EQ(factored.ode.work->count("newton_factorisations"), factored.ode.work->count("newton_matrices"));
 }
 
 TEST(InexactNewton, DoesNotPassOnWhatDidNotConverge) {
@@ -114,7 +114,7 @@ TEST(InexactNewton, TakesThePlaceOfTheFactorOnLargeSheets) {
     const model::Cloth cloth = model::compile(model::load_scene("hung-corners", size));
     Integrator integrator(cloth.ode, solver::method("implicit-euler"), newton("auto"), cloth.start);
     EXPECT_EQ(integrator.step(1e-3).outcome, Outcome::success);
-    EXPECT_EQ(cloth.ode.work->count("newton_factorizations") > 0, !large);
+    EXPECT_EQ(cloth.ode.work->count("newton_factorisations") > 0, !large);
     EXPECT_EQ(cloth.ode.work->count("cg_iterations") > 0, large);
   }
 }

@@ -43,7 +43,7 @@ TEST_P(IntegratorWith, TakesExactlyTheStepsThatDivideTheTime) {
     EXPECT_EQ(run.rejected_steps, 0);
     EXPECT_NEAR(integrator.time(), t_end, 1e-12);
     EXPECT_LE(p.ode.work->count("matrix_builds"), 2) << n << ": one, and one for the start";
-    EXPECT_EQ(p.ode.work->count("matrix_builds"), p.ode.work->count("factorizations")) << n;
+    EXPECT_EQ(p.ode.work->count("matrix_builds"), p.ode.work->count("factorisations")) << n;
   }
 }
 
@@ -157,7 +157,7 @@ TEST_P(IntegratorWith, BuildsAndKeepsOnlyWhatTheMethodNeeds) {
   EXPECT_EQ(count("history_states"), method.two_step ? 1 : 0);
   const bool solves = count("updates") > 0;  // by the stage solver: methods may have systems of their own
   EXPECT_TRUE(method.implicit() || !solves);
-  for (const char* kind : {"matrix_builds", "factorizations", "matrix_products", "linear_bytes"})
+  for (const char* kind : {"matrix_builds", "factorisations", "matrix_products", "linear_bytes"})
     EXPECT_EQ(count(kind) > 0, solves) << kind;
   EXPECT_EQ(count("substeps") > 0, method.sub_steps);
 }

@@ -111,7 +111,7 @@ TEST(Multigrid, IsSymmetricPositiveDefinite) {
 }
 
 int iterations(const SparseMatrix& A) {
-  solver::Work work;
+  solver::Counters work;
   solver::ConjugateGradients cg(solver::make_multigrid(), 100, work);
   cg.analyze(A);
   EXPECT_EQ(cg.factor(A), Outcome::success);
@@ -214,7 +214,7 @@ TEST(AutomaticChoice, GoesBySizeStiffnessAndPattern) {
 }
 
 TEST(AutomaticChoice, IsCountedAndMadeAnewForNewValues) {
-  solver::Work work;
+  solver::Counters work;
   solver::ConjugateGradients cg(solver::make_automatic(), 100, work);
   const SparseMatrix stiff = pinned_sheet(160, 160, 1e3, {}), soft = diagonal(1e6 * Eigen::VectorXd::Ones(160 * 160)) + stiff;
   cg.analyze(stiff);

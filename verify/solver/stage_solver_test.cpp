@@ -180,7 +180,7 @@ TEST(StageSolver, DoesNotTakeAMatrixThatBrokeDownForPrepared) {
   StageSolver solver(c.problem.ode, c.options);
   EXPECT_EQ(solver.solve(c.stage(), c.y).outcome, Outcome::breakdown);
   EXPECT_EQ(solver.solve(c.stage(), c.y).outcome, Outcome::breakdown);
-  EXPECT_EQ(c.count("factorizations"), 2);
+  EXPECT_EQ(c.count("factorisations"), 2);
 }
 
 TEST(StageSolver, SeesForcesThatAreNotFinite) {
@@ -199,11 +199,11 @@ TEST(StageSolver, BuildsItsMatrixOnceForASize) {
   for (int k = 0; k < 5; ++k) solver.solve(c.stage(), c.y);
   for (int k = 0; k < 5; ++k) solver.solve_linear(c.stage(), c.ax, c.y);
   EXPECT_EQ(c.count("matrix_builds"), 1);
-  EXPECT_EQ(c.count("factorizations"), 1);
+  EXPECT_EQ(c.count("factorisations"), 1);
   solver.solve({gamma / 2, t, c.ax, c.av}, c.y);
   solver.solve(c.stage(), c.y);
   EXPECT_EQ(c.count("matrix_builds"), 3);
-  EXPECT_EQ(c.count("factorizations"), 3);
+  EXPECT_EQ(c.count("factorisations"), 3);
 }
 
 TEST(StageSolver, HasNoEntriesForParticlesThatArePinnedInAllDirections) {

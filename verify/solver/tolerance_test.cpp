@@ -120,7 +120,7 @@ TEST(Tolerance, OfAGlobalErrorCostsOtherRunsNothing) {
 TEST(Tolerance, KeepsTheStepsOfPilotsApart) {
   const Sheet sheet(settings[0]);
   const Motion run = sheet.run("bdf3", sheet.control(1e-3, true));
-  const solver::Work& work = *sheet.cloth.ode.work;
+  const solver::Counters& work = *sheet.cloth.ode.work;
   EXPECT_EQ(work.count("steps"), run.result.steps);
   EXPECT_EQ(work.count("rejected_steps"), run.result.rejected_steps);
   EXPECT_GE(work.count("starting_steps"), 2);

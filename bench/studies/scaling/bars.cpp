@@ -54,21 +54,21 @@ void add_bar(results::TableBuilder& table, const std::string& what, const Bar& b
 
 }  // namespace
 
-results::Table bars(bool quick, Units& units) {
+results::Table bars(bool quick, Checkpoint& checkpoint) {
   const int large = sizes(quick).back(), small = quick ? 20 : 100;
   results::TableBuilder table("scaling-bars", "What was asked for, one thread");
-  units.show("bars: a step");
+  checkpoint.show("bars: a step");
   add_bar(table, fmt::format("BDF(2) step: time per particle, {0} x {0} over {1} x {1}", large, small), {3, false},
-          units("step", [&] { return growth(large, small); }));
-  units.advance();
-  units.show("bars: conjugate gradients");
+          checkpoint.once("step", [&] { return growth(large, small); }));
+  checkpoint.advance();
+  checkpoint.show("bars: conjugate gradients");
   add_bar(table, fmt::format("fused CG and stencil: bandwidth over the triad's, {0} x {0}", large), {0.6, true},
-          units("iteration", [&] { return bandwidth_of_bare_iterations(large, 31); }));
-  units.advance();
-  units.show("bars: forces");
+          checkpoint.once("iteration", [&] { return bandwidth_of_bare_iterations(large, 31); }));
+  checkpoint.advance();
+  checkpoint.show("bars: forces");
   add_bar(table, fmt::format("forces: ns per particle, {0} x {0}", large), {8, false},
-          units("forces", [&] { return force_times(large); }));
-  units.advance();
+          checkpoint.once("forces", [&] { return force_times(large); }));
+  checkpoint.advance();
   return table.finish();
 }
 

@@ -77,7 +77,7 @@ class BareIteration {
 /// Some iterations with a preconditioner, or a substitution.
 class Iterations {
  public:
-  Iterations(const SparseMatrix& A, solver::Work& work, const std::string& linear_solver)
+  Iterations(const SparseMatrix& A, solver::Counters& work, const std::string& linear_solver)
       : A_(A),
         work_(work),
         cg_(solver::linear_solver(linear_solver).make(), 5, work),
@@ -98,7 +98,7 @@ class Iterations {
 
  private:
   const SparseMatrix& A_;
-  solver::Work& work_;
+  solver::Counters& work_;
   solver::ConjugateGradients cg_;
   Vectors b_, r_, d_;
 };
@@ -157,13 +157,13 @@ void add_iterations(results::TableBuilder& table, int n) {
 
 }  // namespace
 
-results::Table iterations(bool quick, Units& units) {
+results::Table iterations(bool quick, Checkpoint& checkpoint) {
   results::TableBuilder table("scaling-iterations",
                               "An iteration of conjugate gradients, by size, in turns with the triad a = b + 3 c");
   for (const int n : sizes(quick)) {
-    units.show(fmt::format("{} x {}, conjugate gradients", n, n));
-    units.rows(table, std::to_string(n), [&](results::TableBuilder& rows) { add_iterations(rows, n); });
-    units.advance();
+    checkpoint.show(fmt::format("{} x {}, conjugate gradients", n, n));
+    checkpoint.rows(table, std::to_string(n), [&](results::TableBuilder& rows) { add_iterations(rows, n); });
+    checkpoint.advance();
   }
   return table.finish();
 }

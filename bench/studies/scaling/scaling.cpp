@@ -119,19 +119,20 @@ void add_steps(results::TableBuilder& table, int n, int threads, const std::stri
 
 }  // namespace
 
-results::Table steps(bool quick, Units& units) {
+results::Table steps(bool quick, Checkpoint& checkpoint) {
   results::TableBuilder table("scaling",
                               fmt::format("A step of {:g} s of the sheet hung by its edge, by size; all solvers: auto", step));
   std::vector<std::vector<double>> times(methods.size());
   for (const int n : sizes(quick))
     for (std::size_t k = 0; k < methods.size(); ++k) {
-      units.show(fmt::format("{} x {}, {}", n, n, methods[k]));
+      checkpoint.show(fmt::format("{} x {}, {}", n, n, methods[k]));
       with_threads(n, [&](int threads) {
-        const StepCost cost = units(fmt::format("{} {} {}", n, methods[k], threads), [&] { return time_steps(n, methods[k]); });
+        const StepCost cost =
+            checkpoint.once(fmt::format("{} {} {}", n, methods[k], threads), [&] { return time_steps(n, methods[k]); });
         add_steps(table, n, threads, methods[k], cost);
         if (threads == 1) times[k].push_back(cost.seconds);
       });
-      units.advance();
+      checkpoint.advance();
     }
   for (std::size_t k = 0; k < methods.size(); ++k) {
     table.row();
@@ -145,9 +146,9 @@ results::Table steps(bool quick, Units& units) {
 
 std::vector<TableJob> scaling(bool quick) {
   const int count = static_cast<int>(scaling_study::sizes(quick).size());
-  return {{2 * count, [quick](Units& units) { return scaling_study::steps(quick, units); }},
-          {count, [quick](Units& units) { return scaling_study::iterations(quick, units); }},
-          {3, [quick](Units& units) { return scaling_study::bars(quick, units); }}};
+  return {{2 * count, [quick](Checkpoint& checkpoint) { return scaling_study::steps(quick, checkpoint); }},
+          {count, [quick](Checkpoint& checkpoint) { return scaling_study::iterations(quick, checkpoint); }},
+          {3, [quick](Checkpoint& checkpoint) { return scaling_study::bars(quick, checkpoint); }}};
 }
 
 }  // namespace drape::bench

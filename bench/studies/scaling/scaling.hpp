@@ -53,9 +53,9 @@ class Run {
 };
 
 /// A table each: a step by size; an iteration of conjugate gradients by size; and whether the bars are met.
-results::Table steps(bool quick, Units& units);
-results::Table iterations(bool quick, Units& units);
-results::Table bars(bool quick, Units& units);
+results::Table steps(bool quick, Checkpoint& checkpoint);
+results::Table iterations(bool quick, Checkpoint& checkpoint);
+results::Table bars(bool quick, Checkpoint& checkpoint);
 
 /// The bandwidth of an iteration of conjugate gradients without a preconditioner over that of the triad, in so many turns.
 std::vector<double> bandwidth_of_bare_iterations(int n, int turns);

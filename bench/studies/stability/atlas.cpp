@@ -153,33 +153,33 @@ void add_cell(results::TableBuilder& table, const AtlasCell& cell, bool shown) {
 std::vector<Judged> try_rows(const std::vector<Row>& rows, const Sheet& sheet, double nu, double ratio) {
   const double l = 0.8 / (sheet.n - 1), h = sheet.step, k = nu * l * l / (h * h);
   const Specimen specimen = hung_by_corners(sheet.n, k, h * k / ratio);
-  const Yardstick yardstick(specimen, horizon, sheet.effort);
+  const CrossCheckedReference reference(specimen, horizon, sheet.effort);
   std::vector<Judged> runs;
   for (const Row& row : rows)
     if (tries(sheet, row))
       runs.push_back(judged(attempt(specimen, {row.method, row.options, h, horizon,
                                                static_cast<std::int64_t>(sheet.effort * static_cast<double>(row.budget))}),
-                            yardstick));
+                            reference));
   return runs;
 }
 
 /// All runs: for the file.
-results::Table explore(Atlas& atlas, Units& units) {
+results::Table explore(Atlas& atlas, Checkpoint& checkpoint) {
   results::TableBuilder table("stability-atlas", "Every run of the atlas");
   Predictions predict;
   for (const Sheet& sheet : atlas.sheets)
     for (const double nu : sheet.stiffnesses)
       for (const double ratio : sheet.ratios) {
-        units.show(fmt::format("{0} x {0}, h = {1}, ν = {2:g}, h k/d = {3:g}", sheet.n, sheet.step, nu, ratio));
-        const auto runs = units(fmt::format("{} {} {} {}", sheet.n, sheet.step, nu, ratio),
-                                [&] { return try_rows(atlas.rows, sheet, nu, ratio); });
+        checkpoint.show(fmt::format("{0} x {0}, h = {1}, ν = {2:g}, h k/d = {3:g}", sheet.n, sheet.step, nu, ratio));
+        const auto runs = checkpoint.once(fmt::format("{} {} {} {}", sheet.n, sheet.step, nu, ratio),
+                                          [&] { return try_rows(atlas.rows, sheet, nu, ratio); });
         for (std::size_t k = 0, run = 0; k < atlas.rows.size(); ++k) {
           const Row& row = atlas.rows[k];
           if (!tries(sheet, row)) continue;
           atlas.cells.push_back({&sheet, &row, nu, ratio, predict(row, sheet, nu, ratio), runs[run++]});
           add_cell(table, atlas.cells.back(), false);
         }
-        units.advance();
+        checkpoint.advance();
       }
   return table.finish();
 }
@@ -258,9 +258,9 @@ std::vector<TableJob> stability_atlas(bool quick, const Methods& methods) {
   const auto atlas = std::make_shared<Atlas>(Atlas{sheets(quick), rows(all_or(methods)), {}});
   int cells = 0;
   for (const Sheet& sheet : atlas->sheets) cells += static_cast<int>(sheet.stiffnesses.size() * sheet.ratios.size());
-  std::vector<TableJob> jobs{{cells, [=](Units& units) { return explore(*atlas, units); }}};
+  std::vector<TableJob> jobs{{cells, [=](Checkpoint& checkpoint) { return explore(*atlas, checkpoint); }}};
   for (auto* summarise : {count_verdicts, check_bar, list_surprises})
-    jobs.push_back({0, [=](Units&) { return summarise(*atlas); }});
+    jobs.push_back({0, [=](Checkpoint&) { return summarise(*atlas); }});
   return jobs;
 }
 

@@ -6,9 +6,9 @@
 
 namespace drape::bench {
 
-Judged judged(RunEnd trial, const Yardstick& yardstick) {
+Judged judged(RunEnd trial, const CrossCheckedReference& reference) {
   Judged result{std::move(trial), {}, {}};
-  result.error = yardstick.measure(result.trial, error_bound);
+  result.error = reference.measure(result.trial, error_bound);
   result.verdict = judge(result.trial.result.outcome, result.error, error_bound);
   return result;
 }

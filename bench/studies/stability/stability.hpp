@@ -20,7 +20,7 @@ struct Judged {
 };
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Judged, trial, error, verdict)
 
-Judged judged(RunEnd trial, const Yardstick& yardstick);
+Judged judged(RunEnd trial, const CrossCheckedReference& reference);
 
 /// A square sheet of n × n particles, horizontal, hung by two corners, with the shear modulus k/100.
 Specimen hung_by_corners(int n, double k, double d);
@@ -32,7 +32,7 @@ void add_verdict(results::TableBuilder& table, const Judged& judged, bool shown)
 struct LargestSteps {
   double accurate, stable;
 };
-LargestSteps largest_steps(const Specimen& specimen, const Yardstick& yardstick, const solver::Method& method,
+LargestSteps largest_steps(const Specimen& specimen, const CrossCheckedReference& reference, const solver::Method& method,
                            const solver::Options& options);
 
 /// Their columns in the current row.

@@ -20,8 +20,8 @@ struct Softness {
 /// Finds the fewest equal steps to the horizon with which a method does well.
 class FewestSteps {
  public:
-  FewestSteps(const Specimen& specimen, const Yardstick& yardstick, Conditions conditions)
-      : specimen_(specimen), yardstick_(yardstick), conditions_(std::move(conditions)) {}
+  FewestSteps(const Specimen& specimen, const CrossCheckedReference& reference, Conditions conditions)
+      : specimen_(specimen), reference_(reference), conditions_(std::move(conditions)) {}
 
   /// Where doubling the number first does well, bisected between there and the number before; 0 if none does.
   template <class Good>
@@ -43,13 +43,13 @@ class FewestSteps {
     auto known = known_.find(steps);
     if (known == known_.end()) {
       conditions_.step = horizon / steps;
-      known = known_.emplace(steps, judged(attempt(specimen_, conditions_), yardstick_)).first;
+      known = known_.emplace(steps, judged(attempt(specimen_, conditions_), reference_)).first;
     }
     return known->second;
   }
 
   const Specimen& specimen_;
-  const Yardstick& yardstick_;
+  const CrossCheckedReference& reference_;
   Conditions conditions_;
   std::map<int, Judged> known_;
 };
@@ -61,23 +61,23 @@ bool uncut(const Judged& run) { return run.trial.result.rejected_steps == 0; }
 void add_largest_steps(results::TableBuilder& table, int n, const Softness& softness, const Methods& methods) {
   const auto [k, d] = softness;
   const Specimen specimen = hung_by_corners(n, k, d);
-  const Yardstick yardstick(specimen, horizon);
+  const CrossCheckedReference reference(specimen, horizon);
   for (const solver::Method* method : methods) {
-    const LargestSteps largest = largest_steps(specimen, yardstick, *method, {});
+    const LargestSteps largest = largest_steps(specimen, reference, *method, {});
     table.row();
     table.number("tension", "k", "N/m", "tension modulus", k);
     table.number("damping", "d", "N s/m", "damping, linear", d);
     table.text("method", "method", "time integrator", std::string(method->name));
     add_largest(table, largest);
-    table.number("uncertainty", "±", "1", "how far the two reference methods differ", yardstick.uncertainty());
+    table.number("uncertainty", "±", "1", "how far the two reference methods differ", reference.uncertainty());
   }
 }
 
 }  // namespace
 
-LargestSteps largest_steps(const Specimen& specimen, const Yardstick& yardstick, const solver::Method& method,
+LargestSteps largest_steps(const Specimen& specimen, const CrossCheckedReference& reference, const solver::Method& method,
                            const solver::Options& options) {
-  FewestSteps search(specimen, yardstick, {&method, options, 0, horizon, method.sub_steps ? 100'000 : 4'000});
+  FewestSteps search(specimen, reference, {&method, options, 0, horizon, method.sub_steps ? 100'000 : 4'000});
   const auto step = [](int steps) { return steps > 0 ? horizon / steps : 0; };
   const int accurate = search.fewest([](const Judged& run) { return uncut(run) && run.verdict == Verdict::accurate; });
   return {step(accurate), step(search.fewest([](const Judged& run) { return uncut(run) && run.stable(); }))};
@@ -91,17 +91,17 @@ void add_largest(results::TableBuilder& table, const LargestSteps& largest) {
 TableJob largest_steps(bool quick, const Methods& methods) {
   const std::vector<Softness> sheets =
       quick ? std::vector<Softness>{{1e4, 50}} : std::vector<Softness>{{1e4, 50}, {1e4, 5}, {1e4, 0.5}, {1e6, 5}};
-  return {static_cast<int>(sheets.size()), [=](Units& units) {
+  return {static_cast<int>(sheets.size()), [=](Checkpoint& checkpoint) {
             results::TableBuilder table(
                 "stability-steps",
                 fmt::format("The largest usable step of every method by bisection, at least {:.2g} s, to {} s",
                             horizon / most_parts, horizon));
             for (const Softness& sheet : sheets) {
-              units.show(fmt::format("largest steps, k = {}, d = {}", sheet.k, sheet.d));
-              units.rows(table, fmt::format("{} {}", sheet.k, sheet.d), [&](results::TableBuilder& rows) {
+              checkpoint.show(fmt::format("largest steps, k = {}, d = {}", sheet.k, sheet.d));
+              checkpoint.rows(table, fmt::format("{} {}", sheet.k, sheet.d), [&](results::TableBuilder& rows) {
                 add_largest_steps(rows, quick ? 6 : particles, sheet, all_or(methods));
               });
-              units.advance();
+              checkpoint.advance();
             }
             return table.finish();
           }};

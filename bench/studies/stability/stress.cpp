@@ -97,12 +97,12 @@ RunEnd endure(const Stress& stress, int n, Conditions conditions) {
 
 void add_stress(results::TableBuilder& table, const Stress& stress, int n, const Methods& methods) {
   const auto run = [&](const Conditions& conditions) { return endure(stress, n, conditions); };
-  const Yardstick yardstick(stress.make(n), horizon, run);
+  const CrossCheckedReference reference(stress.make(n), horizon, run);
   for (const solver::Method* method : methods) {
     table.row();
     table.text("case", "case", "what is done to the sheet", stress.name);
     table.text("method", "method", "time integrator", std::string(method->name));
-    add_verdict(table, judged(run({method, {}, stress_step, horizon, method->sub_steps ? 100'000 : 4'000}), yardstick), true);
+    add_verdict(table, judged(run({method, {}, stress_step, horizon, method->sub_steps ? 100'000 : 4'000}), reference), true);
   }
 }
 
@@ -112,13 +112,13 @@ TableJob stress_cases(bool quick, const Methods& methods) {
   const int n = quick ? 6 : 10;
   const bool few = quick && methods.empty();
   const Methods chosen = few ? Methods{&solver::method("bdf2"), &solver::method("verlet")} : all_or(methods);
-  return {static_cast<int>(std::size(stresses)), [=](Units& units) {
+  return {static_cast<int>(std::size(stresses)), [=](Checkpoint& checkpoint) {
             results::TableBuilder table("stability-stress", fmt::format("What no scene should do to a solver, h = 0.01 s{}",
                                                                         few ? "; --quick: bdf2 and verlet only" : ""));
             for (const Stress& stress : stresses) {
-              units.show(stress.name);
-              units.rows(table, stress.name, [&](results::TableBuilder& rows) { add_stress(rows, stress, n, chosen); });
-              units.advance();
+              checkpoint.show(stress.name);
+              checkpoint.rows(table, stress.name, [&](results::TableBuilder& rows) { add_stress(rows, stress, n, chosen); });
+              checkpoint.advance();
             }
             return table.finish();
           }};

@@ -47,7 +47,8 @@ std::vector<solver::State> solve_by_peer(const PeerSetup& setup, double value, d
   reference::SolveOptions options{.rtol = value, .size = size, .max_order = setup.order};
   if (!setup.newton.empty()) options.newton = &reference::newton_solve(setup.newton);
   options.tuning = {.velocity_weight = setup.velocity_weight, .kept_factor = setup.kept_factor, .nonlinear = setup.nonlinear};
-  if (setup.tableau.empty()) return reference::family(setup.package).solve(cloth.ode, cloth.start, 0, times, options).states;
+  if (setup.tableau.empty())
+    return reference::peer_solver(setup.package).solve(cloth.ode, cloth.start, 0, times, options).states;
   options.rtol = setup.stage_tolerance;
   options.tuning.max_iterations = 60;  // far from the solution the constant matrix converges slowly
   options.tuning.step = value;

@@ -1,13 +1,13 @@
 #pragma once
 
 #include "bench/studies/work_precision/candidates.hpp"
-#include "reference/sundials/families.hpp"
+#include "reference/sundials/peer_solvers.hpp"
 
 namespace drape::bench {
 
 /// One way to set SUNDIALS up. It solves the same forces as our methods do, and where it factors, with our factor.
 struct PeerSetup {
-  /// A family of reference/sundials/families.hpp, or "arkode-steps" with a method of reference/tableaux.hpp.
+  /// A family of reference/sundials/peer_solvers.hpp, or "arkode-steps" with a method of reference/tableaux.hpp.
   std::string package;
   std::string newton;  ///< one of reference/newton_solves.hpp; empty if it solves no systems
   int order = 5;

@@ -42,17 +42,17 @@ double seconds(TimeOf time_of) {
 }
 
 /// Of our counters and those of SUNDIALS' packages: each run knows some.
-std::int64_t count(const solver::Work& work, std::initializer_list<std::string_view> names) {
+std::int64_t count(const solver::Counters& work, std::initializer_list<std::string_view> names) {
   std::int64_t sum = 0;
-  for (const solver::Work::Kind& kind : work.kinds())
+  for (const solver::Counters::Kind& kind : work.kinds())
     if (std::ranges::find(names, kind.name) != names.end()) sum += kind.count;
   return sum;
 }
 
-void note_work(const solver::Work& work, Trial& trial) {
+void note_work(const solver::Counters& work, Trial& trial) {
   trial.forces = count(work, {"forces", "explicit_forces"});
   trial.factorisations = count(
-      work, {"newton_factorizations", "factorizations", "cvode/factorisations", "arkode/factorisations", "ida/factorisations"});
+      work, {"newton_factorisations", "factorisations", "cvode/factorisations", "arkode/factorisations", "ida/factorisations"});
   trial.steps = count(work, {"steps", "cvode/steps", "arkode/steps", "ida/steps"});
 }
 
@@ -137,16 +137,17 @@ std::vector<double> asked(const Problem& problem) {
   return all;
 }
 
-std::vector<Trial> try_all(const Problem& problem, const std::vector<Family>& families, const Effort& effort, Units& units) {
+std::vector<Trial> try_all(const Problem& problem, const std::vector<Family>& families, const Effort& effort,
+                           Checkpoint& checkpoint) {
   std::vector<Trial> trials;
   for (const Family& family : families) {
-    units.show(fmt::format("{}: {}", problem.name, family.name));
-    auto tried = units(family.name, [&] { return try_family(problem, family, effort, rivals_of(family, trials)); });
+    checkpoint.show(fmt::format("{}: {}", problem.name, family.name));
+    auto tried = checkpoint.once(family.name, [&] { return try_family(problem, family, effort, rivals_of(family, trials)); });
     for (Trial& trial : tried) {
       trial.family = &family;
       trials.push_back(std::move(trial));
     }
-    units.advance();
+    checkpoint.advance();
   }
   return trials;
 }
@@ -184,7 +185,8 @@ std::set<std::size_t> near_fronts(const Problem& problem, const std::vector<Cont
 }
 
 /// Fails trials near a front whose energy cannot be, until there are none.
-void judge_energies(const Problem& problem, const std::vector<Contender>& who, std::vector<Trial>& trials, Units& units) {
+void judge_energies(const Problem& problem, const std::vector<Contender>& who, std::vector<Trial>& trials,
+                    Checkpoint& checkpoint) {
   std::set<std::size_t> judged;
   for (bool failed = true; failed;) {
     failed = false;
@@ -192,7 +194,7 @@ void judge_energies(const Problem& problem, const std::vector<Contender>& who, s
       Trial& trial = trials[k];
       if (!judged.insert(k).second || !trial.configuration().energy_fault) continue;
       const std::string name = fmt::format("energy of {} {}", trial.family->name, trial.configuration().value);
-      const std::string fault = units(name, [&] { return trial.configuration().energy_fault(); });
+      const std::string fault = checkpoint.once(name, [&] { return trial.configuration().energy_fault(); });
       if (fault.empty()) continue;
       trial.outcome = fault;
       trial.measured = {std::nan(""), {}};
@@ -204,17 +206,17 @@ void judge_energies(const Problem& problem, const std::vector<Contender>& who, s
 }  // namespace
 
 void time_fronts(const Problem& problem, std::vector<Trial>& trials, const Effort& effort, const std::set<std::string>& named,
-                 Units& units) {
+                 Checkpoint& checkpoint) {
   std::set<std::string> families;
   for (const Trial& trial : trials) families.insert(trial.family->name);
   std::vector<Contender> who = contenders(trials);
   std::erase_if(who, [&](const Contender& one) { return families.contains(one.name) && !named.contains(one.name); });
-  time_fronts(problem, who, trials, effort, units);
+  time_fronts(problem, who, trials, effort, checkpoint);
 }
 
 void time_fronts(const Problem& problem, const std::vector<Contender>& who, std::vector<Trial>& trials, const Effort& effort,
-                 Units& units) {
-  judge_energies(problem, who, trials, units);
+                 Checkpoint& checkpoint) {
+  judge_energies(problem, who, trials, checkpoint);
   const std::set<std::size_t> chosen = near_fronts(problem, who, trials);
   std::vector<Repeated> runs;
   for (const std::size_t k : chosen) {
@@ -226,7 +228,7 @@ void time_fronts(const Problem& problem, const std::vector<Contender>& who, std:
     const bool few = trials[k].measured.times.front() > slow;
     runs.push_back({prepare, few ? std::min(fewest_repetitions, effort.repetitions) : effort.repetitions});
   }
-  const auto times = units("times", [&] {
+  const auto times = checkpoint.once("times", [&] {
     return time_runs(
         runs, [] {}, effort.time_of);
   });

@@ -62,7 +62,8 @@ struct Effort {
 };
 
 /// Runs every candidate once, from coarse to fine until it takes too long or is more exact than the truth.
-std::vector<Trial> try_all(const Problem& problem, const std::vector<Family>& families, const Effort& effort, Units& units);
+std::vector<Trial> try_all(const Problem& problem, const std::vector<Family>& families, const Effort& effort,
+                           Checkpoint& checkpoint);
 
 /// Whose results are compared: a name and the trials that belong to it.
 struct Contender {
@@ -77,11 +78,11 @@ std::vector<Contender> contenders(const std::vector<Trial>& trials);
 
 /// Times what is near the front of any contender, all interleaved; of the families only those that are named.
 void time_fronts(const Problem& problem, std::vector<Trial>& trials, const Effort& effort, const std::set<std::string>& named,
-                 Units& units);
+                 Checkpoint& checkpoint);
 
 /// The same of some contenders.
 void time_fronts(const Problem& problem, const std::vector<Contender>& who, std::vector<Trial>& trials, const Effort& effort,
-                 Units& units);
+                 Checkpoint& checkpoint);
 
 /// The trials of a contender as they were measured repeatedly; the others count as failed.
 std::vector<results::Measured> timed(const Contender& contender, const std::vector<Trial>& trials);

@@ -84,8 +84,8 @@ Problem problem(const Entry& entry) {
 }
 
 /// From the two families that certify a reference.
-void find_truth(Problem& problem, Units& units) {
-  const auto say = [&](const std::string& pace) { units.report("reference of " + problem.name + ": " + pace); };
+void find_truth(Problem& problem, Checkpoint& checkpoint) {
+  const auto say = [&](const std::string& pace) { checkpoint.report("reference of " + problem.name + ": " + pace); };
   References references(1e-6, {.say = say}, 1e-10);  // errors down to 1e-7 are compared
   const model::Cloth cloth = model::compile(problem.scene);
   const auto reference = references(problem.scene, cloth);
@@ -153,18 +153,18 @@ const SceneTrials* find(const All& all, const std::string& name) {
   return found == all.end() ? nullptr : &*found;
 }
 
-results::Table try_scene(const Entry& entry, const Methods& methods, All& all, Units& units) {
-  units.show("reference of " + entry.name);
+results::Table try_scene(const Entry& entry, const Methods& methods, All& all, Checkpoint& checkpoint) {
+  checkpoint.show("reference of " + entry.name);
   SceneTrials& scene = all.emplace_back(SceneTrials{problem(entry), {}, {}, find(all, entry.training)});
   Problem& problem = scene.problem;
   if (entry.scene.name == "peer-edge")
-    set_explicit_truth(problem, units("truth", [&] { return find_explicit_truth(problem); }));
+    set_explicit_truth(problem, checkpoint.once("truth", [&] { return find_explicit_truth(problem); }));
   else
-    find_truth(problem, units);
+    find_truth(problem, checkpoint);
   scene.families = families(problem.scene, entry.search, methods);
-  scene.trials = try_all(problem, scene.families, entry.effort, units);
-  units.show("timing " + entry.name);
-  time_fronts(problem, scene.trials, entry.effort, named_families(scene), units);
+  scene.trials = try_all(problem, scene.families, entry.effort, checkpoint);
+  checkpoint.show("timing " + entry.name);
+  time_fronts(problem, scene.trials, entry.effort, named_families(scene), checkpoint);
   return trials_table(scene);
 }
 
@@ -187,21 +187,21 @@ std::vector<TableJob> jobs(const std::vector<Entry>& list, const Methods& method
   all->reserve(list.size());  // trials point into what is in it
   for (const Entry& entry : list)
     jobs.push_back({static_cast<int>(families(entry.scene, entry.search, methods).size()),
-                    [=](Units& units) { return try_scene(entry, methods, *all, units); }});
+                    [=](Checkpoint& checkpoint) { return try_scene(entry, methods, *all, checkpoint); }});
   for (auto* table : {held_out_table, recommended_table, winners_table, defaults_table, peers_table})
-    jobs.push_back({0, [=](Units&) { return table(*all); }});
-  if (list.size() > 1) jobs.push_back({0, [=](Units&) { return ranking_table(*all); }});
-  if (with_bars) jobs.push_back({0, [=](Units&) { return bars_table(*all); }});
+    jobs.push_back({0, [=](Checkpoint&) { return table(*all); }});
+  if (list.size() > 1) jobs.push_back({0, [=](Checkpoint&) { return ranking_table(*all); }});
+  if (with_bars) jobs.push_back({0, [=](Checkpoint&) { return bars_table(*all); }});
   if (const results::Table table = left_out_table(list, methods); !table.columns.empty())
-    jobs.push_back({0, [=](Units&) { return table; }});
+    jobs.push_back({0, [=](Checkpoint&) { return table; }});
   return jobs;
 }
 
 }  // namespace
 
-Problem certified_problem(const std::string& name, const model::Scene& scene, Units& units) {
+Problem certified_problem(const std::string& name, const model::Scene& scene, Checkpoint& checkpoint) {
   Problem result = problem({name, scene});
-  find_truth(result, units);
+  find_truth(result, checkpoint);
   return result;
 }
 

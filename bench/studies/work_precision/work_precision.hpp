@@ -6,6 +6,6 @@ namespace drape::bench {
 
 /// A scene with its positions at all tenths of its end, from the two families that certify a reference. Throws what References
 /// does.
-Problem certified_problem(const std::string& name, const model::Scene& scene, Units& units);
+Problem certified_problem(const std::string& name, const model::Scene& scene, Checkpoint& checkpoint);
 
 }  // namespace drape::bench

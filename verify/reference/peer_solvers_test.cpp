@@ -1,6 +1,6 @@
 // CVODE, ARKODE and IDA follow the same equation of motion, each by methods of its own; KINSOL finds where it comes to rest.
 
-#include "reference/sundials/families.hpp"
+#include "reference/sundials/peer_solvers.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -18,13 +18,13 @@
 #include "reference/sundials/kinsol.hpp"
 #include "verify/support/small_problems.hpp"
 
-namespace drape::verify::families_test {
+namespace drape::verify::peer_solvers_test {
 namespace {
 
 using namespace small_problems;
-using reference::Family;
 using reference::FirstOrderOde;
 using reference::Part;
+using reference::PeerSolver;
 using reference::ReferenceError;
 using reference::Trajectory;
 using testing::HasSubstr;
@@ -40,13 +40,13 @@ double worst(const Problem& problem, const Trajectory& trajectory) {
 
 class FamilyOn : public testing::TestWithParam<std::tuple<std::string, std::string>> {
  protected:
-  const Family& family = reference::family(std::get<0>(GetParam()));
+  const PeerSolver& solver = reference::peer_solver(std::get<0>(GetParam()));
   const Problem problem = problem_named(std::get<1>(GetParam()));
 
-  Trajectory solve(double rtol) const { return family.solve(problem.ode, problem.start, start_time, times, {.rtol = rtol}); }
+  Trajectory solve(double rtol) const { return solver.solve(problem.ode, problem.start, start_time, times, {.rtol = rtol}); }
 };
 INSTANTIATE_TEST_SUITE_P(, FamilyOn,
-                         testing::Combine(testing::ValuesIn(names(reference::families())),
+                         testing::Combine(testing::ValuesIn(names(reference::peer_solvers())),
                                           testing::ValuesIn(names(problems()))),
                          [](const auto& test) { return identifier(std::get<0>(test.param)) + "_" + std::get<1>(test.param); });
 
@@ -68,12 +68,12 @@ TEST_P(ExplicitRungeKuttaOn, FollowsTheExactMotionWithoutMatrices) {
   EXPECT_LE(worst(problem, solve(1e-9)), 300e-9);
   EXPECT_GE(worst(problem, solve(1e-4)), 1e-9) << "it does not depend on its tolerance";
   EXPECT_EQ(problem.ode.work->count("arkode/factorisations"), 0);
-  for (const solver::Work::Kind& kind : problem.ode.work->kinds())
+  for (const solver::Counters::Kind& kind : problem.ode.work->kinds())
     EXPECT_TRUE(kind.name != "arkode/jacobians" || kind.count == 0) << kind.count;
 }
 
 TEST_P(FamilyOn, BeginsWithTheStart) {
-  const auto trajectory = family.solve(problem.ode, problem.start, start_time, std::vector{start_time, start_time + 0.1}, {});
+  const auto trajectory = solver.solve(problem.ode, problem.start, start_time, std::vector{start_time, start_time + 0.1}, {});
   EXPECT_EQ(trajectory.states[0].x, problem.start.x);
   EXPECT_EQ(trajectory.states[0].v, problem.exact(start_time).v);
 }
@@ -87,7 +87,7 @@ TEST_P(FamilyOn, NamesItselfAndTheReasonWhenItFails) {
       if (t > start_time + 0.5) f(2, 1) = std::nan(""), ++failures;
     };
   try {
-    family.solve(broken.ode, broken.start, start_time, times, {.rtol = 1e-6});
+    solver.solve(broken.ode, broken.start, start_time, times, {.rtol = 1e-6});
     ADD_FAILURE() << "it did not fail";
   } catch (const ReferenceError& error) {
     EXPECT_THAT(error.what(), HasSubstr("not finite"));
@@ -192,7 +192,9 @@ INSTANTIATE_TEST_SUITE_P(Damping, HungSheet, testing::Values("50", "5", "0.5"),
 TEST_P(HungSheet, IsTheSameForCvodeArkodeAndIda) {
   const model::Cloth cloth = compile(hung_sheet(GetParam()));
   const auto end = [&](const char* family) {
-    return reference::family(family).solve(cloth.ode, cloth.start, 0, std::vector{0.3}, {.rtol = 1e-10, .size = 0.8}).states[0];
+    return reference::peer_solver(family)
+        .solve(cloth.ode, cloth.start, 0, std::vector{0.3}, {.rtol = 1e-10, .size = 0.8})
+        .states[0];
   };
   const State by_cvode = end("cvode-bdf");
   EXPECT_GE(reference::rms_distance(by_cvode.x, cloth.start.x), 0.002);
@@ -203,7 +205,9 @@ TEST_P(HungSheet, IsTheSameForCvodeArkodeAndIda) {
 TEST(HungSheetOfImex, IsThatOfCvode) {
   const model::Cloth cloth = compile(hung_sheet("50"));
   const auto end = [&](const char* family) {
-    return reference::family(family).solve(cloth.ode, cloth.start, 0, std::vector{0.05}, {.rtol = 1e-8, .size = 0.8}).states[0];
+    return reference::peer_solver(family)
+        .solve(cloth.ode, cloth.start, 0, std::vector{0.05}, {.rtol = 1e-8, .size = 0.8})
+        .states[0];
   };
   EXPECT_LE(reference::rms_distance(end("arkode-imex").x, end("cvode-bdf").x), 1e-6);
 }
@@ -233,4 +237,4 @@ TEST(Kinsol, SaysThatASheetWithoutPinsHasNoEquilibrium) {
 }
 
 }  // namespace
-}  // namespace drape::verify::families_test
+}  // namespace drape::verify::peer_solvers_test

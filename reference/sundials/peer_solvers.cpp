@@ -1,4 +1,4 @@
-#include "reference/sundials/families.hpp"
+#include "reference/sundials/peer_solvers.hpp"
 
 #include "reference/sundials/arkode.hpp"
 #include "reference/sundials/cvode.hpp"
@@ -15,8 +15,8 @@ Trajectory ida_trajectory(const solver::SplitOde& ode, const solver::State& y0, 
 
 }  // namespace
 
-std::span<const Family> families() {
-  static constexpr Family table[] = {
+std::span<const PeerSolver> peer_solvers() {
+  static constexpr PeerSolver table[] = {
       {"cvode-bdf", "CVODE: BDF of orders 1 to 5 with stability limit detection", cvode},
       {"arkode-esdirk", "ARKODE: ESDIRK method of order 5, everything implicit", arkode_esdirk},
       {"arkode-imex", "ARKODE: additive Runge-Kutta pair of order 5 on the split of the thesis", arkode_imex},
@@ -27,18 +27,18 @@ std::span<const Family> families() {
   return table;
 }
 
-const Family& family(std::string_view name) { return base::find_named(families(), "family of solvers", name); }
+const PeerSolver& peer_solver(std::string_view name) { return base::find_named(peer_solvers(), "family of solvers", name); }
 
-Trajectory solve_by_either(const Family& family, const solver::SplitOde& ode, const solver::State& y0, double t0,
+Trajectory solve_by_either(const PeerSolver& solver, const solver::SplitOde& ode, const solver::State& y0, double t0,
                            std::span<const double> times, SolveOptions options) {
   std::int64_t& fallbacks = ode.work->counter("reference/klu_fallbacks", "motions for which only the exact Jacobian would do");
   try {
     options.newton = &newton_solve("constant-gmres");
-    return family.solve(ode, y0, t0, times, options);
+    return solver.solve(ode, y0, t0, times, options);
   } catch (const ReferenceError&) {
     ++fallbacks;
     options.newton = &newton_solve("klu");
-    return family.solve(ode, y0, t0, times, options);
+    return solver.solve(ode, y0, t0, times, options);
   }
 }
 
