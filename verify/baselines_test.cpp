@@ -9,6 +9,7 @@
 #include "results/file/run_file.hpp"
 #include "results/provenance.hpp"
 #include "verify/support/bench_integrators.hpp"
+#include "verify/support/slow.hpp"
 
 namespace drape::verify::baselines_test {
 namespace {
@@ -24,6 +25,7 @@ const Words studies{"convergence", "figure-3.2", "figure-3.3", "modes", "orders"
 class Baseline : public testing::TestWithParam<std::string> {};
 
 TEST_P(Baseline, IsComputedAnew) {
+  DRAPE_SLOW();
   const BenchIntegrators program;
   program.output({"study", GetParam(), "--quick", "--out", "now.h5"});
   const fs::path recorded = folder / "quick" / (GetParam() + ".h5");
@@ -41,6 +43,7 @@ INSTANTIATE_TEST_SUITE_P(, Baseline, testing::ValuesIn(studies), [](const auto& 
 });
 
 TEST(Baselines, AreFinishedAndOfCommittedSources) {
+  DRAPE_SLOW();
   for (const std::string& study : studies)
     for (const fs::path& file : {folder / (study + ".h5"), folder / "quick" / (study + ".h5")}) {
       const results::Provenance provenance = results::read_provenance(file);

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "verify/support/run_program.hpp"
+#include "verify/support/slow.hpp"
 
 namespace drape::verify::headers_test {
 namespace {
@@ -127,6 +128,7 @@ TEST(Headers, IncludeWhatTheyUseOfTheStandardLibrary) {
 
 /// With Eigen at hand, which all of them would take long to read each for itself: what Eigen includes is checked above.
 TEST(Headers, CompileAlone) {
+  DRAPE_SLOW();
   const ProgramResult result = run_program({.program = DRAPE_CMAKE,
                                             .arguments = {"--build", ".", "--target", "headers"},
                                             .folder = DRAPE_BINARY_DIR,

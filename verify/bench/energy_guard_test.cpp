@@ -10,6 +10,7 @@
 
 #include "bench/runs/run.hpp"
 #include "model/scene_file/scene_file.hpp"
+#include "verify/support/slow.hpp"
 
 namespace drape::verify::energy_guard_test {
 namespace {
@@ -78,6 +79,7 @@ TEST(EnergyGuard, KnowsTheElasticEnergyOfTheStart) {
 }
 
 TEST(EnergyGuard, IsNotExceededByABuiltinScene) {
+  DRAPE_SLOW();
   for (const model::BuiltinScene& builtin : model::builtin_scenes()) {
     Scene scene = model::load_scene(std::string(builtin.name));
     if (scene.name == "peer-edge") scene.sheet.grid.nu = scene.sheet.grid.nv = 20;  // undamped and fine: dear
@@ -86,6 +88,7 @@ TEST(EnergyGuard, IsNotExceededByABuiltinScene) {
 }
 
 TEST(EnergyGuard, IsNotExceededByASheetAtRest) {
+  DRAPE_SLOW();
   Scene scene = hung_sheet(1e6);
   scene.sheet.gravity.setZero();
   EXPECT_LT(largest_part(scene, "bdf2", 0.2, 0.01), 1);
@@ -116,6 +119,7 @@ std::vector<Scene> released() {
 }
 
 TEST(EnergyGuard, KnowsTheWorkOfForcesWithoutAnEnergy) {
+  DRAPE_SLOW();
   for (const Scene& scene : released())
     for (const char* method : {"bdf2", "midpoint", "verlet", "esdirk4"}) {
       const auto result = guarded(scene, method, 0.1, 0.005);

@@ -11,6 +11,7 @@
 #include "results/file/journal.hpp"
 #include "results/file/run_file.hpp"
 #include "results/file/validate.hpp"
+#include "verify/support/slow.hpp"
 #include "verify/support/temporary_folder.hpp"
 
 namespace drape::verify::fuzz_test {
@@ -61,6 +62,7 @@ bool refuses(const Read& read) {
 }
 
 TEST(Fuzz, EveryDamageOfARecordIsNoticed) {
+  DRAPE_SLOW();
   const base::TemporaryFolder folder;
   const fs::path file = folder / "damaged.h5";
   std::mt19937 random(1);

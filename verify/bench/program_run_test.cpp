@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "verify/support/bench_integrators.hpp"
+#include "verify/support/slow.hpp"
 
 namespace drape::verify::program_run_test {
 namespace {
@@ -209,6 +210,7 @@ TEST(ProgramScene, MayBeAFileOfTheUser) {
 }
 
 TEST(ProgramThreads, AreRecordedWhereTheSheetIsLargeEnoughForThem) {
+  DRAPE_SLOW();
   const BenchIntegrators program;
   for (const auto& [n, threads, file] : {std::tuple("5", "2", "a.h5"), {"200", "1", "b.h5"}, {"200", "2", "c.h5"}})
     program.output({"run", "--scene", "hung-edge", "--set", std::string("grid.n=") + n, "--method", "imex-euler/mic0", "--step",

@@ -12,6 +12,7 @@
 
 #include "solver/methods.hpp"
 #include "verify/support/bench_integrators.hpp"
+#include "verify/support/slow.hpp"
 
 namespace drape::verify::program_test {
 namespace {
@@ -182,6 +183,7 @@ TEST(ProgramProgress, IsALineOnTheTerminalWithTheTimeLeft) {
 }
 
 TEST(Program, WithoutArgumentsDoesTheMainJob) {
+  DRAPE_SLOW();
   const BenchIntegrators program;
   const ProgramResult result = run_on_terminal(program.command({}), 120, "damping=50");
   EXPECT_EQ(result.exit_code, terminated);
@@ -208,6 +210,7 @@ TEST(ProgramRun, SaysWhereNothingMoves) {
 // --- Studies -------------------------------------------------------------------------------------------------------------
 
 TEST(ProgramStudy, HungSheetsComparesAllMethodsOnFourSheets) {
+  DRAPE_SLOW();
   const BenchIntegrators program;
   const Words command{"study", "hung-sheets", "--quick", "--repeat", "1", "--out", "a.h5", "--format", "csv"};
   const std::vector<Row> rows = parse_csv(program.output(command));
@@ -230,6 +233,7 @@ TEST(ProgramStudy, HungSheetsComparesAllMethodsOnFourSheets) {
 }
 
 TEST(ProgramStudy, TakesTheMethodsThatAreNamed) {
+  DRAPE_SLOW();
   const BenchIntegrators program;
   const Words sheets{"study", "hung-sheets", "--quick", "--repeat", "1", "--format", "csv", "--method", "bdf2,sbdf2"};
   const std::vector<Row> rows = parse_csv(program.output(sheets));
@@ -262,6 +266,7 @@ TEST(ProgramInspect, FindsTablesByTheBeginningOfTheirNames) {
 }
 
 TEST(ProgramCheck, IsOneScreenWithTheOrderAsDeclared) {
+  DRAPE_SLOW();
   const BenchIntegrators program;
   const Words said = lines(program.output({"check", "sbdf2", "--out", "check.h5"}));
   EXPECT_LE(said.size(), 24u);

@@ -14,6 +14,7 @@
 #include "results/table_builder.hpp"
 #include "verify/support/bench_integrators.hpp"
 #include "verify/support/mesh_files.hpp"
+#include "verify/support/slow.hpp"
 
 namespace drape::verify::report_test {
 namespace {
@@ -338,6 +339,7 @@ TEST(Report, ImagesTakeThePlaceOfImagesOnly) {
 }
 
 TEST(Report, FitsAPhone) {
+  DRAPE_SLOW();
   const BenchIntegrators program;
   const bench::Browsed browsed =
       bench::browse(page(program, {}), "see(document.documentElement.scrollWidth - innerWidth);", 500);
@@ -346,6 +348,7 @@ TEST(Report, FitsAPhone) {
 }
 
 TEST(Report, AScriptThatFailsWouldBeSeen) {
+  DRAPE_SLOW();
   const BenchIntegrators program;
   const std::filesystem::path broken = page(program, {});
   std::ofstream(broken, std::ios::app) << "<script>no_such_function();</script>";

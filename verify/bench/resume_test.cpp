@@ -15,6 +15,7 @@
 #include "results/file/validate.hpp"
 #include "verify/support/bench_integrators.hpp"
 #include "verify/support/record_text.hpp"
+#include "verify/support/slow.hpp"
 
 namespace drape::verify::resume_test {
 namespace {
@@ -93,6 +94,7 @@ TEST(Resume, ARunKilledAtAnyMomentEndsAsIfItHadNotBeen) {
 }
 
 TEST(Resume, AStudyKilledAtAnyMomentEndsAsIfItHadNotBeen) {
+  DRAPE_SLOW();
   std::mt19937 random(2);
   kill_and_resume(small_study, kills_of_each, random);
 }

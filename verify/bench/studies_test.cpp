@@ -13,6 +13,7 @@
 #include "results/table_builder.hpp"
 #include "solver/methods.hpp"
 #include "verify/support/bench_integrators.hpp"
+#include "verify/support/slow.hpp"
 #include "verify/support/temporary_folder.hpp"
 
 namespace drape::verify::studies_test {
@@ -215,6 +216,7 @@ class ProgramStudies : public testing::Test {
 };
 
 TEST_F(ProgramStudies, ModesAreAsInTheory) {
+  DRAPE_SLOW();
   const auto all = tables("modes");
   EXPECT_THAT(all, SizeIs(3));
   for (const Table& table : all) {
@@ -231,6 +233,7 @@ TEST_F(ProgramStudies, ModesAreAsInTheory) {
 }
 
 TEST_F(ProgramStudies, OrdersAreAsDeclared) {
+  DRAPE_SLOW();
   const auto all = tables("orders");
   ASSERT_THAT(all, SizeIs(1));
   const auto found = verdicts(all[0]);
@@ -257,6 +260,7 @@ TEST_F(ProgramStudies, ErrorsAreNearTheirTolerances) {
 }
 
 TEST_F(ProgramStudies, EquilibriaConvergeAsDeclared) {
+  DRAPE_SLOW();
   const auto all = tables("convergence");
   ASSERT_THAT(all, SizeIs(3));
   EXPECT_THAT(verdicts(all[0]), ElementsAre("exact as declared", "1 as declared"));
@@ -273,6 +277,7 @@ TEST_F(ProgramStudies, ReferencesAgree) {
 }
 
 TEST_F(ProgramStudies, WorkGrowsWithStiffnessAndFallsWithDampingAsInTheThesis) {
+  DRAPE_SLOW();
   const auto all = tables("table-3.1");
   ASSERT_THAT(all, SizeIs(1));
   EXPECT_THAT(verdicts(all[0]), ElementsAre("grows with k, falls with d", "grows with k, falls with d"));
@@ -280,6 +285,7 @@ TEST_F(ProgramStudies, WorkGrowsWithStiffnessAndFallsWithDampingAsInTheThesis) {
 }
 
 TEST_F(ProgramStudies, MethodsDrapeTheTableclothButForArtificialDamping) {
+  DRAPE_SLOW();
   const auto all = tables("table-3.2");
   ASSERT_THAT(all, SizeIs(1));
   const Table& table = all[0];
@@ -294,6 +300,7 @@ TEST_F(ProgramStudies, MethodsDrapeTheTableclothButForArtificialDamping) {
 }
 
 TEST_F(ProgramStudies, EulerSmoothsTheSheetInTheWindAndBdf2Less) {
+  DRAPE_SLOW();
   const auto all = tables("figure-3.2");
   ASSERT_THAT(all, SizeIs(2));
   EXPECT_THAT(verdicts(all[0]), AllOf(SizeIs(3), Each("swings less")));
@@ -302,12 +309,14 @@ TEST_F(ProgramStudies, EulerSmoothsTheSheetInTheWindAndBdf2Less) {
 }
 
 TEST_F(ProgramStudies, SemiImplicitMethodsLagAsPredicted) {
+  DRAPE_SLOW();
   const auto all = tables("figure-3.3");
   ASSERT_THAT(all, SizeIs(1));
   EXPECT_THAT(verdicts(all[0]), AllOf(SizeIs(4), Each("as predicted")));
 }
 
 TEST_F(ProgramStudies, RestingOnTheBoxIsNoHarderThanSwinging) {
+  DRAPE_SLOW();
   const auto all = tables("figure-4.3");  // in the order of their names
   ASSERT_THAT(all, SizeIs(3));
   const auto bars = numbers(all[1], "value", "method", "bdf2");
@@ -319,6 +328,7 @@ TEST_F(ProgramStudies, RestingOnTheBoxIsNoHarderThanSwinging) {
 }
 
 TEST_F(ProgramStudies, EveryCellOfTheAtlasEndsInAVerdict) {
+  DRAPE_SLOW();
   const auto all = tables("stability");  // in the order of their names
   ASSERT_THAT(all, SizeIs(6));
   const auto table = [&](const std::string& name) { return *std::ranges::find(all, "stability-" + name, &Table::name); };

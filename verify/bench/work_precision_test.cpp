@@ -13,6 +13,7 @@
 
 #include "results/file/run_file.hpp"
 #include "verify/support/bench_integrators.hpp"
+#include "verify/support/slow.hpp"
 
 namespace drape::verify::work_precision_test {
 namespace {
@@ -125,6 +126,7 @@ class WorkPrecision : public testing::Test {
 };
 
 TEST_F(WorkPrecision, NamesWinnersAndJudgesTheBars) {
+  DRAPE_SLOW();
   program.run({"study", "bars", "--quick", "--out", "study.h5"});
   const auto all = results::read_tables(program.folder() / "study.h5");
   ASSERT_THAT(all, SizeIs(10));
@@ -148,6 +150,7 @@ TEST_F(WorkPrecision, NamesWinnersAndJudgesTheBars) {
 }
 
 TEST_F(WorkPrecision, JudgesAnyScene) {
+  DRAPE_SLOW();
   program.run({"study", "work-precision", "--quick", "--scene", "hung-edge", "--set", "grid.n=5", "--set", "end.time=0.1",
                "--out", "study.h5"});
   const auto all = results::read_tables(program.folder() / "study.h5");

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "verify/support/contact_scenes.hpp"
+#include "verify/support/slow.hpp"
 
 namespace drape::verify::contact_builtin_test {
 namespace {
@@ -47,6 +48,7 @@ INSTANTIATE_TEST_SUITE_P(, BuiltinContact,
                          [](const auto& test) { return word(std::get<0>(test.param) + "_" + std::get<1>(test.param)); });
 
 TEST_P(BuiltinContact, StaysOutsideLosesEnergyAndComesToRest) {
+  DRAPE_SLOW_IF(std::get<1>(GetParam()) != "verlet");
   const auto& [name, method] = GetParam();
   const Trial trial = trial_of(name, method);
   const auto moments = run(trial, method, h);

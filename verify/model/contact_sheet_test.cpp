@@ -12,6 +12,7 @@
 #include "reference/stepped.hpp"
 #include "solver/linear/conjugate_gradients.hpp"
 #include "verify/support/contact_scenes.hpp"
+#include "verify/support/slow.hpp"
 #include "verify/support/small_matrices.hpp"
 #include "verify/support/small_problems.hpp"
 
@@ -79,6 +80,7 @@ Distance distance(const Trial& trial, const reference::Reference& reference, con
 }
 
 TEST(ContactReference, IsApproachedByEveryMethod) {
+  DRAPE_SLOW();
   for (const std::string& obstacle : {table, ball}) {
     const Trial trial = sheet(obstacle + "end.time = 0.3\n");
     const std::vector<double> times{0.1, 0.2, 0.3};

@@ -11,6 +11,7 @@
 #include "reference/exact/polynomials.hpp"
 #include "verify/support/convergence.hpp"
 #include "verify/support/equilibrium.hpp"
+#include "verify/support/slow.hpp"
 
 namespace drape::verify::exact_bending_test {
 namespace {
@@ -153,9 +154,13 @@ Convergence errors(const BentSheet& sheet, const std::vector<int>& grids) {
   return c;
 }
 
-TEST_P(Bending, MassesAndSpringsComeToItWithSecondOrder) { EXPECT_TRUE(has_order(errors(sheet(5), {5, 9, 17, 33}), 2)); }
+TEST_P(Bending, MassesAndSpringsComeToItWithSecondOrder) {
+  DRAPE_SLOW();
+  EXPECT_TRUE(has_order(errors(sheet(5), {5, 9, 17, 33}), 2));
+}
 
 TEST_P(Bending, MassesAndSpringsComeToLargeDeflectionsWithSecondOrder) {
+  DRAPE_SLOW();
   EXPECT_TRUE(has_order(errors(sheet(0.01), {17, 33, 65, 129}), 2));
   EXPECT_TRUE(has_order(errors(sheet(0.005), {17, 33, 65, 129}), 2));
 }

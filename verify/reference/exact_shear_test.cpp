@@ -12,6 +12,7 @@
 #include "reference/exact/shear.hpp"
 #include "verify/support/convergence.hpp"
 #include "verify/support/equilibrium.hpp"
+#include "verify/support/slow.hpp"
 
 namespace drape::verify::exact_shear_test {
 namespace {
@@ -58,15 +59,18 @@ Vector2d virtual_work(const SideloadedSheet& sheet, const ShearedSheet& s, doubl
 
 /// That the free edges bear no stress is part of it.
 TEST(ShearedSheet, DoesNoVirtualWork) {
+  DRAPE_SLOW();
   for (const auto& [a, b] : {std::pair{1, 0}, {1, 1}, {3, 0}, {2, 4}})
     EXPECT_LE(virtual_work(moderate, moderately_sheared(), a, b).norm(), 1e-5 * moderate.body_force) << a << ", " << b;
 }
 
 TEST(ShearedSheet, IsHeldAlongItsEdge) {
+  DRAPE_SLOW();
   for (const double Y : {0.0, 0.01, 0.3, 1.0}) EXPECT_LE((moderately_sheared()(0, Y) - Vector2d(0, Y)).norm(), 1e-14);
 }
 
 TEST(ShearedSheet, ConvergesToItself) {
+  DRAPE_SLOW();
   EXPECT_LE(moderately_sheared().error(), 1e-7);
   const ShearedSheet coarser(moderate, 5, 5);
   const Vector2d distance = coarser(0.3, 0) - moderately_sheared()(0.3, 0);
@@ -75,6 +79,7 @@ TEST(ShearedSheet, ConvergesToItself) {
 }
 
 TEST(ShearedSheet, ScalesWithItsSide) {
+  DRAPE_SLOW();
   SideloadedSheet larger = moderate;
   larger.side = 2;
   larger.body_force /= 2;
@@ -83,6 +88,7 @@ TEST(ShearedSheet, ScalesWithItsSide) {
 
 /// Its border fibres stretch by f L²/2 over k times the width √(G/k) of the layers, which turns the sheet by k^(-½).
 TEST(ShearedSheet, TendsToTheInextensibleOne) {
+  DRAPE_SLOW();
   Convergence c;
   for (const double k : {3e4, 1e5, 3e5, 1e6}) {
     const SideloadedSheet sheet{.modulus = k, .body_force = 0.01};
@@ -98,6 +104,7 @@ TEST(ShearedSheet, TendsToTheInextensibleOne) {
 }
 
 TEST(ShearedSheet, BucklesUnderTheBodyForceOfTheThesis) {
+  DRAPE_SLOW();
   EXPECT_THROW(ShearedSheet({.modulus = 1e4, .body_force = 10}, 5, 5), std::runtime_error);
 }
 
@@ -125,6 +132,7 @@ model::Scene scene_of(const SideloadedSheet& sheet, int n) {
 /// On coarser grids the order is not yet reached: springs bend in their plane by shear of their corners, of which stiffness the
 /// error is a part 7 (l/L)² (fitted), and the strain at the ends of the held edge grows like a logarithm.
 TEST(ShearedSheet, IsWhatMassesAndSpringsComeToWithSecondOrder) {
+  DRAPE_SLOW();
   Convergence c;
   for (const int n : {17, 25, 37, 49}) {
     const model::Scene scene = scene_of(moderate, n);

@@ -13,6 +13,7 @@
 #include "reference/linear_motion.hpp"
 #include "reference/reference.hpp"
 #include "reference/sundials/cvode.hpp"
+#include "verify/support/slow.hpp"
 #include "verify/support/small_problems.hpp"
 
 namespace drape::verify::growth_test {
@@ -135,6 +136,7 @@ class GrowthOf : public testing::TestWithParam<GrowingSheet> {};
 INSTANTIATE_TEST_SUITE_P(, GrowthOf, testing::ValuesIn(growing_sheets), [](const auto& test) { return test.param.name; });
 
 TEST_P(GrowthOf, IsMoreThanHalfOfTheLargestSingularValueFromAnySeed) {
+  DRAPE_SLOW();
   const auto& [name, scene, overrides, end] = GetParam();
   const Sheet sheet(scene, overrides, end);
   const double largest =
@@ -169,6 +171,7 @@ reference::Reference growth_of(double sign, double size) {
 }
 
 TEST(Growth, OfAnyPerturbationIsTheNormOfTheLinearMotion) {
+  DRAPE_SLOW();
   const SplitOde ode = coordinate(1);
   const State start = known_motions::single({1, 0, 0}, {0, 0, 0});
   const auto solve = [&](const State& y) { return reference::cvode(ode, y, 0, std::vector{2.0}, {.rtol = 1e-12}); };
@@ -177,6 +180,7 @@ TEST(Growth, OfAnyPerturbationIsTheNormOfTheLinearMotion) {
 }
 
 TEST(Growth, IsTheNormOfTheLinearMotion) {
+  DRAPE_SLOW();
   for (const double size : {1.0, 10.0}) {
     const reference::Reference unstable = growth_of(1, size), oscillating = growth_of(-1, size);
     for (std::size_t k = 0; k < 3; ++k) {
@@ -189,6 +193,7 @@ TEST(Growth, IsTheNormOfTheLinearMotion) {
 }
 
 TEST(Growth, TellsAFoldingSheetFromADampedOne) {
+  DRAPE_SLOW();
   const auto growth = [](const char* damping) {
     const Sheet sheet("hung-corners", {{"grid.n", "8"}, {"material.damping", damping}}, 0.4);
     const Trajectory motion = sheet.solve(sheet.cloth.start, {0.2, 0.4});

@@ -11,6 +11,7 @@
 
 #include "results/table_builder.hpp"
 #include "solver/base/statistics.hpp"
+#include "verify/support/slow.hpp"
 
 namespace drape::verify::compare_test {
 namespace {
@@ -215,6 +216,7 @@ int false_alarms(int trials, const CompareOptions& options) {
 }
 
 TEST(CompareTimes, FalselyAlarmsOnceInAHundredComparisonsAtMostButNotMuchLess) {
+  DRAPE_SLOW();
   constexpr int trials = 1000;  // of 1 %: 10 ± 3
   EXPECT_THAT(false_alarms(trials, {.quiet = true}), AllOf(testing::Ge(2), testing::Le(19)));
   EXPECT_THAT(false_alarms(trials, {}), AllOf(testing::Ge(2), testing::Le(19)));

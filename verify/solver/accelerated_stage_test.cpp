@@ -7,6 +7,7 @@
 
 #include "model/cloth.hpp"
 #include "model/scene_file/scene_file.hpp"
+#include "verify/support/slow.hpp"
 #include "verify/support/small_problems.hpp"
 
 namespace drape::verify::accelerated_stage_test {
@@ -74,6 +75,7 @@ INSTANTIATE_TEST_SUITE_P(, StageKinds,
                          [](const auto& test) { return identifier(test.param); });
 
 TEST_P(StageKinds, SolveTheSameEquationAsTheFixedPointLoop) {
+  DRAPE_SLOW_IF(GetParam() != "newton" && GetParam() != "auto");
   const model::Cloth cloth = sheet({{"material.damping", "5"}});
   for (const char* method : {"implicit-euler", "bdf2", "midpoint", "tr-bdf2", "esdirk4", "bdf4"}) {
     const Ended exact = run(cloth, method, tight(), 0.01);
@@ -86,6 +88,7 @@ TEST_P(StageKinds, SolveTheSameEquationAsTheFixedPointLoop) {
 }
 
 TEST_P(StageKinds, LeaveAPartOfTheErrorOfTheTimeStep) {
+  DRAPE_SLOW();
   const model::Cloth cloth = sheet({{"material.damping", "5"}});
   const Vectors truth = run(cloth, "bdf2", stage("auto", 1e-6), 1e-4).end.x;
   for (const double h : {0.01, 0.005, 0.0025}) {
@@ -96,6 +99,7 @@ TEST_P(StageKinds, LeaveAPartOfTheErrorOfTheTimeStep) {
 }
 
 TEST_P(StageKinds, WorkWithPartialPinsAndObstacles) {
+  DRAPE_SLOW_IF(GetParam() != "newton" && GetParam() != "auto");
   for (const char* scene : {"pulled", "box_swing"}) {
     const model::Override small[] = {{"grid.n", "6"}};
     const model::Cloth cloth = model::compile(model::load_scene(scene, small));

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "verify/support/contact_scenes.hpp"
+#include "verify/support/slow.hpp"
 
 namespace drape::verify::contact_test {
 namespace {
@@ -271,6 +272,7 @@ TEST_P(Contact, LeavesPinnedCoordinatesAlone) {
 }
 
 TEST_P(Contact, EndsTenThousandRandomDropsOutsideAndAtLessEnergy) {
+  DRAPE_SLOW();
   const std::vector<model::Override> grid{{"grid.n", "100"}};
   Trial trial = particles(
       "end.time = 0.6\ncontact.distance = 0.01\nobstacles = [\n"

@@ -8,6 +8,7 @@
 
 #include "verify/support/convergence.hpp"
 #include "verify/support/pinned_sheet.hpp"
+#include "verify/support/slow.hpp"
 #include "verify/support/small_problems.hpp"
 
 namespace drape::verify::energy_test {
@@ -62,6 +63,7 @@ TEST(Midpoint, DoesNotLetTheEnergyOfASheetDrift) {
 }
 
 TEST(Bdf2, LetsTheEnergyOfASheetDrift) {
+  DRAPE_SLOW();
   const auto [loss, range] = drift("bdf2");
   EXPECT_GE(loss, range);
 }
@@ -103,6 +105,7 @@ INSTANTIATE_TEST_SUITE_P(, EnergyOfEveryMethod, testing::ValuesIn(small_problems
                          [](const auto& test) { return small_problems::identifier(test.param); });
 
 TEST_P(EnergyOfEveryMethod, IsLostAsMuchAsIsDissipatedToTheOrderOfTheMethod) {
+  DRAPE_SLOW();
   const Method& m = method(GetParam());
   const model::Cloth cloth = wild(true);
   Convergence c;

@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <tuple>
 
 #include "solver/methods/starts.hpp"
 #include "verify/support/convergence.hpp"
+#include "verify/support/slow.hpp"
 #include "verify/support/small_problems.hpp"
 
 namespace drape::verify::orders_test {
@@ -125,13 +127,22 @@ INSTANTIATE_TEST_SUITE_P(, Order,
                          testing::Combine(testing::ValuesIn(names(solver::methods())), testing::ValuesIn(names(problems()))),
                          [](const auto& test) { return identifier(std::get<0>(test.param)) + "_" + std::get<1>(test.param); });
 
-TEST_P(Order, IsTheDeclaredOneWithEqualSteps) { EXPECT_TRUE(has_order(with_equal_steps(problem, method), method.order)); }
+bool in_thesis(const Method& method) {
+  return std::ranges::find(solver::thesis_methods(), method.name, &Method::name) != solver::thesis_methods().end();
+}
+
+TEST_P(Order, IsTheDeclaredOneWithEqualSteps) {
+  DRAPE_SLOW_IF(!in_thesis(method));
+  EXPECT_TRUE(has_order(with_equal_steps(problem, method), method.order));
+}
 
 TEST_P(Order, IsTheDeclaredOneWithAClippedLastStep) {
+  DRAPE_SLOW_IF(!in_thesis(method));
   EXPECT_TRUE(has_order(with_a_clipped_last_step(problem, method), method.order));
 }
 
 TEST_P(Order, IsTheDeclaredOneWithVariableSteps) {
+  DRAPE_SLOW_IF(!in_thesis(method));
   for (const Pattern& pattern : patterns)
     EXPECT_TRUE(has_order(with_variable_steps(problem, method, pattern), method.order)) << pattern.name;
 }
@@ -151,6 +162,7 @@ Method with_order(std::string_view name, int order) {
 }
 
 TEST(OrderCheck, RejectsWhatTheThesisPrintsForVariableSteps) {
+  DRAPE_SLOW();
   const Method printed = with_step("sbdf2", [](Step& s) {  // f̂ = 2 f0 − f₋₁ for every w
     if (s.w == 0) return imex_midpoint(s);
     const auto [c1, c2, c3] = bdf2_coefficients(s.w);
@@ -165,6 +177,7 @@ TEST(OrderCheck, RejectsWhatTheThesisPrintsForVariableSteps) {
 }
 
 TEST(OrderCheck, RejectsCoefficientsThatIgnoreTheRatioOfSteps) {
+  DRAPE_SLOW();
   const Method constant = with_step("bdf2", [](Step& s) {
     if (s.w != 0) s.w = 1;
     solver::method("bdf2").step(s);
@@ -176,6 +189,7 @@ TEST(OrderCheck, RejectsCoefficientsThatIgnoreTheRatioOfSteps) {
 }
 
 TEST(OrderCheck, RejectsForcesAtTheWrongTime) {
+  DRAPE_SLOW();
   const Method early = with_step("midpoint", [](Step& s) {
     s.t -= s.h / 2;
     midpoint(s);
@@ -185,6 +199,7 @@ TEST(OrderCheck, RejectsForcesAtTheWrongTime) {
 }
 
 TEST(OrderCheck, RejectsMethodsThatAreWorseOrBetterThanDeclared) {
+  DRAPE_SLOW();
   for (const auto& [name, order] :
        {std::pair("imex-euler", 2), {"implicit-euler", 2}, {"bdf2", 1}, {"sbdf2", 3}, {"verlet", 1}}) {
     const Method wrong = with_order(name, order);
@@ -193,6 +208,7 @@ TEST(OrderCheck, RejectsMethodsThatAreWorseOrBetterThanDeclared) {
 }
 
 TEST(OrderCheck, WantsThreeRefinementsAndNumbers) {
+  DRAPE_SLOW();
   EXPECT_TRUE(has_order(Convergence{{8, 4, 2, 1}, {64, 16, 4, 1}}, 2));
   EXPECT_FALSE(has_order(Convergence{{4, 2, 1}, {16, 4, 1}}, 2));
   EXPECT_FALSE(has_order(Convergence{{8, 4, 2, 1}, {64, 16, 4}}, 2));
@@ -201,6 +217,7 @@ TEST(OrderCheck, WantsThreeRefinementsAndNumbers) {
 }
 
 TEST(OrderCheck, AllowsATenthBetweenNeighbours) {
+  DRAPE_SLOW();
   const auto last = [](double order) { return Convergence{{8, 4, 2, 1}, {64, 16, 4, 4 / std::exp2(order)}}; };
   EXPECT_TRUE(has_order(last(2.09), 2));
   EXPECT_FALSE(has_order(last(2.11), 2));
