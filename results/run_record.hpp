@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "solver/outcome.hpp"
 #include "solver/state.hpp"
 
 namespace drape::results {
@@ -117,7 +118,7 @@ struct RunRecord {
   double numerical_stiffness = 0;   ///< ν_h = h² k / (ρ l²), the larger of weft and warp
   double stiffness_to_damping = 0;  ///< h k / d; infinite without damping
 
-  std::string outcome;  ///< "success", or why the run ended before its end: "not converged", "unstable", …
+  solver::Outcome outcome = solver::Outcome::success;
   std::string message;
   double last_good_time = 0;  ///< [s]
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <string_view>
@@ -11,6 +12,10 @@
 
 namespace drape::results {
 namespace {
+
+/// In the order of Role.
+constexpr std::array<std::string_view, 9> role_names{"key",     "quantity", "error",   "uncertainty", "order",
+                                                     "counter", "time",     "verdict", "note"};
 
 constexpr std::size_t widest = 500;  ///< characters of a cell for people; CSV and JSON have all of it
 
@@ -81,10 +86,23 @@ std::vector<std::string> shown(const Column& column) {
 
 }  // namespace
 
+std::string_view to_string(Role role) { return role_names[static_cast<std::size_t>(role)]; }
+
+std::optional<Role> role_named(std::string_view name) {
+  const auto found = std::ranges::find(role_names, name);
+  if (found == role_names.end()) return std::nullopt;
+  return static_cast<Role>(found - role_names.begin());
+}
+
 std::size_t rows(const Table& table) { return table.columns.empty() ? 0 : table.columns.front().cells.size(); }
 
 const Column* find_column(const Table& table, std::string_view name) {
   const auto found = std::ranges::find(table.columns, name, &Column::name);
+  return found == table.columns.end() ? nullptr : &*found;
+}
+
+const Column* find_column(const Table& table, Role role) {
+  const auto found = std::ranges::find(table.columns, role, &Column::role);
   return found == table.columns.end() ? nullptr : &*found;
 }
 
@@ -101,11 +119,12 @@ double number_in(const Column* column, std::size_t row) {
 }
 
 std::string to_text(const Table& table) {
-  const std::size_t rows = table.columns.empty() ? 0 : table.columns.front().cells.size();
-  std::vector<std::string> lines(rows + 2);
+  const std::size_t count = rows(table);
+  if (count == 0) return "no rows\n";
+  std::vector<std::string> lines(count + 2);
   for (const Column& column : table.columns) {
     const std::vector<std::string> body = shown(column);
-    const bool nothing = rows > 0 && std::ranges::all_of(body, [](const auto& cell) { return cell.empty(); });
+    const bool nothing = std::ranges::all_of(body, [](const auto& cell) { return cell.empty(); });
     if (column.title.empty() || nothing) continue;
     const bool has_unit = !column.unit.empty() && column.unit != "1";
     std::vector<std::string> cells{column.title, has_unit ? fmt::format("[{}]", column.unit) : ""};
@@ -119,7 +138,7 @@ std::string to_text(const Table& table) {
 }
 
 std::string to_csv(const Table& table) {
-  std::vector<std::string> lines(1 + (table.columns.empty() ? 0 : table.columns.front().cells.size()));
+  std::vector<std::string> lines(1 + rows(table));
   std::string_view separator;
   for (const Column& column : table.columns) {
     lines[0] += fmt::format("{}{}", separator, csv_cell(column.name));

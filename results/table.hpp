@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -12,12 +13,32 @@ namespace drape::results {
 /// A value in a table; monostate if there is none.
 using Cell = std::variant<std::monostate, std::string, double, std::int64_t>;
 
+/// What a column says: compare, the overview and the report go by this, never by names.
+enum class Role {
+  key,          ///< a row is known by its keys
+  quantity,     ///< a number that depends on no time; any change counts
+  error,        ///< a number that had better be small
+  uncertainty,  ///< of the errors in the row
+  order,        ///< a fitted order of convergence
+  counter,      ///< work, the same on every machine
+  time,         ///< what depends on the machine and the hour
+  verdict,      ///< what the row comes to: see verdict.hpp
+  note,         ///< for people only
+};
+
+/// The role as files name it, for example "key".
+std::string_view to_string(Role role);
+
+/// Nothing if no role has this name.
+std::optional<Role> role_named(std::string_view name);
+
 /// A column of a table.
 struct Column {
   std::string name;         ///< in files, CSV and JSON
   std::string title;        ///< for people; empty if not shown to them
   std::string unit;         ///< "1" for numbers without dimension, empty for text
   std::string description;  ///< what the numbers are
+  Role role;
   std::vector<Cell> cells;
   std::vector<std::string> shown;  ///< what people see in place of the cells; empty: the cells, numbers with four digits
 };
@@ -27,6 +48,7 @@ struct Table {
   std::string name;         ///< unique in a file
   std::string description;  ///< one sentence
   std::vector<Column> columns;
+  bool headline = false;  ///< whether the overview shows it whole
 };
 
 /// The number of rows.
@@ -35,11 +57,14 @@ std::size_t rows(const Table& table);
 /// The column with this name, null if there is none.
 const Column* find_column(const Table& table, std::string_view name);
 
+/// The first column with this role, null if there is none.
+const Column* find_column(const Table& table, Role role);
+
 /// A cell's text, empty if it has none; its number, NaN if it has none. Without a column there is none.
 std::string text_in(const Column* column, std::size_t row);
 double number_in(const Column* column, std::size_t row);
 
-/// One line per row, aligned for people. Columns without any value or title are left out.
+/// One line per row, aligned for people; "no rows" without any. Columns without any value or title are left out.
 std::string to_text(const Table& table);
 
 /// All columns with a header (RFC 4180, but lines end with a line feed). Numbers read back as the same numbers; a cell is

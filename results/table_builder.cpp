@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "results/file/schema_4.hpp"
+
 namespace drape::results {
 
 void TableBuilder::text(const char* name, const char* title, const char* description, std::string value) {
@@ -29,7 +31,7 @@ void TableBuilder::put(const std::string& name, const std::string& title, const 
                        const std::string& description, Cell value) {
   auto column = std::ranges::find(table_.columns, name, &Column::name);
   if (column == table_.columns.end())
-    column = table_.columns.insert(table_.columns.end(), {name, title, unit, description, {}, {}});
+    column = table_.columns.insert(table_.columns.end(), {name, title, unit, description, usual_role(name, unit), {}, {}});
   column->cells.resize(rows_);
   column->cells.back() = std::move(value);
 }

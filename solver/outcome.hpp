@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string_view>
 
 namespace drape::solver {
@@ -33,6 +34,13 @@ constexpr std::string_view to_string(Outcome outcome) {
     case Outcome::out_of_evaluations: return "out of evaluations";
   }
   return "unknown";
+}
+
+/// Nothing if no outcome is written so.
+constexpr std::optional<Outcome> outcome_named(std::string_view text) {
+  for (int k = 0; k <= static_cast<int>(Outcome::out_of_evaluations); ++k)
+    if (to_string(static_cast<Outcome>(k)) == text) return static_cast<Outcome>(k);
+  return std::nullopt;
 }
 
 }  // namespace drape::solver

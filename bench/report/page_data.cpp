@@ -24,6 +24,7 @@ Json json_value(double value) {
 Json json_value(std::int64_t value) { return value; }
 Json json_value(int value) { return value; }
 Json json_value(const std::string& value) { return value; }
+Json json_value(solver::Outcome outcome) { return std::string(to_string(outcome)); }
 Json json_value(std::monostate) { return nullptr; }
 Json json_value(const std::vector<double>& values) {
   Json list = Json::array();
@@ -40,7 +41,11 @@ Json page_column(const results::Column& column) {
   Json cells = Json::array();
   for (const results::Cell& cell : column.cells)
     cells.push_back(std::visit([](const auto& value) { return json_value(value); }, cell));
-  Json object{{"name", column.name}, {"title", column.title}, {"unit", column.unit}, {"description", column.description}};
+  Json object{{"name", column.name},
+              {"title", column.title},
+              {"unit", column.unit},
+              {"description", column.description},
+              {"role", std::string(to_string(column.role))}};
   object["cells"] = std::move(cells);
   if (!column.shown.empty()) object["shown"] = column.shown;
   return object;

@@ -68,7 +68,7 @@ struct adl_serializer<drape::results::Cell> {
 
 namespace drape::results {
 
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Column, name, title, unit, description, cells, shown)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Table, name, description, columns)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Column, name, title, unit, description, role, cells, shown)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Table, name, description, columns, headline)
 
 }  // namespace drape::results

@@ -106,7 +106,7 @@ results::RunRecord record(const RunSpec& spec, std::span<Observer* const> observ
   all.insert(all.end(), observers.begin(), observers.end());
   std::optional<model::Cloth> cloth;
   RunEnd end = run(spec, cloth, all, limits);
-  record.outcome = to_string(end.result.outcome);
+  record.outcome = end.result.outcome;
   record.message = std::move(end.result.message);
   if (record.message.empty() && model::is_at_rest(spec.scene)) record.message = model::at_rest_remark;
   record.last_good_time = end.result.last_good_time;

@@ -58,7 +58,7 @@ MeasuredRun measure(const RunSpec& spec, const SweepOptions& options) {
   if (options.look) observers.push_back(&look.emplace(options.look(spec)));
   MeasuredRun measured{record(spec, observers, options.limits), {}, {}};
   if (trajectory) measured.run.trajectory = trajectory->result();
-  if (!samples || measured.run.outcome != to_string(solver::Outcome::success)) return measured;
+  if (!samples || measured.run.outcome != solver::Outcome::success) return measured;
   for (const solver::State& y : samples->states()) {
     measured.positions.push_back(y.x);
     measured.velocities.push_back(y.v);
@@ -80,7 +80,7 @@ double compare_all(std::vector<MeasuredRun>& runs, const reference::Reference& r
                    const model::Cloth& cloth) {
   double smallest = std::numeric_limits<double>::infinity();
   for (MeasuredRun& measured : runs) {
-    if (measured.run.outcome != to_string(solver::Outcome::success)) continue;
+    if (measured.run.outcome != solver::Outcome::success) continue;
     compare(measured, reference, scene, cloth);
     smallest = std::min(smallest, measured.run.error->rms);
   }
@@ -120,8 +120,7 @@ std::vector<TimedRun> time_all(const Group& group, int repetitions, const std::v
   std::vector<std::size_t> places, most_steps, steps;
   for (std::size_t k = 0; k < group.size(); ++k) {
     const results::RunRecord& run = runs[k].run;
-    if (run.outcome == to_string(solver::Outcome::out_of_time) || run.outcome == to_string(solver::Outcome::out_of_memory))
-      continue;
+    if (run.outcome == solver::Outcome::out_of_time || run.outcome == solver::Outcome::out_of_memory) continue;
     timed.push_back(group[k]);
     most_steps.push_back(steps_to_time(run));
     places.push_back(k);
@@ -135,7 +134,7 @@ std::vector<TimedRun> time_all(const Group& group, int repetitions, const std::v
 
 /// What is known of a run before its error is.
 std::string preview(const results::RunRecord& run) {
-  std::string line = fmt::format("{} {} h = {}: {}", run.scene, run.method, run.step, run.outcome);
+  std::string line = fmt::format("{} {} h = {}: {}", run.scene, run.method, run.step, to_string(run.outcome));
   if (!run.times_ms.empty()) line += fmt::format(", {:.4g} ms", std::ranges::min(run.times_ms));
   return line + "; its error follows";
 }

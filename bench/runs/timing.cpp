@@ -75,7 +75,7 @@ std::vector<std::vector<double>> time_runs(const std::vector<Repeated>& runs, co
 
 /// A run that the energy guard ended went one step further than it has recorded.
 std::size_t steps_to_time(const results::RunRecord& run) {
-  return run.steps.size() + (run.outcome == to_string(solver::Outcome::unstable) ? 1 : 0);
+  return run.steps.size() + (run.outcome == solver::Outcome::unstable ? 1 : 0);
 }
 
 std::vector<std::vector<double>> time_group(const Group& group, const std::vector<std::size_t>& most_steps, int repetitions,

@@ -32,9 +32,9 @@ void add_draping(results::TableBuilder& table, const model::Scene& scene, const 
   table.number("sunk", "corners sink", "m", "mean of the four corners from start to end", sunk_corners(scene, run));
   table.count("contacts", "in contact", "particles that touched something in the last step",
               run.steps.empty() ? 0 : run.steps.back().contacts);
-  const bool succeeded = run.outcome == to_string(solver::Outcome::success);
+  const bool succeeded = run.outcome == solver::Outcome::success;
   table.text("outcome", "outcome", "how the run ended",
-             succeeded ? run.outcome : fmt::format("{} at {:.4g} s", run.outcome, run.last_good_time));
+             succeeded ? "success" : fmt::format("{} at {:.4g} s", to_string(run.outcome), run.last_good_time));
   if (!thesis) return;
   table.count("thesis_updates", "thesis: updates", "printed in the thesis", thesis->updates);
   table.count("thesis_cg_iterations", "thesis: CG", "printed in the thesis", thesis->cg_iterations);

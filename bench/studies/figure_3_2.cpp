@@ -148,7 +148,7 @@ results::Table swings(const Runs& runs) {
       table.number("wrinkles", "wrinkles", "m", "root mean square distance of the free edge from its mean", seen.wrinkles);
       table.number("bending", "bending", "J", "energy of the bending along u, mean over time", seen.bending.sum());
       table.number("kinetic", "kinetic", "J", "energy of all waves along u, mean over time", seen.kinetic.sum());
-      table.text("outcome", "outcome", "how the run ended", seen.run.outcome);
+      table.text("outcome", "outcome", "how the run ended", std::string(to_string(seen.run.outcome)));
       if (&seen == &runs[k].front())
         table.text("verdict", "verdict", "whether Euler swings less than the truth",
                    seen.peak_to_peak() < runs[k][2].peak_to_peak() ? "swings less" : "does NOT swing less");

@@ -90,7 +90,7 @@ void add_bar(results::TableBuilder& table, const RunRecord& run, const char* wha
   const bool touched = before_contact(run).size() < run.steps.size();
   std::string verdict = value <= bar ? "below" : "NOT below";
   if (!touched) verdict = "no contact";
-  if (run.outcome != to_string(solver::Outcome::success)) verdict = run.outcome;
+  if (run.outcome != solver::Outcome::success) verdict = to_string(run.outcome);
   table.text("verdict", "verdict", "whether it keeps below the bar", verdict);
 }
 

@@ -97,8 +97,8 @@ results::Table energy(const std::string& method, Checkpoint& checkpoint) {
       const results::RunRecord run = record(cell);
       rows.row();
       rows.number("step", "h", "s", "step", h);
-      rows.text("outcome", "outcome", "how the run ended", run.outcome);
-      if (run.outcome != to_string(solver::Outcome::success)) return rows.text("verdict", "verdict", "what", "NOT finished");
+      rows.text("outcome", "outcome", "how the run ended", std::string(to_string(run.outcome)));
+      if (run.outcome != solver::Outcome::success) return rows.text("verdict", "verdict", "what", "NOT finished");
       const std::vector<double> changes = energy_changes(run, cloth);
       const double gain = std::ranges::max(changes), end = changes.back();
       rows.number("change", "change", "1", "of the energy up to the end, over the largest kinetic energy", end);

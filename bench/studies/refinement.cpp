@@ -57,9 +57,9 @@ class Refinement {
     table.text("scene", "scene", "its name", cell_.scene.name);
     table.text("method", "method", "time integrator", name_);
     table.number("step", "h", "s", "step", run.step);
-    if (run.outcome != to_string(solver::Outcome::success)) {
-      table.text("outcome", "outcome", "how the run failed", run.outcome);
-      if (run.outcome == to_string(solver::Outcome::failed)) table.text("reason", "reason", "what was thrown", run.message);
+    if (run.outcome != solver::Outcome::success) {
+      table.text("outcome", "outcome", "how the run failed", std::string(to_string(run.outcome)));
+      if (run.outcome == solver::Outcome::failed) table.text("reason", "reason", "what was thrown", run.message);
       return true;
     }
     const results::ErrorRecord error = distance(run, reference_, cell_.scene, cloth_);

@@ -44,7 +44,7 @@ results::RunRecord run_bdf2(const model::Scene& scene) {
 
 /// What a run cost; a run that stalls costs more than any other.
 double cost(const results::RunRecord& run, const char* work) {
-  if (run.outcome != to_string(solver::Outcome::success)) return std::numeric_limits<double>::infinity();
+  if (run.outcome != solver::Outcome::success) return std::numeric_limits<double>::infinity();
   return static_cast<double>(work_count(run, work));
 }
 

@@ -63,7 +63,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Controlled, scene, set, method, tolerance, er
 using ControlledRuns = std::vector<Controlled>;
 
 std::string judge(const Controlled& run) {
-  if (run.outcome != to_string(solver::Outcome::success)) return run.steps == 0 ? "cost explodes" : "fails";
+  if (run.outcome != solver::Outcome::success) return run.steps == 0 ? "cost explodes" : "fails";
   const double ratio = run.error / run.tolerance;
   if (ratio > band) return fmt::format("NOT within {:g}: over by {:.2g}", band, ratio);
   if (ratio * band >= 1) return fmt::format("within {:g}", band);
@@ -95,14 +95,14 @@ class Measurement {
     result.method = method.name;
     result.tolerance = tolerance;
     result.uncertainty = std::ranges::max(reference_.error) / model::size(scene_);
-    result.outcome = run.outcome;
+    result.outcome = to_string(run.outcome);
     result.note = run.message;
     result.steps = std::ssize(run.steps);
     result.rejected = results::work_count(run, "rejected_steps");
     result.pilots = results::work_count(run, "pilot_steps");
     result.forces = results::work_count(run, "forces") + results::work_count(run, "explicit_forces");
     result.largest_steps = std::ranges::any_of(run.steps, [&](const auto& step) { return step.h > 0.99 * cell.step; });
-    if (run.outcome == to_string(solver::Outcome::success)) result.error = error(output->positions);
+    if (run.outcome == solver::Outcome::success) result.error = error(output->positions);
     result.verdict = judge(result);
     return result;
   }

@@ -92,7 +92,7 @@ Matching match(const std::vector<RunRecord>& a, const std::vector<RunRecord>& b)
 
 // --- Accuracy ------------------------------------------------------------------------------------------------------------
 
-bool succeeded(const RunRecord& run) { return run.outcome == to_string(solver::Outcome::success); }
+bool succeeded(const RunRecord& run) { return run.outcome == solver::Outcome::success; }
 
 void compare_error(const Pair& pair, const std::string& quantity, double ErrorRecord::*error, double ErrorRecord::*uncertainty,
                    const CompareOptions& options, Findings& findings) {
@@ -114,7 +114,8 @@ void compare_outcomes(const Pair& pair, const CompareOptions& options, Findings&
                                                              : Judgement::same;
   if (judgement == Judgement::same) return;
   const auto text = [](const RunRecord& run) {
-    return succeeded(run) ? run.outcome : fmt::format("{} at {} s", run.outcome, shown(run.last_good_time));
+    const std::string_view outcome = to_string(run.outcome);
+    return succeeded(run) ? std::string(outcome) : fmt::format("{} at {} s", outcome, shown(run.last_good_time));
   };
   findings.add({title(*pair.a), "outcome", text(*pair.a), text(*pair.b), judgement == Judgement::better ? -INFINITY : INFINITY,
                 judgement});

@@ -45,7 +45,7 @@ std::string worst_in_words(const Runs& runs) {
 std::string failures_in_words(const Runs& runs) {
   std::set<std::string> outcomes;
   for (const RunRecord* run : runs)
-    if (!ended_well(*run)) outcomes.insert(fmt::format("{} {}", run->method, run->outcome));
+    if (!ended_well(*run)) outcomes.insert(fmt::format("{} {}", run->method, to_string(run->outcome)));
   return outcomes.empty() ? "" : fmt::format("fails: {}", fmt::join(outcomes, ", "));
 }
 

@@ -56,6 +56,8 @@ Table members(const std::string& name, const std::string& description, const aut
     using Value = std::remove_cvref_t<decltype(record.*field.member)>;
     const auto& value = record.*field.member;
     if constexpr (std::is_same_v<Value, double>) facts.add(field.name, value, field.unit, field.description);
+    if constexpr (std::is_same_v<Value, solver::Outcome>)
+      facts.add(field.name, std::string(to_string(value)), field.description);
     if constexpr (std::is_same_v<Value, std::string>)
       if (value.find('\n') == std::string::npos) facts.add(field.name, value, field.description);
   });

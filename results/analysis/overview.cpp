@@ -93,7 +93,7 @@ void add_failures(const std::string& scene, const std::vector<const RunRecord*>&
     overview.text("scene", "scene", "its name, and what is set in it", scene);
     overview.text("method", "method", "time integrator", run->method);
     overview.number("step", "step", "s", "time step h", run->step);
-    overview.text("outcome", "outcome", "how it failed", run->outcome);
+    overview.text("outcome", "outcome", "how it failed", std::string(to_string(run->outcome)));
     overview.number("reached", "reached", "s", "last good time", run->last_good_time);
     overview.text("message", "why", "what the program says", run->message);
   }

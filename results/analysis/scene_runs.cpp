@@ -25,7 +25,7 @@ RunsOfScene by_scene(std::span<const Recording> recordings) {
   return scenes;
 }
 
-bool ended_well(const RunRecord& run) { return run.outcome == to_string(solver::Outcome::success); }
+bool ended_well(const RunRecord& run) { return run.outcome == solver::Outcome::success; }
 
 Measured measured(const RunRecord& run) {
   if (!ended_well(run) || !run.error || !comparable(*run.error) || run.times_ms.empty()) return {NAN, {}};

@@ -44,12 +44,23 @@ void write(const Handle& group, const auto& field, const std::vector<Number>& va
   hdf5::write_numbers(group, field.name, values.data(), {values.size()}, field.unit, field.description);
 }
 
+void write(const Handle& group, const auto& field, solver::Outcome outcome) {
+  hdf5::write_described_text(group, field.name, std::string(to_string(outcome)), field.description);
+}
+
 void write(const Handle& group, const auto& field, const solver::Vectors& values) {
   const auto rows = static_cast<std::uint64_t>(values.rows());
   hdf5::write_numbers(group, field.name, values.data(), {rows, 3}, field.unit, field.description);
 }
 
 void read(const Handle& group, const char* name, std::string& value) { value = hdf5::read_text(group, name); }
+
+void read(const Handle& group, const char* name, solver::Outcome& outcome) {
+  const std::string text = hdf5::read_text(group, name);
+  const auto known = solver::outcome_named(text);
+  if (!known) throw hdf5::Error(fmt::format("{} is '{}', which this program does not know", name, text));
+  outcome = *known;
+}
 
 void read(const Handle& group, const char* name, double& value) { value = hdf5::read_number<double>(group, name); }
 
@@ -134,15 +145,18 @@ RunRecord read_run(const Handle& group) {
 
 // --- Files ---------------------------------------------------------------------------------------------------------------
 
-void require_version(const Handle& file) {
-  const int version = hdf5::read_integer(file, "schema_version");
-  if (version != schema_version)
-    throw hdf5::Error(fmt::format("its schema_version is {}, this program reads {}", version, schema_version));
+int version_of(const Handle& file) { return hdf5::read_integer(file, "schema_version"); }
+
+void require_version(const Handle& file, int oldest) {
+  const int version = version_of(file);
+  if (version < oldest || version > schema_version)
+    throw hdf5::Error(
+        fmt::format("its schema_version is {}, this program reads {} to {}", version, oldest_readable_version, schema_version));
 }
 
 Handle open_run_file(const fs::path& path) {
   Handle file = hdf5::open_for_reading(path);
-  require_version(file);
+  require_version(file, oldest_readable_version);
   return file;
 }
 
@@ -156,7 +170,7 @@ std::vector<RunRecord> runs_of(const Handle& file) {
 std::vector<Table> tables_of(const Handle& file) {
   const Handle tables = hdf5::open_group(file, "tables");
   std::vector<Table> result;
-  for (const std::string& name : hdf5::groups(tables)) result.push_back(read_table(tables, name));
+  for (const std::string& name : hdf5::groups(tables)) result.push_back(read_table(tables, name, version_of(file)));
   return result;
 }
 
@@ -183,7 +197,7 @@ Handle begin(const Provenance& provenance) {
 /// What a process before this one has left. What others have added would be lost with the next image.
 Handle go_on(const fs::path& path, const Provenance& provenance) {
   auto [file, added, altered] = hdf5::open_with_changes(path);
-  require_version(file);
+  require_version(file, schema_version);
   if (!added.empty() || !altered.empty())
     throw hdf5::Error(fmt::format("cannot be continued: another program has changed {}; choose another --out",
                                   added.empty() ? altered.front() : added.front()));

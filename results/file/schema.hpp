@@ -7,7 +7,8 @@
 namespace drape::results {
 
 /// The layout of a run in the file: this one list serves writing and reading. results/README.md shows it for people.
-inline constexpr int schema_version = 4;
+inline constexpr int schema_version = 5;
+inline constexpr int oldest_readable_version = 4;  ///< whose columns have no roles: see schema_4.hpp
 
 /// A member of a record under its name in the file. Text has no unit; numbers have one, "1" if they have no dimension.
 template <class Record, class Value>

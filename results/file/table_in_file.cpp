@@ -6,6 +6,8 @@
 #include <limits>
 #include <sstream>
 
+#include "results/file/schema_4.hpp"
+
 namespace drape::results {
 namespace {
 
@@ -24,7 +26,7 @@ double number(const Cell& cell) {
 
 /// A column has one type in the file: text, whole numbers if all its cells are such, else real numbers, NaN for none.
 void write_column(const Handle& group, const Column& column) {
-  const auto& [name, title, unit, description, cells, shown] = column;
+  const auto& [name, title, unit, description, role, cells, shown] = column;
   if (unit.empty()) {
     std::vector<std::string> texts;
     for (const Cell& cell : cells) texts.push_back(is<std::string>(cell) ? std::get<std::string>(cell) : "");
@@ -39,6 +41,14 @@ void write_column(const Handle& group, const Column& column) {
     hdf5::write_numbers(group, name, numbers.data(), {numbers.size()}, unit, description);
   }
   hdf5::write_text(group, name + ".title", title);
+  hdf5::write_text(group, name + ".role", std::string(to_string(role)));
+}
+
+Role read_role(const Handle& group, const std::string& name) {
+  const std::string text = hdf5::read_text(group, name + ".role");
+  const auto role = role_named(text);
+  if (!role) throw hdf5::Error(fmt::format("the role of the column {} is '{}', which this program does not know", name, text));
+  return *role;
 }
 
 std::vector<Cell> read_cells(const Handle& group, const std::string& name, const std::string& unit) {
@@ -62,11 +72,12 @@ void write_table(const Handle& tables, const Table& table) {
     names.push_back(column.name);
   }
   hdf5::write_described_text(group, "columns", fmt::format("{}", fmt::join(names, " ")), "the columns in their order");
+  hdf5::write_integer(group, "headline", table.headline ? 1 : 0);
 }
 
-Table read_table(const Handle& tables, const std::string& name) {
+Table read_table(const Handle& tables, const std::string& name, int version) {
   const Handle group = hdf5::open_group(tables, name);
-  Table table{name, hdf5::read_text(group, "description"), {}};
+  Table table{name, hdf5::read_text(group, "description"), {}, version > 4 && hdf5::read_integer(group, "headline") != 0};
   const auto infos = hdf5::datasets(group);
   std::istringstream names(hdf5::read_text(group, "columns"));
   for (std::string column; names >> column;) {
@@ -76,8 +87,11 @@ Table read_table(const Handle& tables, const std::string& name) {
                              hdf5::read_text(group, column + ".title"),
                              info->unit,
                              info->description,
+                             version > 4 ? read_role(group, column) : usual_role(column, info->unit),
                              read_cells(group, column, info->unit),
                              {}});
+    if (version == 4 && table.columns.back().role == Role::verdict)
+      for (Cell& cell : table.columns.back().cells) cell = usual_verdict(std::get<std::string>(cell));
     if (table.columns.back().cells.size() != rows(table))
       throw hdf5::Error(fmt::format("the columns of the table {} are not equally long", name));
   }

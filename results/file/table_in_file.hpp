@@ -8,6 +8,7 @@ namespace drape::results {
 /// Writes a table as a group of datasets, one for each column; what people are shown in place of cells is not kept.
 void write_table(const hdf5::Handle& tables, const Table& table);
 
-Table read_table(const hdf5::Handle& tables, const std::string& name);
+/// `version`: of the file's schema.
+Table read_table(const hdf5::Handle& tables, const std::string& name, int version);
 
 }  // namespace drape::results

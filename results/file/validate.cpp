@@ -98,6 +98,10 @@ std::optional<Shape> member(Check& check, const std::string& group, const auto& 
   return check.described_text(group, field.name), std::nullopt;
 }
 
+std::optional<Shape> member(Check& check, const std::string& group, const auto& field, const solver::Outcome*) {
+  return check.described_text(group, field.name), std::nullopt;
+}
+
 std::optional<Shape> member(Check& check, const std::string& group, const auto& field, const double*) {
   return check.numbers(fmt::format("{}/{}", group, field.name), "float64", 0, field.unit);
 }
@@ -213,16 +217,18 @@ void check_column(Check& check, const std::string& path, SameRows& rows) {
   rows.see(path, check.numbers(path, type, 1, std::nullopt));
 }
 
-void check_table(Check& check, const Handle& file, const std::string& group) {
+void check_table(Check& check, const Handle& file, const std::string& group, bool has_roles) {
   if (!check.group(group)) return;
   const bool named = check.find(group + "@columns") != nullptr && check.find(group + "@columns")->type == "text";
   check.described_text(group, "columns");
+  if (has_roles) check.attribute(group, "headline", "int32");
   if (!named) return;
   SameRows rows(check, "rows");
   std::istringstream names(hdf5::read_text(hdf5::open_group(file, group), "columns"));
   for (std::string name; names >> name;) {
     check_column(check, fmt::format("{}/{}", group, name), rows);
     check.attribute(group, name + ".title", "text");
+    if (has_roles) check.attribute(group, name + ".role", "text");
   }
 }
 
@@ -244,14 +250,17 @@ std::vector<std::string> validate(const std::filesystem::path& path) {
     for (const std::string& where : altered) check.note(where, "has been altered by another program");
     for (const std::string& where : added) check.note(where, "has been added by another program");
     if (const Item* version = check.find("@schema_version"); version != nullptr && version->type == "int32")
-      if (const int found = hdf5::read_integer(file, "schema_version"); found != schema_version)
-        return {fmt::format("@schema_version: is {}, this program knows {}", found, schema_version)};
+      if (const int found = hdf5::read_integer(file, "schema_version");
+          found < oldest_readable_version || found > schema_version)
+        return {
+            fmt::format("@schema_version: is {}, this program knows {} to {}", found, oldest_readable_version, schema_version)};
     check_facts(check, file);
     if (check.group("/runs"))
       for (int k = 0; check.find(fmt::format("/runs/{:03}", k)) != nullptr; ++k)
         check_run(check, fmt::format("/runs/{:03}", k));
     if (check.group("/tables"))
-      for (const std::string& name : check.members("/tables")) check_table(check, file, "/tables/" + name);
+      for (const std::string& name : check.members("/tables"))
+        check_table(check, file, "/tables/" + name, hdf5::read_integer(file, "schema_version") > 4);
     return check.finish();
   } catch (const hdf5::Error& error) {
     throw base::FileError(fmt::format("{}: {}", path.string(), error.what()));

@@ -72,7 +72,7 @@ RunRecord run(const std::string& method) {
   run.method = method;
   run.step = 0.01;
   run.until = 1;
-  run.outcome = "success";
+  run.outcome = solver::Outcome::success;
   run.last_good_time = 1;
   run.parameters = {{"loop_tolerance", 1e-5, "1", ""}};
   run.work = {{"updates", "", 100}, {"force/tension", "", 300}};
@@ -172,7 +172,7 @@ TEST(Compare, LooksAtEnergiesWherePositionsSayLittle) {
 TEST(Compare, FindsRunsThatFailNow) {
   const Recording a = timed(1);
   Recording b = a;
-  b.runs[5].outcome = "not converged";
+  b.runs[5].outcome = solver::Outcome::not_converged;
   b.runs[5].error.reset();
   EXPECT_EQ(compare(a, b).accuracy.judgement, Judgement::regression);
   EXPECT_EQ(compare(b, a).accuracy.judgement, Judgement::better);

@@ -53,7 +53,7 @@ RunRecord full_record() {
   run.parameters = {{"k_weft", 1e300, "N/m", "stretch stiffness k₁"}, {"wind", -infinity, "m/s", "speed of the wind"}};
   run.numerical_stiffness = 5e-324;
   run.stiffness_to_damping = infinity;
-  run.outcome = "not finite";
+  run.outcome = solver::Outcome::not_finite;
   run.message = "NaN at particle 3, \"corner\"\nafter 2 steps";
   run.last_good_time = 0.2;
   run.steps = {{0.1, 0.1, 1, 20, 0.25, -3}, {0.2, 0.1, 2, 21, nan, infinity}};
@@ -358,7 +358,7 @@ TEST(ReadRuns, RefusesForeignHdf5AndOtherVersions) {
   const hdf5::Handle file = hdf5::create_in_memory();
   EXPECT_THAT(publish_image(folder / "external.h5", file), HasSubstr("external.h5: schema_version: can't locate attribute"));
   hdf5::write_integer(file, "schema_version", schema_version + 1);
-  EXPECT_THAT(publish_image(folder / "newer.h5", file), HasSubstr("schema_version is 5, this program reads 4"));
+  EXPECT_THAT(publish_image(folder / "newer.h5", file), HasSubstr("schema_version is 6, this program reads 4 to 5"));
 }
 
 }  // namespace

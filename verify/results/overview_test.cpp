@@ -75,7 +75,7 @@ RunRecord run(const char* method, double error, double ms) {
   run.scene = "sheet";
   run.method = method;
   run.step = 0.01;
-  run.outcome = "success";
+  run.outcome = solver::Outcome::success;
   run.times_ms = {ms};
   run.error.emplace().rms = error;
   run.error->growth = 1;
@@ -95,7 +95,7 @@ TEST(Overview, ShowsWhatFailedAndWhy) {
   RunRecord failed = run("bdf2", 0, 1);
   failed.error.reset();
   failed.overrides = "k=1";
-  failed.outcome = "unstable";
+  failed.outcome = solver::Outcome::unstable;
   failed.message = "too much energy";
   failed.last_good_time = 0.12;
   EXPECT_EQ(shown({{}, {failed}, {}}, "failures"),
@@ -120,7 +120,7 @@ TEST(Overview, ShowsTenOfWhatIsNotAsItWasWanted) {
 TEST(Conclusion, SaysOfRunsWhoIsQuickWhoIsWrongAndWhoFails) {
   RunRecord failed = run("unlucky", 0, 1);
   failed.error.reset();
-  failed.outcome = "unstable";
+  failed.outcome = solver::Outcome::unstable;
   EXPECT_THAT(
       conclusion({{}, {run("slow", 1e-5, 3), run("quick", 1e-2, 0.05), run("wrong", 0.3, 1), failed}, {}}),
       ElementsAre("sheet: error <= 0.01 in 0.05 ms by quick, h = 0.01 s; error <= 0.0001 in 3 ms by slow, h = 0.01 s",

@@ -28,7 +28,7 @@ RunRecord good_run() {
   run.scene = "flag";
   run.method = "bdf2/cholesky";
   run.step = 0.01;
-  run.outcome = "success";
+  run.outcome = solver::Outcome::success;
   run.steps.resize(2);
   run.work = {{"updates", "", 3}, {"cg_iterations", "", 42}};  // those of rejected steps included
   run.times_ms = {4, 1, 2, 3};
@@ -59,7 +59,7 @@ RunRecord good_run() {
 RunRecord failed_run() {
   RunRecord run = good_run();
   run.scene = "Fähnchen";
-  run.outcome = "not converged";
+  run.outcome = solver::Outcome::not_converged;
   run.message = "said \"no\", twice\nand again";
   run.overrides = "material.damping=0.5";
   run.times_ms.clear();

@@ -74,7 +74,7 @@ TEST(Trajectory, OfARunThatFailsEndsWithIt) {
   const BenchIntegrators program;
   const auto all = runs(program, tiny + Words{"--set", "material.damping=0.5", "--method", "bdf2/fixed-point", "--max-updates",
                                               "1", "--step", "0.01", "--trajectory", "every=0.001"});
-  EXPECT_NE(all[0].outcome, "success");
+  EXPECT_NE(all[0].outcome, solver::Outcome::success);
   EXPECT_NEAR(all[0].trajectory->times.back(), all[0].last_good_time, 1e-12);
 }
 

@@ -37,7 +37,7 @@ TEST(OldFiles, StayReadable) {
   const auto runs = read_runs(old_runs);
   ASSERT_THAT(runs, SizeIs(1));
   EXPECT_EQ(runs[0].method, "bdf2");
-  EXPECT_EQ(runs[0].outcome, "success");
+  EXPECT_EQ(runs[0].outcome, solver::Outcome::success);
   EXPECT_THAT(runs[0].steps, SizeIs(2));
   EXPECT_THAT(runs[0].times_ms, SizeIs(1));
   EXPECT_EQ(runs[0].final_state.x.rows(), 9);
@@ -168,7 +168,7 @@ TEST(Validate, KnowsOneVersion) {
   const Handle file = hdf5::create_in_memory();
   hdf5::write_integer(file, "schema_version", schema_version + 1);
   base::publish(folder / "newer.h5", hdf5::image(file), base::Existing::refuse);
-  EXPECT_THAT(validate(folder / "newer.h5"), testing::ElementsAre("@schema_version: is 5, this program knows 4"));
+  EXPECT_THAT(validate(folder / "newer.h5"), testing::ElementsAre("@schema_version: is 6, this program knows 4 to 5"));
 }
 
 TEST(Validate, RefusesWhatIsNotHdf5) {

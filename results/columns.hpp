@@ -1,0 +1,97 @@
+#pragma once
+
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <ranges>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "results/table.hpp"
+#include "solver/outcome.hpp"
+
+/// Tables from rows: a study computes rows, plain structs, and a list of columns says what a table shows of them.
+namespace drape::results {
+
+inline Cell to_cell(std::string text) { return text; }
+inline Cell to_cell(std::string_view text) { return std::string(text); }
+inline Cell to_cell(const char* text) { return std::string(text); }
+inline Cell to_cell(double value) { return value; }
+inline Cell to_cell(std::integral auto value) { return static_cast<std::int64_t>(value); }
+inline Cell to_cell(solver::Outcome outcome) { return std::string(to_string(outcome)); }
+template <class Value>
+Cell to_cell(const std::optional<Value>& value) {
+  return value ? to_cell(*value) : Cell();
+}
+
+/// A member of a row as its cell: field<&Row::step>.
+template <auto member>
+constexpr auto field = [](const auto& row) -> Cell { return to_cell(row.*member); };
+
+/// A column of a table with rows of this type.
+template <class Row>
+struct ColumnOf {
+  const char* name;         ///< in files, CSV and JSON
+  const char* title;        ///< for people; empty if not shown to them
+  const char* unit;         ///< "1" for numbers without dimension, empty for text
+  const char* description;  ///< what the numbers are
+  Role role;
+  Cell (*value)(const Row& row);
+  std::string (*shown)(const Row& row) = nullptr;  ///< if people see something else
+};
+
+/// What columns of several groups differ in: it stands for "{}" in their names, titles and descriptions.
+struct ColumnGroup {
+  std::string_view name, title, description;
+};
+
+namespace detail {
+
+std::string filled(std::string_view text, std::string_view filling);
+
+template <class Row>
+Column column_of(const ColumnOf<Row>& column, const ColumnGroup& group) {
+  return {filled(column.name, group.name),
+          filled(column.title, group.title),
+          column.unit,
+          filled(column.description, group.description),
+          column.role,
+          {},
+          {}};
+}
+
+}  // namespace detail
+
+/// Appends columns that show a part of each row: `part(row)` gives a pointer to it or an optional one, and where there is none
+/// the cells are empty.
+template <class Part, std::size_t count, std::ranges::input_range Rows, class Select>
+void add_columns(Table& table, const ColumnOf<Part> (&columns)[count], const Rows& rows, const Select& part,
+                 const ColumnGroup& group = {}) {
+  for (const ColumnOf<Part>& column : columns) {
+    Column filled = detail::column_of(column, group);
+    for (const auto& row : rows) {
+      const auto& found = part(row);
+      filled.cells.push_back(found ? column.value(*found) : Cell());
+      if (column.shown) filled.shown.push_back(found ? column.shown(*found) : std::string());
+    }
+    table.columns.push_back(std::move(filled));
+  }
+}
+
+/// Appends columns of the rows themselves.
+template <class Row, std::size_t count, std::ranges::input_range Rows>
+void add_columns(Table& table, const ColumnOf<Row> (&columns)[count], const Rows& rows) {
+  add_columns(table, columns, rows, [](const Row& row) { return &row; });
+}
+
+/// A table of the rows, a column for each of the list.
+template <class Row, std::size_t count, std::ranges::input_range Rows>
+Table make_table(std::string name, std::string description, const ColumnOf<Row> (&columns)[count], const Rows& rows) {
+  Table table{std::move(name), std::move(description), {}, false};
+  add_columns(table, columns, rows);
+  return table;
+}
+
+}  // namespace drape::results

@@ -1,0 +1,37 @@
+#include "results/file/schema_4.hpp"
+
+#include <algorithm>
+#include <initializer_list>
+
+#include "results/verdict.hpp"
+
+namespace drape::results {
+namespace {
+
+bool one_of(std::string_view name, std::initializer_list<std::string_view> names) {
+  return std::ranges::find(names, name) != names.end();
+}
+
+}  // namespace
+
+Role usual_role(std::string_view name, std::string_view unit) {
+  if (one_of(name, {"verdict", "outcome"})) return Role::verdict;
+  if (one_of(name, {"spread", "remark", "detail", "residual", "order"})) return Role::note;  // follow from other numbers
+  if (unit.empty()) return Role::key;
+  if (one_of(unit, {"ms", "ns", "s/s", "GB/s", "MB"}) || one_of(name, {"wall", "exponent", "repetitions"})) return Role::time;
+  if (name == "uncertainty") return Role::uncertainty;
+  if (name == "fitted_order") return Role::order;
+  if (one_of(name, {"updates", "cg_iterations", "steps", "factorisations", "forces", "escalations"})) return Role::counter;
+  return one_of(name, {"error", "rms", "maximum", "distance"}) ? Role::error : Role::quantity;
+}
+
+std::string usual_verdict(const std::string& text) {
+  constexpr std::string_view no = "NOT";
+  if (const std::size_t place = text.find(no); place != std::string::npos)
+    return verdict(Standing::missed, std::string(text).replace(place, no.size(), "not"));
+  for (const std::string_view good : {"as declared", "as in theory", "as predicted", "below"})
+    if (text.ends_with(good)) return verdict(Standing::met, text);
+  return text.starts_with("no ") ? verdict(Standing::open, text) : text;
+}
+
+}  // namespace drape::results

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "results/table.hpp"
+
+/// Files of schema version 4 do not say what their columns are: it is known by names and units.
+namespace drape::results {
+
+Role usual_role(std::string_view name, std::string_view unit);
+
+/// A verdict of such a file as verdict.hpp has it: "NOT 4" is "missed: not 4".
+std::string usual_verdict(const std::string& text);
+
+}  // namespace drape::results
