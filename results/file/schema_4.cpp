@@ -37,9 +37,12 @@ Figure usual_figure(const Table& table) {
 
 std::string usual_verdict(const std::string& text) {
   constexpr std::string_view no = "NOT";
-  if (const std::size_t place = text.find(no); place != std::string::npos)
-    return verdict(Standing::missed, std::string(text).replace(place, no.size(), "not"));
-  for (const std::string_view good : {"as declared", "as in theory", "as predicted", "below"})
+  if (text.find(no) != std::string::npos) {
+    std::string detail = text;
+    for (std::size_t place = 0; (place = detail.find(no, place)) != std::string::npos;) detail.replace(place, no.size(), "not");
+    return verdict(Standing::missed, detail);
+  }
+  for (const std::string_view good : {"as declared", "as in theory", "as predicted", "below", "falls with d", "swings less"})
     if (text.ends_with(good)) return verdict(Standing::met, text);
   return text.starts_with("no ") ? verdict(Standing::open, text) : text;
 }
