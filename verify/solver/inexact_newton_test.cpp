@@ -48,7 +48,7 @@ struct Solved {
     EXPECT_EQ(newton.renew(0, y, gamma), Outcome::success);
     result = newton.solve(r, d);
     SparseMatrix J;
-    cloth.ode.newton_matrix(0, y.x, y.v, gamma, false, J);
+    cloth.ode.newton_matrix(0, y.x, y.v, gamma, solver::Jacobian::whole, J);
     const Eigen::VectorXd flat_d = d.reshaped<Eigen::RowMajor>(), flat_r = r.reshaped<Eigen::RowMajor>();
     residual = (J.selfadjointView<Eigen::Upper>() * flat_d - flat_r).norm() / flat_r.norm();
   }
