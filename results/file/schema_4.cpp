@@ -17,12 +17,22 @@ bool one_of(std::string_view name, std::initializer_list<std::string_view> names
 Role usual_role(std::string_view name, std::string_view unit) {
   if (one_of(name, {"verdict", "outcome"})) return Role::verdict;
   if (one_of(name, {"spread", "remark", "detail", "residual", "order"})) return Role::note;  // follow from other numbers
-  if (unit.empty()) return Role::key;
+  if (unit.empty() || one_of(name, {"step", "n"})) return Role::key;
   if (one_of(unit, {"ms", "ns", "s/s", "GB/s", "MB"}) || one_of(name, {"wall", "exponent", "repetitions"})) return Role::time;
   if (name == "uncertainty") return Role::uncertainty;
   if (name == "fitted_order") return Role::order;
   if (one_of(name, {"updates", "cg_iterations", "steps", "factorisations", "forces", "escalations"})) return Role::counter;
   return one_of(name, {"error", "rms", "maximum", "distance"}) ? Role::error : Role::quantity;
+}
+
+Figure usual_figure(const Table& table) {
+  const auto has = [&](std::initializer_list<std::string_view> names) {
+    return std::ranges::any_of(names, [&](std::string_view name) { return find_column(table, name) != nullptr; });
+  };
+  if (table.name.starts_with("trials: ")) return Figure::work_precision;
+  if (table.name == "stability-atlas") return Figure::stability;
+  if (table.name.starts_with("figure-4.3") && has({"t"})) return Figure::over_time;
+  return has({"step", "n"}) && has({"error", "rms"}) && has({"order"}) ? Figure::convergence : Figure::none;
 }
 
 std::string usual_verdict(const std::string& text) {

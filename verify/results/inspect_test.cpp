@@ -7,7 +7,6 @@
 
 #include "results/file/run_file.hpp"
 #include "verify/support/bench_integrators.hpp"
-#include "verify/support/tables.hpp"
 
 namespace drape::verify::inspect_test {
 namespace {
@@ -29,8 +28,8 @@ class Inspect : public testing::Test {
     results::RunFile(file, {{"version", "0.1", "of drape"}})
         .add(results::Table{"areas",
                             "areas of things",
-                            {column("thing", "", results::Role::key, {"a, b", "c"}),
-                             column("area", "m²", results::Role::quantity, {2.5, 1.0 / 3})}});
+                            {{"thing", "thing", "", "", results::Role::key, {"a, b", "c"}, {}},
+                             {"area", "area", "m²", "", results::Role::quantity, {2.5, 1.0 / 3}, {}}}});
   }
   std::string inspect(const Words& arguments) const { return program_.output(Words{"inspect"} + arguments); }
   nlohmann::json json(const Words& arguments) const { return nlohmann::json::parse(inspect(arguments + Words{"--json"})); }
