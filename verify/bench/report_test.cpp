@@ -25,6 +25,7 @@ using nlohmann::json;
 using results::Cell;
 using results::ColumnOf;
 using results::field;
+using results::Figure;
 using results::Role;
 using results::Table;
 using results::to_cell;
@@ -66,7 +67,9 @@ Table orders() {
     rows.back().fitted_order = order;
     rows.back().verdict = order == 2 ? "met: 2 as declared" : "missed: not 1";
   }
-  return make_table("orders-sheet", "Order in time on a sheet", order_columns, rows);
+  Table table = make_table("orders-sheet", "Order in time on a sheet", order_columns, rows);
+  table.figure = Figure::convergence;
+  return table;
 }
 
 /// The k-th trial of a code, 1 to 3; the third fails.
@@ -101,6 +104,7 @@ Table trials() {
     for (int k = 1; k <= 3; ++k) rows.push_back({code, slowness, k});
   Table table = make_table("trials: sheet", "All that was tried on sheet", trial_columns, rows);
   add_columns(table, measured_columns, rows, [](const Trial& trial) { return trial.k < 3 ? &trial : nullptr; });
+  table.figure = Figure::work_precision;
   return table;
 }
 
@@ -115,7 +119,9 @@ Table atlas() {
            {"nu", "ν_h", "1", "", Role::quantity, {1.0, 1.0, 1e5, 1e5}, {}},
            {"to_damping", "h k/d", "1", "", Role::quantity, {1.0, infinite, 1.0, infinite}, {}},
            {"predicted", "predicted", "", "", Role::key, {"stable", "stable", "unstable", "unstable"}, {}},
-           {"verdict", "verdict", "", "", Role::verdict, {"accurate", "accurate", "unstable", "unstable"}, {}}}};
+           {"verdict", "verdict", "", "", Role::verdict, {"accurate", "accurate", "unstable", "unstable"}, {}}},
+          false,
+          Figure::stability};
 }
 
 /// What would end the script that the data are in, or become an element, if the page were careless.
@@ -131,7 +137,9 @@ Table over_time() {
   return {"figure-4.3",
           "Figure 4.3: a sheet and a box",
           {column("t", "s", Role::key, {0.05, 0.1, 0.15, 0.2}), column("bdf2_updates", "1", Role::counter, means),
-           column("bdf2_CG", "1", Role::counter, means), column("bdf2_contacts", "1", Role::quantity, means)}};
+           column("bdf2_CG", "1", Role::counter, means), column("bdf2_contacts", "1", Role::quantity, means)},
+          false,
+          Figure::over_time};
 }
 
 /// A sheet on a box that rises, beside other obstacles.

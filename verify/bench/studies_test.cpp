@@ -105,7 +105,9 @@ Table some_table() {
           {{"name", "name", "", "who", Role::key, {"Ähre", "b, c", {}}, {}},
            {"n", "n", "1", "how many", Role::counter, {three, four, {}}, {}},
            {"x", "x", "m", "where", Role::quantity, {{}, 0.1 + 0.2, {}}, {}},
-           {"hidden", "", "1", "not shown", Role::note, {{}, {}, 7.0}, {}}}};
+           {"hidden", "", "1", "not shown", Role::note, {{}, {}, 7.0}, {}}},
+          false,
+          results::Figure::convergence};
 }
 
 TEST(StudyTable, IsShownWithoutItsHiddenColumns) {
@@ -140,6 +142,7 @@ TEST(StudyTable, IsReadBackFromItsFile) {
   EXPECT_EQ(tables[0].name, "other");
   const Table &read = tables[1], written = some_table();
   EXPECT_EQ(read.description, written.description);
+  EXPECT_EQ(read.figure, written.figure);
   ASSERT_EQ(read.columns.size(), written.columns.size());
   for (std::size_t k = 0; k < read.columns.size(); ++k) {
     EXPECT_EQ(read.columns[k].name, written.columns[k].name);
