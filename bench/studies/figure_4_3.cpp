@@ -104,6 +104,7 @@ results::Table over_time(const char* name, const char* title, const std::vector<
     results::add_columns(table, curves, rows, [&](const Window& row) -> const auto& { return row.runs[k]; },
                          {method, method, ""});
   }
+  table.figure = results::Figure::over_time;
   if (length == 1)
     for (results::Column& column : table.columns) column.title.clear();
   return table;

@@ -6,20 +6,21 @@
 #include <gtest/gtest.h>
 
 #include "results/analysis/conclusion.hpp"
-#include "results/table_builder.hpp"
+#include "verify/support/tables.hpp"
 
 namespace drape::verify::overview_test {
 namespace {
 
+using results::Cell;
 using results::Recording;
+using results::Role;
 using results::RunRecord;
 using results::Table;
-using results::TableBuilder;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-Recording recording(TableBuilder table) { return {{}, {}, {table.finish()}}; }
+Recording recording(const Table& table) { return {{}, {}, {table}}; }
 
 /// A table of the overview, which is the only one beside the conclusion.
 std::string shown(const Recording& recording, const std::string& name) {
@@ -38,34 +39,26 @@ std::vector<std::string> conclusion(const Recording& recording) {
 }
 
 TEST(Overview, CountsOrdersThatAreAsDeclaredAndNamesTheOthers) {
-  TableBuilder table("orders-sheet", "");
-  const auto curve = [&](const char* method, const char* verdict, double order) {
-    table.row();
-    table.text("method", "method", "", method);
-    table.text("verdict", "verdict", "", verdict);
-    if (order > 0) table.number("fitted_order", "fitted", "1", "", order);
-  };
-  curve("bdf2", "", 0);
-  curve("bdf2", "2 as declared", 2.01);
-  curve("bdf3", "NOT 3", 2.5);
-  curve("bdf5", "no order to be seen", 0);
+  const Table table{
+      "orders-sheet",
+      "",
+      {column("method", "", Role::key, {"bdf2", "bdf2", "bdf3", "bdf5"}),
+       column("verdict", "", Role::verdict, {{}, "met: 2 as declared", "missed: not 3", "open: no order to be seen"}),
+       column("fitted_order", "1", Role::order, {{}, 2.01, 2.5, {}})}};
   EXPECT_EQ(shown(recording(table), "orders"),
-            "table,good,others\norders-sheet,1 of 3,bdf3: NOT 3 but 2.50; bdf5: no order to be seen\n");
+            "table,good,others\norders-sheet,1 of 3,bdf3: missed: not 3 but 2.50; bdf5: open: no order to be seen\n");
 }
 
 TEST(Overview, NamesTheQuickestBesideTheBestOfSundials) {
-  TableBuilder table("winners", "");
-  table.row();
-  table.text("scene", "scene", "", "sheet");
-  table.number("error", "error", "1", "", 0.01);
-  table.text("ours", "", "", "bdf2");
-  table.number("ours_ms", "", "ms", "", 2);
-  for (const auto& [family, ratio] : {std::pair{"cvode-bdf", 7.0}, {"ida-bdf", 3.0}, {"thesis", 2.0}}) {
-    table.text(family, "", "", std::string(family) + " at its best");
-    table.number((std::string(family) + "_ratio").c_str(), "", "1", "", ratio);
+  Table table{"winners",
+              "",
+              {column("scene", "", Role::key, {"sheet", {}}), column("error", "1", Role::key, {0.01, 0.001}),
+               column("ours", "", Role::note, {"bdf2", {}}),  // nobody gets to the second error
+               column("ours_ms", "ms", Role::time, {2.0, {}})}};
+  for (const auto& [family, ratio] : {std::pair<std::string, double>{"cvode-bdf", 7}, {"ida-bdf", 3}, {"thesis", 2}}) {
+    table.columns.push_back(column(family, "", Role::note, {family + " at its best", {}}));
+    table.columns.push_back(column(family + "_ratio", "1", Role::time, {ratio, {}}));
   }
-  table.row();  // where nobody gets to
-  table.number("error", "error", "1", "", 0.001);
   EXPECT_EQ(shown(recording(table), "winners"),
             "scene,error,ours,ours_ms,peer,ratio\nsheet,0.01,bdf2,2,ida-bdf at its best,3\n");
 }
@@ -103,13 +96,13 @@ TEST(Overview, ShowsWhatFailedAndWhy) {
 }
 
 TEST(Overview, ShowsTenOfWhatIsNotAsItWasWanted) {
-  TableBuilder table("bars", "");
-  for (int k = 0; k < 24; ++k) {
-    table.row();
-    table.text("bar", "bar", "", "faster");
-    table.number("error", "error", "1", "", 0.1);
-    table.text("verdict", "verdict", "", k % 2 == 0 ? "met" : "NOT met by 2");
-  }
+  const std::vector<Cell> bars(24, "faster"), errors(24, 0.1);
+  std::vector<Cell> verdicts;
+  for (int k = 0; k < 24; ++k) verdicts.emplace_back(k % 2 == 0 ? "met" : "missed: not met by 2");
+  const Table table{"bars",
+                    "",
+                    {column("bar", "", Role::key, bars), column("error", "1", Role::key, errors),
+                     column("verdict", "", Role::verdict, verdicts)}};
   const Recording all = recording(table);
   const Table not_met = results::overview({&all, 1}).at(0);
   EXPECT_EQ(rows(not_met), 10);
@@ -128,21 +121,18 @@ TEST(Conclusion, SaysOfRunsWhoIsQuickWhoIsWrongAndWhoFails) {
 }
 
 TEST(Conclusion, SaysOfTablesHowManyOrdersAreAsDeclaredAndHowFarSundialsIsBehind) {
-  TableBuilder orders("orders-sheet", ""), winners("winners", "");
-  for (const char* verdict : {"", "2 as declared", "NOT 3"}) {
-    orders.row();
-    orders.text("verdict", "verdict", "", verdict);
-    orders.number("fitted_order", "fitted", "1", "", 2);
-  }
-  for (const double ratio : {3.0, 0.9, 2.0}) {
-    winners.row();
-    winners.text("scene", "scene", "", "sheet");
-    winners.number("arkode-steps_ratio", "", "1", "", ratio);
-    winners.number("cvode-bdf_ratio", "", "1", "", 4);
-    winners.number("thesis_ratio", "", "1", "", 0.1);
-  }
+  const Table orders{"orders-sheet",
+                     "",
+                     {column("verdict", "", Role::verdict, {"", "met: 2 as declared", "missed: not 3"}),
+                      column("fitted_order", "1", Role::order, {2.0, 2.0, 2.0})}};
+  const Table winners{
+      "winners",
+      "",
+      {column("scene", "", Role::key, {"sheet", "sheet", "sheet"}),
+       column("arkode-steps_ratio", "1", Role::time, {3.0, 0.9, 2.0}),
+       column("cvode-bdf_ratio", "1", Role::time, {4.0, 4.0, 4.0}), column("thesis_ratio", "1", Role::time, {0.1, 0.1, 0.1})}};
   EXPECT_THAT(
-      conclusion({{}, {}, {orders.finish(), winners.finish()}}),
+      conclusion({{}, {}, {orders, winners}}),
       ElementsAre("orders-sheet: 1 of 2 methods converge with the order they declare",
                   "sheet: SUNDIALS, tuned, takes 0.9 to 3 times as long as our quickest, in the median 2, over 3 errors"));
 }
