@@ -78,7 +78,7 @@ struct BlockRun {
   std::optional<std::string> verdict;  ///< in the last row of a block
 };
 
-constexpr results::ColumnOf<BlockRun> columns[] = {
+constexpr results::ColumnOf<BlockRun> block_columns[] = {
     {"rows", "rows", "", "the thesis' parameters, or such that the cloth drapes within the time", Role::key,
      field<&BlockRun::block>},
     {"tension", "k", "N/m", "tension modulus", Role::key, field<&BlockRun::k>},
@@ -108,7 +108,7 @@ results::Table compute(bool quick, Checkpoint& checkpoint) {
   std::vector<BlockRun> rows;
   for (const Block& block : blocks()) std::ranges::move(rows_of(block, quick, checkpoint), std::back_inserter(rows));
   results::Table table = results::make_table(
-      "table-3.1", "Table 3.1: the work of BDF(2) on the tablecloth against stiffness k and damping d", columns, rows);
+      "table-3.1", "Table 3.1: the work of BDF(2) on the tablecloth against stiffness k and damping d", block_columns, rows);
   results::add_columns(table, draping_columns, rows, [](const BlockRun& row) { return &row.run; });
   return table;
 }

@@ -68,7 +68,7 @@ struct MethodRun {
   std::optional<double> solver_ms, thesis_seconds;
 };
 
-constexpr results::ColumnOf<MethodRun> columns[] = {
+constexpr results::ColumnOf<MethodRun> method_columns[] = {
     {"cloth", "cloth", "", "k and d as in the thesis, or those of the scene", Role::key, field<&MethodRun::cloth>},
     {"damping", "d", "N s/m", "linear damping", Role::key, field<&MethodRun::damping>},
     {"loop_tolerance", "loop tol.", "1", "of the fixed-point loop, over |b|", Role::key, field<&MethodRun::loop_tolerance>},
@@ -120,8 +120,9 @@ results::Table compute_tablecloth(bool quick, Checkpoint& checkpoint) {
       checkpoint.advance();
     }
   }
-  results::Table table = results::make_table(
-      "table-3.2", "Table 3.2: the methods on the tablecloth; the thesis' figures are from a Pentium III", columns, rows);
+  results::Table table =
+      results::make_table("table-3.2", "Table 3.2: the methods on the tablecloth; the thesis' figures are from a Pentium III",
+                          method_columns, rows);
   results::add_columns(table, draping_columns, rows, [](const MethodRun& row) { return &row.run; });
   results::add_columns(table, time_columns, rows);
   return table;

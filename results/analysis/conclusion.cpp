@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <map>
 #include <set>
 
 #include "results/analysis/scene_runs.hpp"
@@ -62,22 +60,6 @@ void add_orders(TableBuilder& words, const Table& table) {
   add(words, table.name, fmt::format("{} of {} methods converge with the order they declare", count.as_declared, count.curves));
 }
 
-/// The least and the greatest ratio of SUNDIALS' quickest to our quickest.
-void add_peers(TableBuilder& words, const Table& table) {
-  std::map<std::string, std::vector<double>> ratios;
-  for (std::size_t row = 0; row < rows(table); ++row) {
-    const double best = quickest_peer(table, row).ratio;
-    if (std::isfinite(best)) ratios[text_in(find_column(table, "scene"), row)].push_back(best);
-  }
-  for (auto& [scene, all] : ratios) {
-    std::ranges::sort(all);
-    add(words, scene,
-        fmt::format(
-            "SUNDIALS, tuned, takes {:.2g} to {:.2g} times as long as our quickest, in the median {:.2g}, over {} errors",
-            all.front(), all.back(), all[all.size() / 2], all.size()));
-  }
-}
-
 }  // namespace
 
 Table conclusion(std::span<const Recording> recordings) {
@@ -86,10 +68,8 @@ Table conclusion(std::span<const Recording> recordings) {
     for (const std::string& sentence : {quickest_in_words(runs), worst_in_words(runs), failures_in_words(runs)})
       add(words, scene, sentence);
   for (const Recording& recording : recordings)
-    for (const Table& table : recording.tables) {
+    for (const Table& table : recording.tables)
       if (find_column(table, "fitted_order") != nullptr) add_orders(words, table);
-      if (table.name == "winners") add_peers(words, table);
-    }
   return words.finish();
 }
 

@@ -12,7 +12,7 @@
 namespace drape::results {
 namespace {
 
-constexpr ColumnOf<Finding> columns[] = {
+constexpr ColumnOf<Finding> finding_columns[] = {
     {"cell", "cell", "", "a run or a row of a table", Role::key, field<&Finding::cell>},
     {"quantity", "quantity", "", "what differs", Role::key, field<&Finding::quantity>},
     {"a", "a", "", "in the first file", Role::note, field<&Finding::a>},
@@ -45,7 +45,7 @@ Judged summary(const Findings& findings, const std::string& name) {
   judged.reason =
       fmt::format("{} cells: {} worse, {} better, {} not comparable", findings.cells, regressions, improvements, unknown);
   std::string description = fmt::format("the worst of {} differences in {}", sorted.size(), name);
-  judged.worst = make_table(name, std::move(description), columns, std::views::take(sorted, most));
+  judged.worst = make_table(name, std::move(description), finding_columns, std::views::take(sorted, most));
   return judged;
 }
 

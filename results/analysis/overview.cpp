@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <string_view>
 
 #include "results/analysis/conclusion.hpp"
@@ -44,30 +45,6 @@ void add_orders(const Table& table, TableBuilder& overview) {
   overview.text("good", "as declared", "curves whose order is as declared, of all",
                 fmt::format("{} of {}", count.as_declared, count.curves));
   overview.text("others", "the others", "their verdicts", others);
-}
-
-// --- Winners -------------------------------------------------------------------------------------------------------------
-
-/// The best of SUNDIALS in a row of winners: how much slower it is than our best.
-void add_peers(const Table& table, std::size_t row, TableBuilder& overview) {
-  const Peer best = quickest_peer(table, row);
-  if (!std::isfinite(best.ratio)) return;
-  overview.text("peer", "SUNDIALS, tuned", "its quickest with that error", best.name);
-  overview.number("ratio", "slower by", "1", "time of SUNDIALS over that of our quickest", best.ratio);
-}
-
-void add_winners(const Table& table, TableBuilder& overview) {
-  const Column *best = find_column(table, "ours"), *scene = find_column(table, "scene"), *error = find_column(table, "error"),
-               *time = find_column(table, "ours_ms");
-  for (std::size_t row = 0; row < rows(table); ++row) {
-    if (text_in(best, row).empty()) continue;
-    overview.row();
-    overview.text("scene", "scene", "its name", text_in(scene, row));
-    overview.number("error", "error <=", "1", "over the size of the scene", number_in(error, row));
-    overview.text("ours", "our quickest", "with that error", text_in(best, row));
-    overview.number("ours_ms", "time", "ms", "median wall time", number_in(time, row));
-    add_peers(table, row, overview);
-  }
 }
 
 // --- Runs ----------------------------------------------------------------------------------------------------------------
@@ -127,21 +104,21 @@ Table shortened(Table table, std::size_t most) {
 }  // namespace
 
 std::vector<Table> overview(std::span<const Recording> recordings) {
-  TableBuilder orders("orders", "Orders of convergence"), winners("winners", "The quickest at each error"),
+  TableBuilder orders("orders", "Orders of convergence"),
       quickest_runs("quickest-runs", "The quickest recorded run at each error: method and step [s]"),
       failures("failures", "Runs that failed"), not_met("not-met", "What is not as it was wanted");
   for (const Recording& recording : recordings)
-    for (const Table& table : recording.tables) {
-      if (table.name == "winners") add_winners(table, winners);
-      has_orders(table) ? add_orders(table, orders) : add_not_met(table, not_met);
-    }
+    for (const Table& table : recording.tables) has_orders(table) ? add_orders(table, orders) : add_not_met(table, not_met);
   for (const auto& [scene, runs] : by_scene(recordings)) {
     add_quickest(scene, runs, quickest_runs);
     add_failures(scene, runs, failures);
   }
   std::vector<Table> tables;
   if (Table words = conclusion(recordings); rows(words) > 0) tables.push_back(std::move(words));
-  for (TableBuilder* table : {&orders, &winners, &quickest_runs, &failures, &not_met})
+  for (const Recording& recording : recordings)
+    std::ranges::copy_if(recording.tables, std::back_inserter(tables),
+                         [](const Table& table) { return table.headline && rows(table) > 0; });
+  for (TableBuilder* table : {&orders, &quickest_runs, &failures, &not_met})
     if (Table done = shortened(table->finish(), 10); rows(done) > 0) tables.push_back(std::move(done));
   return tables;
 }

@@ -8,14 +8,6 @@
 #include "solver/outcome.hpp"
 
 namespace drape::results {
-namespace {
-
-/// Whether a contender in a table of work and precision is a solver of SUNDIALS.
-bool is_sundials(std::string_view code) {
-  return code.starts_with("cvode-") || code.starts_with("arkode-") || code.starts_with("ida-");
-}
-
-}  // namespace
 
 RunsOfScene by_scene(std::span<const Recording> recordings) {
   RunsOfScene scenes;
@@ -43,18 +35,6 @@ OrderCount count_orders(const Table& table) {
     count.as_declared += is_as_declared(verdict) ? 1 : 0;
   }
   return count;
-}
-
-Peer quickest_peer(const Table& winners, std::size_t row) {
-  constexpr std::string_view ending = "_ratio";
-  Peer best;
-  for (const Column& column : winners.columns) {
-    const double ratio = number_in(&column, row);
-    if (!is_sundials(column.name) || !column.name.ends_with(ending) || !std::isfinite(ratio) || ratio >= best.ratio) continue;
-    const std::string family = column.name.substr(0, column.name.size() - ending.size());
-    best = {text_in(find_column(winners, family), row), ratio};
-  }
-  return best;
 }
 
 }  // namespace drape::results

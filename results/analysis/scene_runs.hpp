@@ -1,6 +1,5 @@
 #pragma once
 
-#include <limits>
 #include <map>
 #include <span>
 #include <string>
@@ -27,12 +26,5 @@ struct OrderCount {
 };
 bool is_as_declared(std::string_view verdict);
 OrderCount count_orders(const Table& table);
-
-/// The quickest solver of SUNDIALS in a row of a table of winners; without a ratio if none reaches the error.
-struct Peer {
-  std::string name;
-  double ratio = std::numeric_limits<double>::quiet_NaN();  ///< of its time to that of our quickest
-};
-Peer quickest_peer(const Table& winners, std::size_t row);
 
 }  // namespace drape::results

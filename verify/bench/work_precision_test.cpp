@@ -129,7 +129,7 @@ TEST_F(WorkPrecision, NamesWinnersAndJudgesTheBars) {
   DRAPE_SLOW();
   program.run({"study", "bars", "--quick", "--out", "study.h5"});
   const auto all = results::read_tables(program.folder() / "study.h5");
-  ASSERT_THAT(all, SizeIs(10));
+  ASSERT_THAT(all, SizeIs(12));
   for (const char* name : {"trials: hung-corners d=5", "trials: peer-edge n=8"}) {
     const auto codes = texts(table(all, name), "code");
     for (const char* code :
@@ -143,6 +143,13 @@ TEST_F(WorkPrecision, NamesWinnersAndJudgesTheBars) {
   for (std::size_t row = 0; row < results::rows(winners); ++row)
     EXPECT_EQ(results::number_in(results::find_column(winners, "our_families"), row),
               results::number_in(results::find_column(winners, "sundials_families"), row));
+  const Table &quickest = table(all, "quickest"), &summary = table(all, "peers-summary");
+  EXPECT_TRUE(quickest.headline && summary.headline);
+  EXPECT_THAT(texts(quickest, "ours"), AllOf(SizeIs(testing::Ge(10)), testing::Each(Not(IsEmpty()))));
+  EXPECT_THAT(texts(summary, "scene"), testing::Contains("hung-corners d=5"));
+  for (std::size_t row = 0; row < results::rows(summary); ++row)
+    EXPECT_LE(results::number_in(results::find_column(summary, "least"), row),
+              results::number_in(results::find_column(summary, "largest"), row));
   const auto bars = texts(table(all, "bars"), "verdict");
   EXPECT_THAT(bars, testing::Each(testing::AnyOf(HasSubstr("met"), HasSubstr("NOT met"))));
   EXPECT_THAT(bars, SizeIs(testing::Ge(15)));

@@ -22,6 +22,10 @@ results::Table trials_table(const SceneTrials& scene);
 /// With hindsight: for errors of 1e-1 to 1e-7 the quickest of each contender and the ratios to ours.
 results::Table winners_table(const std::vector<SceneTrials>& scenes);
 
+/// For the overview: the same of ours and of SUNDIALS only; and the least, median and largest ratio of each scene.
+results::Table quickest_table(const std::vector<SceneTrials>& scenes);
+results::Table peers_summary_table(const std::vector<SceneTrials>& scenes);
+
 /// Without: families of both sides that were the quickest on another scene, judged on this one.
 results::Table held_out_table(const std::vector<SceneTrials>& scenes);
 

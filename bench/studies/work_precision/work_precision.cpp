@@ -188,7 +188,8 @@ std::vector<TableJob> jobs(const std::vector<Entry>& list, const Methods& method
   for (const Entry& entry : list)
     jobs.push_back({static_cast<int>(families(entry.scene, entry.search, methods).size()),
                     [=](Checkpoint& checkpoint) { return try_scene(entry, methods, *all, checkpoint); }});
-  for (auto* table : {held_out_table, recommended_table, winners_table, defaults_table, peers_table})
+  for (auto* table :
+       {held_out_table, recommended_table, winners_table, quickest_table, peers_summary_table, defaults_table, peers_table})
     jobs.push_back({0, [=](Checkpoint&) { return table(*all); }});
   if (list.size() > 1) jobs.push_back({0, [=](Checkpoint&) { return ranking_table(*all); }});
   if (with_bars) jobs.push_back({0, [=](Checkpoint&) { return bars_table(*all); }});

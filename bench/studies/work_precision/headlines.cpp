@@ -1,0 +1,92 @@
+#include <algorithm>
+#include <optional>
+
+#include "bench/studies/work_precision/winners.hpp"
+#include "results/columns.hpp"
+#include "solver/base/statistics.hpp"
+
+namespace drape::bench {
+namespace {
+
+using results::Cell;
+using results::ColumnOf;
+using results::field;
+using results::Role;
+
+/// The quickest of ours at an error, and of SUNDIALS if it reaches it.
+struct Quickest {
+  std::string scene;
+  double error;
+  Winner ours, sundials;
+
+  double ratio() const { return sundials.time / ours.time; }
+};
+
+std::vector<Quickest> quickest_on(const SceneTrials& scene) {
+  const Winners winners(scene);
+  std::vector<Quickest> all;
+  for (const double error : levels(scene.problem))
+    if (const Winner ours = winners.of("ours", error))
+      all.push_back({scene.problem.name, error, ours, winners.of("sundials", error)});
+  return all;
+}
+
+using Row = const Quickest&;
+
+constexpr ColumnOf<Quickest> quickest_columns[] = {
+    {"scene", "scene", "", "its name", Role::key, field<&Quickest::scene>},
+    {"error", "error <=", "1", "over the size of the scene", Role::key, field<&Quickest::error>},
+    {"ours", "our quickest", "", "with that error", Role::note, [](Row row) -> Cell { return row.ours.name(); }},
+    {"ours_ms", "time", "ms", "its median CPU time", Role::time, [](Row row) -> Cell { return row.ours.time; }},
+    {"peer", "SUNDIALS, tuned", "", "its quickest with that error", Role::note,
+     [](Row row) { return row.sundials ? Cell(row.sundials.name()) : Cell(); }},
+    {"ratio", "slower by", "1", "time of SUNDIALS over that of our quickest", Role::time,
+     [](Row row) { return row.sundials ? Cell(row.ratio()) : Cell(); }},
+};
+
+/// Of the ratios on a scene.
+struct Summary {
+  std::string scene;
+  double least, median, largest;
+  std::size_t errors;
+};
+
+std::optional<Summary> summary(const SceneTrials& scene) {
+  std::vector<double> ratios;
+  for (const Quickest& row : quickest_on(scene))
+    if (row.sundials) ratios.push_back(row.ratio());
+  if (ratios.empty()) return std::nullopt;
+  return Summary{scene.problem.name, std::ranges::min(ratios), base::quantile(ratios, 0.5), std::ranges::max(ratios),
+                 ratios.size()};
+}
+
+constexpr ColumnOf<Summary> summary_columns[] = {
+    {"scene", "scene", "", "its name", Role::key, field<&Summary::scene>},
+    {"least", "least", "1", "of the ratios", Role::time, field<&Summary::least>},
+    {"median", "median", "1", "of the ratios", Role::time, field<&Summary::median>},
+    {"largest", "largest", "1", "of the ratios", Role::time, field<&Summary::largest>},
+    {"errors", "errors", "1", "at how many of 1e-1 to 1e-7 there is a ratio", Role::time, field<&Summary::errors>},
+};
+
+}  // namespace
+
+results::Table quickest_table(const std::vector<SceneTrials>& scenes) {
+  std::vector<Quickest> rows;
+  for (const SceneTrials& scene : scenes) std::ranges::move(quickest_on(scene), std::back_inserter(rows));
+  results::Table table = results::make_table("quickest", "The quickest at each error", quickest_columns, rows);
+  table.headline = true;
+  return table;
+}
+
+results::Table peers_summary_table(const std::vector<SceneTrials>& scenes) {
+  std::vector<Summary> rows;
+  for (const SceneTrials& scene : scenes)
+    if (const auto row = summary(scene)) rows.push_back(*row);
+  results::Table table =
+      results::make_table("peers-summary", "How many times as long as our quickest SUNDIALS, tuned, takes with the same error",
+                          summary_columns, rows);
+  table.headline = true;
+  return table;
+}
+
+}  // namespace drape::bench
