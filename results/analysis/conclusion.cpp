@@ -6,7 +6,7 @@
 #include <set>
 
 #include "results/analysis/scene_runs.hpp"
-#include "results/table_builder.hpp"
+#include "results/columns.hpp"
 
 namespace drape::results {
 namespace {
@@ -47,30 +47,34 @@ std::string failures_in_words(const Runs& runs) {
   return outcomes.empty() ? "" : fmt::format("fails: {}", fmt::join(outcomes, ", "));
 }
 
-void add(TableBuilder& words, const std::string& subject, const std::string& sentence) {
-  if (sentence.empty()) return;
-  words.row();
-  words.text("subject", "about", "scene and what is set in it, or table", subject);
-  words.text("conclusion", "conclusion", "what its runs or rows come to", sentence);
-}
+struct Sentence {
+  std::string subject, text;
+};
 
-void add_orders(TableBuilder& words, const Table& table) {
+constexpr ColumnOf<Sentence> sentence_columns[] = {
+    {"subject", "about", "", "scene and what is set in it, or table", Role::key, field<&Sentence::subject>},
+    {"conclusion", "conclusion", "", "what its runs or rows come to", Role::note, field<&Sentence::text>},
+};
+
+std::string orders_in_words(const Table& table) {
+  if (find_column(table, Role::order) == nullptr) return "";
   const OrderCount count = count_orders(table);
-  if (count.curves == 0) return;
-  add(words, table.name, fmt::format("{} of {} methods converge with the order they declare", count.as_declared, count.curves));
+  return count.curves == 0
+             ? ""
+             : fmt::format("{} of {} methods converge with the order they declare", count.as_declared, count.curves);
 }
 
 }  // namespace
 
 Table conclusion(std::span<const Recording> recordings) {
-  TableBuilder words("conclusion", "What it comes to");
+  std::vector<Sentence> sentences;
   for (const auto& [scene, runs] : by_scene(recordings))
     for (const std::string& sentence : {quickest_in_words(runs), worst_in_words(runs), failures_in_words(runs)})
-      add(words, scene, sentence);
+      sentences.push_back({scene, sentence});
   for (const Recording& recording : recordings)
-    for (const Table& table : recording.tables)
-      if (find_column(table, "fitted_order") != nullptr) add_orders(words, table);
-  return words.finish();
+    for (const Table& table : recording.tables) sentences.push_back({table.name, orders_in_words(table)});
+  std::erase_if(sentences, [](const Sentence& sentence) { return sentence.text.empty(); });
+  return make_table("conclusion", "What it comes to", sentence_columns, sentences);
 }
 
 }  // namespace drape::results

@@ -3,93 +3,125 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
-#include <string_view>
+#include <optional>
 
 #include "results/analysis/conclusion.hpp"
 #include "results/analysis/scene_runs.hpp"
-#include "results/table_builder.hpp"
+#include "results/columns.hpp"
+#include "results/verdict.hpp"
 
 namespace drape::results {
 namespace {
 
-/// The texts that people see in a row, but for its verdict and how it varies.
+/// The keys of a row that people see.
 std::string row_title(const Table& table, std::size_t row) {
   std::string title;
   for (const Column& column : table.columns) {
-    const bool told = column.name == "verdict" || column.name == "spread";
-    if (const std::string text = text_in(&column, row); !told && !column.title.empty() && !text.empty())
-      title += (title.empty() ? "" : " ") + text;
+    if (column.role != Role::key || column.title.empty()) continue;
+    const double number = number_in(&column, row);
+    const std::string text = std::isnan(number) ? text_in(&column, row) : fmt::format("{} {:g}", column.title, number);
+    if (!text.empty()) title.append(title.empty() ? "" : " ").append(text);
   }
   return title;
 }
 
-bool has_orders(const Table& table) { return find_column(table, "fitted_order") != nullptr; }
-
 // --- Orders --------------------------------------------------------------------------------------------------------------
 
-void add_orders(const Table& table, TableBuilder& overview) {
-  const Column *verdicts = find_column(table, "verdict"), *fitted = find_column(table, "fitted_order");
-  const OrderCount count = count_orders(table);
-  if (count.curves == 0) return;
+struct OrderRow {
+  std::string table, as_declared, others;
+};
+
+constexpr ColumnOf<OrderRow> order_columns[] = {
+    {"table", "table", "", "its name", Role::key, field<&OrderRow::table>},
+    {"good", "as declared", "", "curves whose order is as declared, of all", Role::note, field<&OrderRow::as_declared>},
+    {"others", "the others", "", "their verdicts", Role::note, field<&OrderRow::others>},
+};
+
+OrderRow order_row(const Table& table, const OrderCount& count) {
+  const Column *verdicts = find_column(table, Role::verdict), *fitted = find_column(table, Role::order);
   std::string others;
   for (std::size_t row = 0; row < rows(table); ++row) {
     const std::string verdict = text_in(verdicts, row);
-    if (verdict.empty() || is_as_declared(verdict)) continue;
+    if (verdict.empty() || standing(verdict) == Standing::met) continue;
     others += fmt::format("{}{}: {}{}", others.empty() ? "" : "; ", row_title(table, row), verdict,
                           std::isfinite(number_in(fitted, row)) ? fmt::format(" but {:.2f}", number_in(fitted, row)) : "");
   }
-  overview.row();
-  overview.text("table", "table", "its name", table.name);
-  overview.text("good", "as declared", "curves whose order is as declared, of all",
-                fmt::format("{} of {}", count.as_declared, count.curves));
-  overview.text("others", "the others", "their verdicts", others);
+  return {table.name, fmt::format("{} of {}", count.as_declared, count.curves), others};
 }
 
 // --- Runs ----------------------------------------------------------------------------------------------------------------
 
-void add_quickest(const std::string& scene, const std::vector<const RunRecord*>& runs, TableBuilder& overview) {
-  std::vector<Measured> candidates;
-  for (const RunRecord* run : runs) candidates.push_back(measured(*run));
-  if (std::ranges::all_of(candidates, [](const Measured& one) { return std::isnan(one.error); })) return;
-  overview.row();
-  overview.text("scene", "scene", "its name, and what is set in it", scene);
-  for (int digits = 1; digits <= 7; ++digits) {
-    const auto best = quickest(candidates, std::pow(10, -digits));
-    const std::string name = fmt::format("1e-{}", digits);
-    overview.text(name.c_str(), name.c_str(), "method and step of the quickest run with that error",
-                  best ? fmt::format("{} {:g}", runs[*best]->method, runs[*best]->step) : "");
-  }
+constexpr int digits = 7;  ///< of the smallest error
+
+struct QuickestRuns {
+  std::string scene;
+  std::array<std::string, digits> runs;  ///< at 1e-1, 1e-2, …
+};
+
+template <std::size_t digit>
+constexpr ColumnOf<QuickestRuns> at_error(const char* name) {
+  return {name,       name,
+          "",         "method and step of the quickest run with that error",
+          Role::note, [](const QuickestRuns& row) -> Cell { return row.runs[digit - 1]; }};
 }
 
-void add_failures(const std::string& scene, const std::vector<const RunRecord*>& runs, TableBuilder& overview) {
-  for (const RunRecord* run : runs) {
-    if (ended_well(*run)) continue;
-    overview.row();
-    overview.text("scene", "scene", "its name, and what is set in it", scene);
-    overview.text("method", "method", "time integrator", run->method);
-    overview.number("step", "step", "s", "time step h", run->step);
-    overview.text("outcome", "outcome", "how it failed", std::string(to_string(run->outcome)));
-    overview.number("reached", "reached", "s", "last good time", run->last_good_time);
-    overview.text("message", "why", "what the program says", run->message);
-  }
+constexpr ColumnOf<QuickestRuns> quickest_columns[] = {
+    {"scene", "scene", "", "its name, and what is set in it", Role::key, field<&QuickestRuns::scene>},
+    at_error<1>("1e-1"),
+    at_error<2>("1e-2"),
+    at_error<3>("1e-3"),
+    at_error<4>("1e-4"),
+    at_error<5>("1e-5"),
+    at_error<6>("1e-6"),
+    at_error<7>("1e-7"),
+};
+
+std::optional<QuickestRuns> quickest_runs(const std::string& scene, const std::vector<const RunRecord*>& runs) {
+  std::vector<Measured> candidates;
+  for (const RunRecord* run : runs) candidates.push_back(measured(*run));
+  if (std::ranges::all_of(candidates, [](const Measured& one) { return std::isnan(one.error); })) return std::nullopt;
+  QuickestRuns row{scene, {}};
+  for (int digit = 1; digit <= digits; ++digit)
+    if (const auto best = quickest(candidates, std::pow(10, -digit)))
+      row.runs[digit - 1] = fmt::format("{} {:g}", runs[*best]->method, runs[*best]->step);
+  return row;
 }
+
+struct Failure {
+  std::string scene;
+  const RunRecord* run;
+};
+
+constexpr ColumnOf<Failure> failure_columns[] = {
+    {"scene", "scene", "", "its name, and what is set in it", Role::key, field<&Failure::scene>},
+    {"method", "method", "", "time integrator", Role::key, [](const Failure& row) -> Cell { return row.run->method; }},
+    {"step", "step", "s", "time step h", Role::key, [](const Failure& row) -> Cell { return row.run->step; }},
+    {"outcome", "outcome", "", "how it failed", Role::verdict, [](const Failure& row) { return to_cell(row.run->outcome); }},
+    {"reached", "reached", "s", "last good time", Role::quantity,
+     [](const Failure& row) -> Cell { return row.run->last_good_time; }},
+    {"message", "why", "", "what the program says", Role::note, [](const Failure& row) -> Cell { return row.run->message; }},
+};
 
 // --- Other verdicts ------------------------------------------------------------------------------------------------------
 
-void add_not_met(const Table& table, TableBuilder& overview) {
-  const Column* verdicts = find_column(table, "verdict");
-  for (std::size_t row = 0; verdicts != nullptr && row < rows(table); ++row) {
-    const std::string verdict = text_in(verdicts, row);
-    if (!verdict.starts_with("NOT")) continue;
-    overview.row();
-    overview.text("table", "table", "its name", table.name);
-    const double error = number_in(find_column(table, "error"), row);
-    overview.text("row", "row", "what it is about",
-                  row_title(table, row) + (std::isfinite(error) ? fmt::format(" at {:g}", error) : ""));
-    overview.text("verdict", "verdict", "what the program says", verdict);
-  }
+struct Missed {
+  std::string table, row, verdict;
+};
+
+constexpr ColumnOf<Missed> missed_columns[] = {
+    {"table", "table", "", "its name", Role::key, field<&Missed::table>},
+    {"row", "row", "", "what it is about", Role::key, field<&Missed::row>},
+    {"verdict", "verdict", "", "what the program says", Role::verdict, field<&Missed::verdict>},
+};
+
+void add_missed(const Table& table, std::vector<Missed>& missed) {
+  const Column* verdicts = find_column(table, Role::verdict);
+  for (std::size_t row = 0; verdicts != nullptr && row < rows(table); ++row)
+    if (const std::string verdict = text_in(verdicts, row); standing(verdict) == Standing::missed)
+      missed.push_back({table.name, row_title(table, row), verdict});
 }
 
 /// At most so many rows, and how many more there are.
@@ -104,22 +136,30 @@ Table shortened(Table table, std::size_t most) {
 }  // namespace
 
 std::vector<Table> overview(std::span<const Recording> recordings) {
-  TableBuilder orders("orders", "Orders of convergence"),
-      quickest_runs("quickest-runs", "The quickest recorded run at each error: method and step [s]"),
-      failures("failures", "Runs that failed"), not_met("not-met", "What is not as it was wanted");
+  std::vector<Table> tables{conclusion(recordings)};
+  std::vector<OrderRow> orders;
+  std::vector<Missed> missed;
   for (const Recording& recording : recordings)
-    for (const Table& table : recording.tables) has_orders(table) ? add_orders(table, orders) : add_not_met(table, not_met);
+    for (const Table& table : recording.tables) {
+      if (table.headline) tables.push_back(table);
+      if (find_column(table, Role::order) == nullptr)
+        add_missed(table, missed);
+      else if (const OrderCount count = count_orders(table); count.curves > 0)
+        orders.push_back(order_row(table, count));
+    }
+  std::vector<QuickestRuns> quickest;
+  std::vector<Failure> failures;
   for (const auto& [scene, runs] : by_scene(recordings)) {
-    add_quickest(scene, runs, quickest_runs);
-    add_failures(scene, runs, failures);
+    if (auto row = quickest_runs(scene, runs)) quickest.push_back(std::move(*row));
+    for (const RunRecord* run : runs)
+      if (!ended_well(*run)) failures.push_back({scene, run});
   }
-  std::vector<Table> tables;
-  if (Table words = conclusion(recordings); rows(words) > 0) tables.push_back(std::move(words));
-  for (const Recording& recording : recordings)
-    std::ranges::copy_if(recording.tables, std::back_inserter(tables),
-                         [](const Table& table) { return table.headline && rows(table) > 0; });
-  for (TableBuilder* table : {&orders, &quickest_runs, &failures, &not_met})
-    if (Table done = shortened(table->finish(), 10); rows(done) > 0) tables.push_back(std::move(done));
+  const auto add = [&](Table table) { tables.push_back(shortened(std::move(table), 10)); };
+  add(make_table("orders", "Orders of convergence", order_columns, orders));
+  add(make_table("quickest-runs", "The quickest recorded run at each error: method and step [s]", quickest_columns, quickest));
+  add(make_table("failures", "Runs that failed", failure_columns, failures));
+  add(make_table("not-met", "What is not as it was wanted", missed_columns, missed));
+  std::erase_if(tables, [](const Table& table) { return rows(table) == 0; });
   return tables;
 }
 

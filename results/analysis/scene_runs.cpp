@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "results/verdict.hpp"
 #include "solver/outcome.hpp"
 
 namespace drape::results {
@@ -24,15 +25,13 @@ Measured measured(const RunRecord& run) {
   return {std::max(run.error->rms, resolution * run.error->reference_error), run.times_ms};
 }
 
-bool is_as_declared(std::string_view verdict) { return verdict.ends_with("as declared"); }
-
 OrderCount count_orders(const Table& table) {
-  const Column* verdicts = find_column(table, "verdict");
+  const Column* verdicts = find_column(table, Role::verdict);
   OrderCount count;
   for (std::size_t row = 0; row < rows(table); ++row) {
     const std::string verdict = text_in(verdicts, row);
     count.curves += verdict.empty() ? 0 : 1;
-    count.as_declared += is_as_declared(verdict) ? 1 : 0;
+    count.as_declared += standing(verdict) == Standing::met ? 1 : 0;
   }
   return count;
 }

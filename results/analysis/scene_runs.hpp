@@ -3,7 +3,6 @@
 #include <map>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "results/analysis/work_precision.hpp"
@@ -24,7 +23,6 @@ Measured measured(const RunRecord& run);
 struct OrderCount {
   int curves = 0, as_declared = 0;
 };
-bool is_as_declared(std::string_view verdict);
 OrderCount count_orders(const Table& table);
 
 }  // namespace drape::results
