@@ -159,6 +159,18 @@ TEST(StudyTable, IsReadBackFromItsFile) {
   EXPECT_EQ(to_csv(read), to_csv(written));
 }
 
+TEST(StudyTable, IsReadBackWithoutRows) {
+  const base::TemporaryFolder folder;
+  results::RunFile file(folder.path() / "tables.h5", {});
+  Table table = some_table();
+  for (Column& column : table.columns) column.cells.clear();
+  file.add(table);
+  const auto tables = results::read_tables(folder.path() / "tables.h5");
+  ASSERT_THAT(tables, SizeIs(1));
+  EXPECT_THAT(tables[0].columns, SizeIs(table.columns.size()));
+  EXPECT_EQ(rows(tables[0]), 0);
+}
+
 TEST(StudyTable, IsRefusedTwice) {
   const base::TemporaryFolder folder;
   results::RunFile file(folder.path() / "tables.h5", {});
