@@ -284,8 +284,8 @@ TEST_F(ProgramStudies, EquilibriaConvergeAsDeclared) {
 TEST_F(ProgramStudies, ReferencesAgree) {
   const auto all = tables("references");
   ASSERT_THAT(all, SizeIs(2));
-  EXPECT_THAT(verdicts(all[0]), AllOf(SizeIs(4), Each("as wanted")));  // growth
-  EXPECT_THAT(verdicts(all[1]), AllOf(SizeIs(12), Each("agrees")));
+  EXPECT_THAT(verdicts(all[0]), AllOf(SizeIs(4), Each("met: as wanted")));  // growth
+  EXPECT_THAT(verdicts(all[1]), AllOf(SizeIs(12), Each("met: agrees")));
 }
 
 TEST_F(ProgramStudies, WorkGrowsWithStiffnessAndFallsWithDampingAsInTheThesis) {

@@ -54,7 +54,7 @@ using results::Cell;
 using results::ColumnOf;
 using results::Role;
 
-constexpr ColumnOf<Asked> columns[] = {
+constexpr ColumnOf<Asked> bar_columns[] = {
     {"what", "asked for", "", "what is compared", Role::key, results::field<&Asked::what>},
     {"bar", "bar", "", "what it may be", Role::key, [](const Asked& asked) -> Cell { return to_string(asked.bar); }},
     {"value", "value", "1", "median of turns", Role::time, [](const Asked& asked) -> Cell { return asked.value(); }},
@@ -86,7 +86,7 @@ results::Table bars(bool quick, Checkpoint& checkpoint) {
                     return force_times(large);
                   })});
   checkpoint.advance();
-  return results::make_table("scaling-bars", "What was asked for, one thread", columns, rows);
+  return results::make_table("scaling-bars", "What was asked for, one thread", bar_columns, rows);
 }
 
 }  // namespace drape::bench::scaling_study

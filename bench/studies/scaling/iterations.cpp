@@ -138,7 +138,7 @@ using results::ColumnOf;
 using results::field;
 using results::Role;
 
-constexpr ColumnOf<IterationRow> columns[] = {
+constexpr ColumnOf<IterationRow> iteration_columns[] = {
     {"n", "n", "1", "particles a side", Role::key, field<&IterationRow::n>},
     {"threads", "threads", "1", "that the linear solver may use; forces use one", Role::key, field<&IterationRow::threads>},
     {"linear_solver", "linear solver", "", "with which preconditioner, or a substitution", Role::key,
@@ -192,8 +192,9 @@ results::Table iterations(bool quick, Checkpoint& checkpoint) {
     std::ranges::move(checkpoint.once(std::to_string(n), [&] { return iterations_on(n); }), std::back_inserter(rows));
     checkpoint.advance();
   }
-  return results::make_table(
-      "scaling-iterations", "An iteration of conjugate gradients, by size, in turns with the triad a = b + 3 c", columns, rows);
+  return results::make_table("scaling-iterations",
+                             "An iteration of conjugate gradients, by size, in turns with the triad a = b + 3 c",
+                             iteration_columns, rows);
 }
 
 std::vector<double> bandwidth_of_bare_iterations(int n, int count) {
