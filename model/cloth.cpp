@@ -244,10 +244,11 @@ Cloth compile(const Scene& scene) {
                                                                       SparseMatrix& df_dx, SparseMatrix& df_dv) mutable {
     forces->jacobian(t, x, v, exact, df_dx, df_dv);
   };
-  ode.newton_matrix = [forces, lean = NewtonMatrix(Curvature::lean, ode.mass, ode.pins),
+  ode.newton_matrix = [forces, tension = NewtonMatrix(Curvature::tension, ode.mass, ode.pins),
                        convex = NewtonMatrix(Curvature::convex, ode.mass, ode.pins)](
-                          double t, const Vectors& x, const Vectors& v, double gamma, bool is_lean, SparseMatrix& J) mutable {
-    forces->newton_matrix(t, x, v, gamma, is_lean ? lean : convex, J);
+                          double t, const Vectors& x, const Vectors& v, double gamma, solver::Jacobian part,
+                          SparseMatrix& J) mutable {
+    forces->newton_matrix(t, x, v, gamma, part == solver::Jacobian::tension ? tension : convex, J);
   };
   std::shared_ptr<Reaction> reaction;
   if (!scene.obstacles.empty()) {

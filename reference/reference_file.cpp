@@ -6,65 +6,51 @@
 #include <bit>
 #include <cstdint>
 #include <cstring>
+#include <nlohmann/json.hpp>
 
 namespace drape::reference {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "numbers are written as they are in memory");
+using Json = nlohmann::json;
 
-template <class T>
-void put(std::string& out, const T* first, std::size_t count) {
-  const std::uint64_t length = count;
-  out.append(reinterpret_cast<const char*>(&length), sizeof length);
-  out.append(reinterpret_cast<const char*>(first), count * sizeof(T));
+static_assert(std::endian::native == std::endian::little, "numbers are written as they are in memory");
+constexpr std::uint8_t doubles_tag = 86;  ///< of an array of 64-bit numbers, little endian  [RFC 8746]
+
+Json to_json(const double* first, std::size_t count) {
+  std::vector<std::uint8_t> bytes(count * sizeof(double));
+  if (count > 0) std::memcpy(bytes.data(), first, bytes.size());
+  return Json::binary(std::move(bytes), doubles_tag);
 }
 
-/// Takes from the front what put() appended.
-class Reader {
- public:
-  explicit Reader(std::string_view bytes) : rest_(bytes) {}
+Json to_json(const std::vector<double>& values) { return to_json(values.data(), values.size()); }
 
-  template <class Container>
-  Container take() {
-    std::uint64_t count = 0;
-    std::memcpy(&count, bytes(sizeof count).data(), sizeof count);
-    constexpr std::size_t width = sizeof(typename Container::value_type);
-    if (count > rest_.size() / width) throw DamagedFile("it is shorter than it says");
-    Container result(count, {});
-    std::ranges::copy(bytes(count * width), reinterpret_cast<char*>(result.data()));
-    return result;
-  }
+Json to_json(const solver::Vectors& values) { return to_json(values.data(), static_cast<std::size_t>(values.size())); }
 
-  std::string_view bytes(std::size_t count) {
-    if (count > rest_.size()) throw DamagedFile("it is shorter than it says");
-    const std::string_view front = rest_.substr(0, count);
-    rest_.remove_prefix(count);
-    return front;
-  }
+Json to_json(const Trajectory& trajectory) {
+  Json states = Json::array();
+  for (const solver::State& state : trajectory.states) states.push_back({{"x", to_json(state.x)}, {"v", to_json(state.v)}});
+  return {{"times", to_json(trajectory.times)}, {"states", std::move(states)}};
+}
 
- private:
-  std::string_view rest_;
-};
+std::vector<double> numbers(const Json& json) {
+  const auto& bytes = json.get_binary();
+  if (bytes.subtype() != doubles_tag || bytes.size() % sizeof(double) != 0)
+    throw DamagedFile("it has not numbers where they belong");
+  std::vector<double> values(bytes.size() / sizeof(double));
+  if (!values.empty()) std::memcpy(values.data(), bytes.data(), bytes.size());
+  return values;
+}
 
-solver::Vectors take_vectors(Reader& reader) {
-  const auto values = reader.take<std::vector<double>>();
+solver::Vectors vectors(const Json& json) {
+  const std::vector<double> values = numbers(json);
   if (values.size() % 3 != 0) throw DamagedFile("its vectors have not three columns");
   return Eigen::Map<const solver::Vectors>(values.data(), static_cast<Eigen::Index>(values.size() / 3), 3);
 }
 
-void put_trajectory(std::string& out, const Trajectory& trajectory) {
-  put(out, trajectory.times.data(), trajectory.times.size());
-  for (const solver::State& state : trajectory.states)
-    for (const solver::Vectors* part : {&state.x, &state.v}) put(out, part->data(), static_cast<std::size_t>(part->size()));
-}
-
-Trajectory take_trajectory(Reader& reader) {
-  Trajectory trajectory{reader.take<std::vector<double>>(), {}};
-  for (std::size_t i = 0; i < trajectory.times.size(); ++i) {
-    solver::Vectors x = take_vectors(reader);
-    trajectory.states.push_back({std::move(x), take_vectors(reader)});
-  }
-  return trajectory;
+Trajectory trajectory(const Json& json) {
+  Trajectory result{numbers(json.at("times")), {}};
+  for (const Json& state : json.at("states")) result.states.push_back({vectors(state.at("x")), vectors(state.at("v"))});
+  return result;
 }
 
 /// A right checksum does not make a right file.
@@ -73,9 +59,9 @@ void require_consistent(const Reference& reference) {
   const std::vector<solver::State>& states = reference.trajectory.states;
   const Eigen::Index rows = states.empty() ? 0 : states.front().x.rows();
   const auto fits = [&](const Trajectory& trajectory) {
-    return trajectory.times == times && std::ranges::all_of(trajectory.states, [&](const solver::State& y) {
-             return y.x.rows() == rows && y.v.rows() == rows;
-           });
+    return trajectory.times == times && trajectory.states.size() == times.size() &&
+           std::ranges::all_of(trajectory.states,
+                               [&](const solver::State& y) { return y.x.rows() == rows && y.v.rows() == rows; });
   };
   for (const auto* series : {&reference.error, &reference.growth})
     if (series->size() != times.size()) throw DamagedFile("it has not a number for each time");
@@ -88,35 +74,45 @@ std::string checksum(std::string_view bytes) {
   return {reinterpret_cast<const char*>(&hash), sizeof hash};
 }
 
+Reference reference_of(const Json& json, std::string_view key) {
+  if (json.at("key").get<std::string>() != key) throw DamagedFile("it belongs to another key");
+  Reference reference{.name = json.at("name"),
+                      .witness = json.at("witness"),
+                      .tolerance = json.at("tolerance"),
+                      .error = numbers(json.at("error")),
+                      .growth = numbers(json.at("growth")),
+                      .trajectory = trajectory(json.at("trajectory")),
+                      .witnessed = trajectory(json.at("witnessed")),
+                      .perturbed = trajectory(json.at("perturbed"))};
+  require_consistent(reference);
+  return reference;
+}
+
 }  // namespace
 
 std::string encode(std::string_view key, const Reference& reference) {
+  const Json json{{"key", key},
+                  {"name", reference.name},
+                  {"witness", reference.witness},
+                  {"tolerance", reference.tolerance},
+                  {"error", to_json(reference.error)},
+                  {"growth", to_json(reference.growth)},
+                  {"trajectory", to_json(reference.trajectory)},
+                  {"witnessed", to_json(reference.witnessed)},
+                  {"perturbed", to_json(reference.perturbed)}};
   std::string out;
-  put(out, key.data(), key.size());
-  for (const std::string* name : {&reference.name, &reference.witness}) put(out, name->data(), name->size());
-  put(out, &reference.tolerance, 1);
-  for (const auto* series : {&reference.error, &reference.growth}) put(out, series->data(), series->size());
-  for (const Trajectory* trajectory : {&reference.trajectory, &reference.witnessed, &reference.perturbed})
-    put_trajectory(out, *trajectory);
+  Json::to_cbor(json, out);
   return out + checksum(out);
 }
 
 Reference decode(std::string_view bytes, std::string_view key) {
   const std::string_view body = bytes.substr(0, bytes.size() - std::min(bytes.size(), sizeof(XXH64_hash_t)));
   if (checksum(body) != bytes.substr(body.size())) throw DamagedFile("its checksum is wrong");
-
-  Reader reader(body);
-  if (reader.take<std::string>() != key) throw DamagedFile("it belongs to another key");
-  Reference reference;
-  for (std::string* name : {&reference.name, &reference.witness}) *name = reader.take<std::string>();
-  const auto tolerances = reader.take<std::vector<double>>();
-  if (tolerances.size() != 1) throw DamagedFile("it has not one tolerance");
-  reference.tolerance = tolerances.front();
-  for (auto* series : {&reference.error, &reference.growth}) *series = reader.take<std::vector<double>>();
-  for (Trajectory* trajectory : {&reference.trajectory, &reference.witnessed, &reference.perturbed})
-    *trajectory = take_trajectory(reader);
-  require_consistent(reference);
-  return reference;
+  try {
+    return reference_of(Json::from_cbor(body, true, true, Json::cbor_tag_handler_t::store), key);
+  } catch (const Json::exception& error) {
+    throw DamagedFile(error.what());
+  }
 }
 
 }  // namespace drape::reference

@@ -13,8 +13,9 @@ class DamagedFile : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The bytes of a file: the key, the reference, and an XXH3 checksum of both. Little endian; texts and
-/// arrays are preceded by their length, 64 bits. The layout has no version: the key holds a fingerprint of this source.
+/// The bytes of a file: the key and the reference as CBOR [RFC 8949] under the names of their members, series of numbers as
+/// typed arrays [RFC 8746], followed by an XXH3 checksum of all that. The layout has no version: the key holds a fingerprint of
+/// this source.
 std::string encode(std::string_view key, const Reference& reference);
 
 /// The inverse. Throws DamagedFile if anything is not as encode() wrote it, or if the key is another.

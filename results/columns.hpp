@@ -89,7 +89,7 @@ void add_columns(Table& table, const ColumnOf<Row> (&columns)[count], const Rows
 /// A table of the rows, a column for each of the list.
 template <class Row, std::size_t count, std::ranges::input_range Rows>
 Table make_table(std::string name, std::string description, const ColumnOf<Row> (&columns)[count], const Rows& rows) {
-  Table table{std::move(name), std::move(description), {}, false};
+  Table table{std::move(name), std::move(description), {}};
   add_columns(table, columns, rows);
   return table;
 }

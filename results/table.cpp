@@ -17,6 +17,16 @@ namespace {
 constexpr std::array<std::string_view, 9> role_names{"key",     "quantity", "error",   "uncertainty", "order",
                                                      "counter", "time",     "verdict", "note"};
 
+/// In the order of Figure.
+constexpr std::array<std::string_view, 5> figure_names{"none", "convergence", "work-precision", "stability", "over time"};
+
+template <class Value>
+std::optional<Value> named(const auto& names, std::string_view name) {
+  const auto found = std::ranges::find(names, name);
+  if (found == names.end()) return std::nullopt;
+  return static_cast<Value>(found - names.begin());
+}
+
 constexpr std::size_t widest = 500;  ///< characters of a cell for people; CSV and JSON have all of it
 
 /// Calls the function for the alternative that a cell holds.
@@ -88,11 +98,11 @@ std::vector<std::string> shown(const Column& column) {
 
 std::string_view to_string(Role role) { return role_names[static_cast<std::size_t>(role)]; }
 
-std::optional<Role> role_named(std::string_view name) {
-  const auto found = std::ranges::find(role_names, name);
-  if (found == role_names.end()) return std::nullopt;
-  return static_cast<Role>(found - role_names.begin());
-}
+std::optional<Role> role_named(std::string_view name) { return named<Role>(role_names, name); }
+
+std::string_view to_string(Figure figure) { return figure_names[static_cast<std::size_t>(figure)]; }
+
+std::optional<Figure> figure_named(std::string_view name) { return named<Figure>(figure_names, name); }
 
 std::size_t rows(const Table& table) { return table.columns.empty() ? 0 : table.columns.front().cells.size(); }
 

@@ -43,12 +43,22 @@ struct Column {
   std::vector<std::string> shown;  ///< what people see in place of the cells; empty: the cells, numbers with four digits
 };
 
+/// What the report draws of a table besides the table itself.
+enum class Figure { none, convergence, work_precision, stability, over_time };
+
+/// The figure as files name it, for example "work-precision".
+std::string_view to_string(Figure figure);
+
+/// Nothing if no figure has this name.
+std::optional<Figure> figure_named(std::string_view name);
+
 /// A result that is no single run: rows of equally long columns. Plain data.
 struct Table {
   std::string name;         ///< unique in a file
   std::string description;  ///< one sentence
   std::vector<Column> columns;
   bool headline = false;  ///< whether the overview shows it whole
+  Figure figure = Figure::none;
 };
 
 /// The number of rows.

@@ -9,7 +9,7 @@ namespace drape::results {
 /// Builds a table row by row. A column exists from its first value on; rows without one have an empty cell.
 class TableBuilder {
  public:
-  TableBuilder(std::string name, std::string description) : table_{std::move(name), std::move(description), {}, false} {}
+  TableBuilder(std::string name, std::string description) : table_{std::move(name), std::move(description), {}} {}
 
   /// Begins a row: what follows is in it.
   void row() { ++rows_; }

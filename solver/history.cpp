@@ -1,40 +1,51 @@
 #include "solver/history.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace drape::solver {
 
-void History::push(double t, const State& y) {
-  if (points_ == 0) return;
-  if (kept_.empty()) kept_.assign(points_, {t, y});
-  std::rotate(kept_.begin(), kept_.end() - 1, kept_.end());
-  kept_.front().t = t;
-  kept_.front().y = y;
-  size_ = std::min(size_ + 1, points_);
+History::History(int points, int forces, const Point& first) : points_(points), forces_(forces) {
+  for (int k = 0; k < points; ++k) kept_.push_back(k < forces ? first : Point{first.t, first.y, {}, false});
 }
 
-void History::restart() { size_ = std::min(size_, 1); }
+void History::push(Point& next, double h) {
+  std::rotate(kept_.begin(), kept_.end() - 1, kept_.end());
+  std::swap(kept_.front(), next);
+  if (forces_ < points_) {  // the force of the point that has grown too old serves the next one
+    std::swap(kept_[forces_].f, next.f);
+    kept_[forces_].has_f = false;
+  }
+  last_step_ = h;
+  size_ = std::min(size_ + 1, points_);
+  smooth_ = std::min(smooth_ + 1, points_);
+}
+
+void History::restart() {
+  size_ = smooth_ = 1;
+  last_step_ = 0;
+}
 
 History::Weights History::weights(double t, int points) const {
   Weights all = Weights::Ones(points);
   for (int k = 0; k < points; ++k)
     for (int j = 0; j < points; ++j)
-      if (j != k) all[k] *= (t - time(j)) / (time(k) - time(j));
+      if (j != k) all[k] *= (t - kept_[j].t) / (kept_[k].t - kept_[j].t);
   return all;
 }
 
 void History::extrapolate(double t, Vectors& v, Vectors* x) const {
-  const Weights all = weights(t, size());
-  v = all[0] * state(0).v;
-  for (int k = 1; k < size(); ++k) v += all[k] * state(k).v;
+  const Weights all = weights(t, smooth());
+  v = all[0] * kept_[0].y.v;
+  for (int k = 1; k < smooth(); ++k) v += all[k] * kept_[k].y.v;
   if (x == nullptr) return;
-  *x = all[0] * state(0).x;
-  for (int k = 1; k < size(); ++k) *x += all[k] * state(k).x;
+  *x = all[0] * kept_[0].y.x;
+  for (int k = 1; k < smooth(); ++k) *x += all[k] * kept_[k].y.x;
 }
 
 double History::remainder(double t) const {
   double product = 1;
-  for (int k = 0; k < size(); ++k) product *= (t - time(k)) / (k + 1);
+  for (int k = 0; k < smooth(); ++k) product *= (t - kept_[k].t) / (k + 1);
   return product;
 }
 

@@ -34,10 +34,16 @@ double controlled(const StepControl& control, double h, int updates) {
   return h;
 }
 
-/// How many states the history keeps: what the method needs, and one more than its order for guesses and estimates of errors.
+/// How many points the history keeps: what the method needs, and one more than its order for guesses and estimates of errors.
 int history_points(const Method& method, const Options& options) {
   const bool estimates = (method.implicit() && options.stage->accelerated) || options.error_control.enabled();
-  return estimates ? method.order + 1 : method.past_states;
+  return std::max(method.history, estimates ? method.order + 1 : 0);
+}
+
+/// Prescribed velocities are set.
+Point first_point(const SplitOde& ode, const Method& method, double t, State y) {
+  prescribe(ode.pins, y.v);
+  return {t, std::move(y), method.forces > 0 ? Vectors::Zero(ode.particles(), 3) : Vectors(), false};
 }
 
 std::string describe(Outcome outcome, const StageResult& result, double t, double h) {
@@ -50,20 +56,19 @@ std::string describe(Outcome outcome, const StageResult& result, double t, doubl
 Integrator::Integrator(const SplitOde& ode, const Method& method, const Options& options, State y0, double t0)
     : options_(options),
       method_(method),
+      history_(history_points(method, options), method.forces, first_point(ode, method, t0, std::move(y0))),
+      next_(history_[0]),
+      scratch_{Vectors::Zero(ode.particles(), 3), Vectors::Zero(ode.particles(), 3), Vectors::Zero(ode.particles(), 3), {}},
+      sub_stepping_{.substeps = ode.work->counter("substeps", "explicit sub-steps inside the stability limit"),
+                    .limits = ode.work->counter("stability_limits", "estimates of that limit, some tens of forces each")},
       step_{.ode = ode,
             .options = options_,
             .stage = nullptr,
-            .t = t0,
-            .before = {},
-            .now = {},
-            .next = {},
-            .history = History(history_points(method, options)),
-            .ax = Vectors::Zero(ode.particles(), 3),
-            .av = Vectors::Zero(ode.particles(), 3),
-            .f_hat = Vectors::Zero(ode.particles(), 3),
-            .substeps = ode.work->counter("substeps", "explicit sub-steps inside the stability limit"),
-            .limits = ode.work->counter("stability_limits", "estimates of that limit, some tens of forces each"),
-            .result = {}},
+            .history = history_,
+            .next = next_,
+            .scratch = scratch_,
+            .sub_stepping = sub_stepping_},
+      extrapolates_(history_points(method, options) > std::min(method.history, 2)),
       tolerance_(options.error_control.tolerance),
       steps_(ode.work->counter("steps", "accepted steps")),
       rejected_(ode.work->counter("rejected_steps", "steps that failed and were not passed on")),
@@ -76,31 +81,26 @@ Integrator::Integrator(const SplitOde& ode, const Method& method, const Options&
     ContactResponse* const contacts = ode.contacts ? &contacts_.emplace(ode) : nullptr;
     step_.stage = &stage_.emplace(ode, options_, contacts);
   } else if (ode.contacts) {
-    step_.impacts = &impacts_.emplace(ode);
+    sub_stepping_.impacts = &impacts_.emplace(ode);
   }
-
-  prescribe(ode.pins, y0.v);
-  const Vectors force = method.keeps_force ? Vectors::Zero(ode.particles(), 3) : Vectors();
-  step_.now = step_.next = {y0, force, false};
-  step_.history.push(t0, y0);
-  if (method.two_step) step_.before = step_.next;
-  ode.work->counter("history_states", "states before the current one that the method keeps") = method.two_step ? 1 : 0;
+  ode.work->counter("history_states", "states before the current one that the method keeps") = method.history - 1;
 }
 
 StageResult Integrator::step(double h) {
+  step_.t = time();
   step_.h = h;
-  step_.w = method_.two_step && h_before_ > 0 ? h / h_before_ : 0;
-  step_.next.has_f = false;
+  step_.w = history_.last_step() > 0 ? h / history_.last_step() : 0;
   step_.result = {};
-  step_.embedded = false;
   step_.starting = false;
-  step_.split_gamma = 0;
+  step_.error.embedded = false;
+  step_.error.split_gamma = 0;
+  next_.has_f = false;
   begin_contacts(h);
   method_.step(step_);
   const bool hard = hit_hard();
   if (hard) step_without_history();
   StageResult& result = step_.result;
-  if (result.outcome == Outcome::success && !finite(step_.next.y)) result.outcome = Outcome::not_finite;
+  if (result.outcome == Outcome::success && !finite(next_.y)) result.outcome = Outcome::not_finite;
   if (result.outcome == Outcome::success && !hard) {
     predict(h);
     error_ = estimate_error(h);
@@ -112,62 +112,57 @@ StageResult Integrator::step(double h) {
   }
   ++steps_;
   starting_ += step_.starting ? 1 : 0;
-  h_before_ = hard ? 0 : h;
   step_.after_impact = hard;
   finish_contacts();
   remember(h, hard);
-  if (method_.two_step) std::swap(step_.before, step_.now);
-  std::swap(step_.now, step_.next);
-  advance_time(h);
   return result;
 }
 
 void Integrator::begin_contacts(double h) {
-  if (contacts_) contacts_->begin(step_.t, h, step_.now.y);
-  if (impacts_) impacts_->begin(step_.t, h, step_.now.y);
+  if (contacts_) contacts_->begin(step_.t, h, state());
+  if (impacts_) impacts_->begin(step_.t, h, state());
 }
 
 /// Whether the step met an obstacle so hard that the neighbours' velocities jump too: there a history leads astray.
 bool Integrator::hit_hard() const {
-  return contacts_ && method_.two_step && step_.result.outcome == Outcome::success &&
-         contacts_->stopped_energy() > hard_impact * kinetic_energy(step_.ode, step_.now.y.v);
+  return contacts_ && method_.history > 1 && step_.result.outcome == Outcome::success &&
+         contacts_->stopped_energy() > hard_impact * kinetic_energy(step_.ode, state().v);
 }
 
 void Integrator::step_without_history() {
   step_.w = 0;
   step_.after_impact = true;
-  contacts_->begin(step_.t, step_.h, step_.now.y, true);
+  contacts_->begin(step_.t, step_.h, state(), true);
   method_.step(step_);
 }
 
 /// Where velocities were changed in the history, forces must be found anew.
 void Integrator::finish_contacts() {
-  if (contacts_ && contacts_->finish(step_.next.y, step_.now.y)) step_.now.has_f = false;
+  if (contacts_ && contacts_->finish(next_.y, history_[0].y)) history_[0].has_f = false;
 }
 
 /// What the past says of the end of the step, in av, and in ax if an estimate of the error needs it.
 void Integrator::predict(double h) {
-  if (step_.history.size() < 2) return;
-  const bool positions = options_.error_control.enabled() && !step_.embedded;
-  step_.history.extrapolate(step_.t + h, step_.av, positions ? &step_.ax : nullptr);
+  if (!extrapolates_ || history_.smooth() < 2) return;
+  const bool positions = options_.error_control.enabled() && !step_.error.embedded;
+  history_.extrapolate(step_.t + h, scratch_.av, positions ? &scratch_.ax : nullptr);
 }
 
 /// By the method that is embedded, or from what the extrapolation of the past misses (Milne's device). While the past is short
 /// the miss itself, which is of a lower order, stands for the error.
 double Integrator::estimate_error(double h) {
   const ErrorControl& control = options_.error_control;
-  const History& history = step_.history;
   if (!control.enabled()) return 0;
-  State& error = step_.error;
-  if (!step_.embedded) {
-    if (history.size() < 2) return 0;
+  State& error = step_.error.estimate;
+  if (!step_.error.embedded) {
+    if (history_.smooth() < 2) return 0;
     const double over_miss = step_.error_over_miss(step_.t + h);
-    const double part = history.full() ? over_miss / (1 + over_miss) : 1;
-    error.x = part * (step_.next.y.x - step_.ax);
-    error.v = part * (step_.next.y.v - step_.av);
-    if (step_.split_gamma > 0) {
-      error.x += step_.split_gamma * step_.split_error;
-      error.v += step_.split_error;
+    const double part = history_.full() ? over_miss / (1 + over_miss) : 1;
+    error.x = part * (next_.y.x - scratch_.ax);
+    error.v = part * (next_.y.v - scratch_.av);
+    if (step_.error.split_gamma > 0) {
+      error.x += step_.error.split_gamma * step_.error.split;
+      error.v += step_.error.split;
     }
   }
   const double x = error.x.norm() / control.length, v = error.v.norm() * control.duration / control.length;
@@ -178,19 +173,22 @@ double Integrator::first_step() const {
   const ErrorControl& control = options_.error_control;
   const SplitOde& ode = step_.ode;
   Vectors a(ode.particles(), 3);
-  ode.force(step_.t, state().x, state().v, a);
+  ode.force(time(), state().x, state().v, a);
   filter(ode.pins, a);
   const double rms = (ode.mass.cwiseInverse().asDiagonal() * a).norm() / std::sqrt(ode.particles());
   const double time = rms > 0 ? std::sqrt(control.length / rms) : control.duration;
   return 0.1 * std::pow(tolerance_, 1.0 / (method_.order + 1)) * std::min(time, control.duration);
 }
 
-/// Where the extrapolation is worse than no change at all, the motion is not smooth: history begins anew.
+/// Where the extrapolation is worse than no change at all, the motion is not smooth: extrapolations begin anew.
 void Integrator::remember(double h, bool hard) {
-  History& history = step_.history;
-  const Vectors& v1 = step_.next.y.v;
-  history.push(step_.t + h, step_.next.y);
-  if (hard || (history.size() > 2 && (v1 - step_.av).squaredNorm() > (v1 - step_.now.y.v).squaredNorm())) history.restart();
+  const Vectors& v1 = next_.y.v;
+  const bool rough =
+      extrapolates_ && history_.smooth() > 1 && (v1 - scratch_.av).squaredNorm() > (v1 - state().v).squaredNorm();
+  next_.t = end_of_step(h);
+  history_.push(next_, h);
+  if (hard) history_.restart();
+  if (rough && history_.smooth() > 2) history_.begin_smooth();
 }
 
 ContactReport Integrator::contacts() const {
@@ -200,11 +198,11 @@ ContactReport Integrator::contacts() const {
 }
 
 /// Compensated, or the round-off of a million steps would be a part of a step.
-void Integrator::advance_time(double h) {
+double Integrator::end_of_step(double h) {
   const double increment = h - lost_time_;
   const double t = step_.t + increment;
   lost_time_ = (t - step_.t) - increment;
-  step_.t = t;
+  return t;
 }
 
 namespace {

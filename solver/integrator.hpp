@@ -35,8 +35,8 @@ class Integrator {
 
   const Method& method() const { return method_; }
 
-  double time() const { return step_.t; }
-  const State& state() const { return step_.now.y; }
+  double time() const { return history_[0].t; }
+  const State& state() const { return history_[0].y; }
   const Options& options() const { return options_; }
   const SplitOde& ode() const { return step_.ode; }
 
@@ -54,15 +54,19 @@ class Integrator {
   void predict(double h);
   double estimate_error(double h);
   void remember(double h, bool hard);
-  void advance_time(double h);
+  double end_of_step(double h);
 
   const Options options_;
   const Method& method_;
   std::optional<ContactResponse> contacts_;  ///< of implicit methods
   std::optional<ImpactResponse> impacts_;    ///< of explicit ones
   std::optional<StageSolver> stage_;
+  History history_;
+  Point next_;
+  Scratch scratch_;
+  SubStepping sub_stepping_;
   Step step_;
-  double h_before_ = 0;
+  const bool extrapolates_;  ///< whether the past is more than what the method reads
   double tolerance_;
   double error_ = 0;
   double lost_time_ = 0;  ///< what rounding has added to the time [s]

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <ranges>
 #include <span>
 #include <string>
 #include <string_view>
@@ -13,13 +14,13 @@ struct Method {
   std::string_view name;         ///< on command lines and in files
   std::string_view description;  ///< a few words, with the equation
   int order;
-  bool two_step;                                         ///< needs the state before the last
-  bool keeps_force;                                      ///< needs a force or acceleration with every state
   enum class Stages { none, linear, nonlinear } stages;  ///< linear: one system a stage; none: no use of the stage solver
   void (*step)(Step&);
-  int past_states = 0;          ///< that it finds in the history, the start of the step among them
+  int history = 1;              ///< points of the history that it reads, the start of the step among them
+  int forces = 0;               ///< how many of these with a force or an acceleration
   bool meets_obstacles = true;  ///< whether its stages end where contacts are defined
   bool sub_steps = false;       ///< whether it divides its steps by a stability limit of its own
+  bool in_thesis = false;       ///< or, as velocity Verlet, measured beside its methods
 
   bool implicit() const { return stages != Stages::none; }
   bool nonlinear() const { return stages == Stages::nonlinear; }
@@ -29,7 +30,7 @@ struct Method {
 std::span<const Method> methods();
 
 /// The thesis' methods, and velocity Verlet.
-std::span<const Method> thesis_methods();
+inline auto thesis_methods() { return methods() | std::views::filter(&Method::in_thesis); }
 
 /// The method with this name. Throws std::invalid_argument, naming all that there are.
 const Method& method(std::string_view name);

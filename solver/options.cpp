@@ -12,7 +12,7 @@ std::span<const StageKind> stage_kinds() {
       {"anderson", "the same iteration accelerated over the last eight updates", Matrix::constant, true},
       {"newton", "with the exact Jacobian, renewed when convergence slows; factored, or inexact by conjugate gradients",
        Matrix::newton, true},
-      {"lean-newton", "with the Jacobian of tension and damping, without shear and bending", Matrix::lean_newton, true},
+      {"tension-newton", "with the Jacobian of tension and damping, without shear and bending", Matrix::tension_newton, true},
   };
   return table;
 }

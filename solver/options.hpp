@@ -33,7 +33,7 @@ struct ErrorControl {
 struct StageKind {
   std::string_view name;
   std::string_view description;
-  enum class Matrix { constant, newton, lean_newton, chosen } matrix;
+  enum class Matrix { constant, newton, tension_newton, chosen } matrix;
   bool accelerated;  ///< by Anderson's method, until an estimate of the error itself is small; else until the residual is
 };
 

@@ -20,6 +20,12 @@ struct Pin {
   bool all() const { return fixed[0] && fixed[1] && fixed[2]; }
 };
 
+/// Which part of the Jacobian a Newton matrix has.
+enum class Jacobian {
+  whole,
+  tension,  ///< nothing that couples more than the ends of an edge, which makes it several times cheaper
+};
+
 /// The split equation of motion  M dv/dt = K x + D v + f_expl(t, x, v),  dx/dt = v   [Etzmuß 2002, (3.20)].
 ///
 /// Forces are in newtons: the densities of the thesis times the area of a particle's dual cell, so that M, K and D are
@@ -41,9 +47,9 @@ struct SplitOde {
   std::function<void(double t, const Vectors& x, const Vectors& v, SparseMatrix& df_dx, SparseMatrix& df_dv)> jacobian;
 
   /// Sets the upper triangle of J ≈ M − γ² ∂f/∂x − γ ∂f/∂v, 3N × 3N, for a Newton method: positive definite, because negative
-  /// curvature of single elements is left out; pinned coordinates have only their mass. `lean`: nor what couples more than the
-  /// ends of an edge, which makes it several times cheaper. J: empty, or what a call with the same `lean` left.
-  std::function<void(double t, const Vectors& x, const Vectors& v, double gamma, bool lean, SparseMatrix& J)> newton_matrix;
+  /// curvature of single elements is left out; pinned coordinates have only their mass. J: empty, or what a call for the same
+  /// part left.
+  std::function<void(double t, const Vectors& x, const Vectors& v, double gamma, Jacobian part, SparseMatrix& J)> newton_matrix;
 
   /// Finds what particles may touch in a step from t to t + h, ordered by particle; absent: there are no obstacles.
   std::function<void(double t, double h, const State& y, std::vector<Contact>& found)> contacts;

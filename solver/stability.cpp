@@ -12,12 +12,13 @@ namespace {
 constexpr double safety = 1.01;
 
 /// Largest |eigenvalue| of a linear map of N × 3 vectors by Arnoldi's iteration, whose eigenvalues approach the outermost
-/// from within: power iteration would need hundreds of products for what takes tens of them here.
+/// from within: power iteration would need hundreds of products for what takes tens of them here, and a restarted space, as
+/// that of Spectra's GenEigsSolver, two to three times as many. The basis takes memory only as it grows.
 template <class Map>
 double largest_eigenvalue(const SplitOde& ode, const Map& map) {
   constexpr int most = 60, check = 6;
   const Eigen::Index n = 3 * ode.particles();
-  Eigen::MatrixXd V(n, most + 1), H = Eigen::MatrixXd::Zero(most + 1, most);
+  Eigen::MatrixXd V(n, check), H = Eigen::MatrixXd::Zero(most + 1, most);
   Vectors z(ode.particles(), 3), w = z;
   std::mt19937 random(1);
   std::normal_distribution<double> normal;
@@ -27,6 +28,7 @@ double largest_eigenvalue(const SplitOde& ode, const Map& map) {
   V.col(0) = Eigen::VectorXd::Map(z.data(), n).normalized();
   double eigenvalue = 0;
   for (int k = 0; k < most; ++k) {
+    if (k + 1 == V.cols()) V.conservativeResize(Eigen::NoChange, V.cols() + check);
     Eigen::VectorXd::Map(z.data(), n) = V.col(k);
     map(z, w);
     auto next = V.col(k + 1);

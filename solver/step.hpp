@@ -11,64 +11,68 @@
 
 namespace drape::solver {
 
-/// A state on the trajectory with what a method keeps of it: f_expl for the IMEX methods, the whole force for `verlet`.
-struct Point {
-  State y;
-  Vectors f;
-  bool has_f = false;
+/// Fields that every step may overwrite.
+struct Scratch {
+  Vectors ax, av, f_hat;     ///< N × 3
+  std::vector<State> rates;  ///< dy/dt of stages, for Runge-Kutta methods
 };
 
-/// What a method sees of one step from t to t + h: it reads y0 (and y₋₁), writes y1 and adds up its work in `result`.
+/// What a step says of its error.
+struct StepError {
+  double constant = 0;     ///< c of the last stage: the error in v is c h^(p+1) times a derivative, p being the order
+  bool embedded = false;   ///< whether the method has found the error itself, by one that is embedded in it,
+  State estimate;          ///< which is this
+  Vectors split;           ///< in v, of IMEX methods with error control
+  double split_gamma = 0;  ///< makes it one in x [s]
+};
+
+/// What `verlet` needs, and keeps from step to step.
+struct SubStepping {
+  ImpactResponse* impacts = nullptr;  ///< null if there are no obstacles
+  double limit = 0;                   ///< largest stable sub-step [s], 0 until it is known
+  LimitWatch limit_watch = {};        ///< tells when it has to be estimated anew, as does
+  StretchWatch stretch_watch = {};
+  std::int64_t &substeps, &limits;  ///< work counters
+};
+
+/// What a method sees of one step from t to t + h: it reads the history, whose newest point is (t, y0), writes y1 and adds up
+/// its work in `result`.
 struct Step {
   const SplitOde& ode;
   const Options& options;
   StageSolver* stage;  ///< null for explicit methods, which need no matrix
+  History& history;
+  Point& next;  ///< at t + h: the result
+  Scratch& scratch;
+  SubStepping& sub_stepping;
 
   double t = 0;
   double h = 0;
   double w = 0;               ///< h over the step before, 0 if there is none
   bool after_impact = false;  ///< there is none because of a hard impact: velocities may jump from particle to particle
-  Point before;               ///< at t − h/w
-  Point now;                  ///< at t
-  Point next;                 ///< at t + h: the result
+  bool starting = false;      ///< whether another method takes the step, for lack of a history
+  StepError error = {};
+  StageResult result = {};
 
-  History history = History(0);   ///< states up to t, for first guesses and estimates of errors
-  bool starting = false;          ///< whether another method takes the step, for lack of a history
-  double error_constant = 0;      ///< c of the last stage
-  State error = {};               ///< of the step, if the method is embedded in another
-  bool embedded = false;          ///< whether it is
-  Vectors split_error = {};       ///< in v, of IMEX methods with error control
-  double split_gamma = 0;         ///< makes it one in x [s]
-  std::vector<State> rates = {};  ///< dy/dt of stages, for Runge-Kutta methods
-
-  Vectors ax, av, f_hat;  ///< scratch, N × 3
-
-  ImpactResponse* impacts = nullptr;  ///< for explicit methods; null if there are no obstacles
-  double explicit_limit = 0;          ///< largest stable sub-step of `verlet` [s], 0 until it is known
-  LimitWatch limit_watch = {};        ///< tells when it has to be estimated anew, as does
-  StretchWatch stretch_watch = {};
-  std::int64_t &substeps, &limits;  ///< work counters
-
-  StageResult result;
-
-  const State& y0() const { return now.y; }
-  const State& ym1() const { return before.y; }
+  Point& now() { return history[0]; }
+  const State& y0() const { return history[0].y; }
+  const State& ym1() const { return history[1].y; }
   State& y1() { return next.y; }
 
   /// f_expl of a point of this step, evaluated at most once.
-  const Vectors& explicit_force(Point& point, double time) {
+  const Vectors& explicit_force(Point& point, double time) const {
     if (!point.has_f) ode.explicit_force(time, point.y.x, point.y.v, point.f);
     point.has_f = true;
     return point.f;
   }
 
-  /// Solves a nonlinear stage. The error in v of the step is c h^(p+1) times a derivative, p being the order.
+  /// Solves a nonlinear stage; c as StepError::constant.
   bool solve(Stage given, double c) {
     State& y = next.y;
-    y.v = now.y.v;  // predictor (3.25), (3.32)
-    error_constant = c;
+    y.v = y0().v;  // predictor (3.25), (3.32)
+    error.constant = c;
     if (stage->accelerates()) {
-      if (history.size() > 1) history.extrapolate(given.t, y.v);
+      if (history.smooth() > 1) history.extrapolate(given.t, y.v);
       given.accuracy = options.stage_accuracy * std::min(1.0, error_over_miss(given.t));
       if (!history.full()) given.accuracy *= 1e-2;  // the miss is of a lower order than the error
     }
@@ -78,16 +82,16 @@ struct Step {
   /// Solves the linear stage of an IMEX method, which ends the step. With error control, what f̂ missed of f_expl at the end is
   /// a part of the error: where hk/d is large it is all of it.
   void solve_split(const Stage& given, const Vectors& f_explicit, double c) {
-    next.y.v = now.y.v;  // predictor (3.25), (3.32)
-    error_constant = c;
+    next.y.v = y0().v;  // predictor (3.25), (3.32)
+    error.constant = c;
     if (!accept(stage->solve_linear(given, f_explicit, next.y)) || !options.error_control.enabled()) return;
-    av = given.gamma * (explicit_force(next, given.t) - f_explicit);
-    split_error = stage->respond(av, result);
-    split_gamma = given.gamma;
+    scratch.av = given.gamma * (explicit_force(next, given.t) - f_explicit);
+    error.split = stage->respond(scratch.av, result);
+    error.split_gamma = given.gamma;
   }
 
   /// The error of the step over what the extrapolation of the history to time t misses.
-  double error_over_miss(double time) const { return error_constant * std::pow(h, history.size()) / history.remainder(time); }
+  double error_over_miss(double time) const { return error.constant * std::pow(h, history.smooth()) / history.remainder(time); }
 
   /// Adds the work of a stage; true if it succeeded.
   bool accept(const StageResult& stage_result) {

@@ -20,7 +20,7 @@ struct CompareArguments {
 
 void print(const char* kind, const results::Judged& judged) {
   fmt::print("{}: {} ({})\n", kind, to_string(judged.judgement), base::printable(judged.reason));
-  if (!judged.worst.columns.empty()) fmt::print("\n{}\n", to_text(judged.worst));
+  if (rows(judged.worst) > 0) fmt::print("\n{}\n", to_text(judged.worst));
 }
 
 int compare_files(const CompareArguments& a) {

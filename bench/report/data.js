@@ -41,8 +41,6 @@ function cellsOf(table, name) {
   return isNumeric(column) ? column.cells.map(toNumber) : column.cells.map((cell) => cell ?? "");
 }
 
-const hasColumns = (table, ...names) => names.every((name) => table.columns.some((column) => column.name === name));
-
 /** Rows of a table as objects. */
 function rowsOf(table) {
   const columns = table.columns.map((column) => [column.name, cellsOf(table, column.name)]);
@@ -63,8 +61,8 @@ function groupBy(items, key) {
 
 const unique = (items) => [...new Set(items)];
 
-/** A verdict that says that something is not as it should be has a NOT in it. */
-const isBad = (verdict) => /\bNOT\b/.test(verdict);
+/** Whether a verdict says that something is not as it was wanted (results/verdict.hpp). */
+const isMissed = (verdict) => /^missed(:|$)/.test(verdict);
 
 /** Columns {name, unit, cells} as CSV [RFC 4180]: numbers read back as the same numbers. */
 function toCsv(columns) {

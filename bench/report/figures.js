@@ -1,5 +1,5 @@
 "use strict";
-// Figures of tables, by what columns a table has.
+// Figures of tables: a table names its figure.
 
 const finitePositive = (value) => value > 0 && Number.isFinite(value);
 
@@ -64,42 +64,43 @@ function trialsFigure(file, table) {
   }];
 }
 
-/** Which column errors are in and what they are plotted over; undefined if the table is not about convergence. */
+/** The columns of errors, of what they are plotted over, and of the two texts that name a curve. */
 function convergenceColumns(table) {
-  const over = ["step", "n"].find((name) => hasColumns(table, name)), error = ["error", "rms"].find((name) => hasColumns(table, name));
-  if (!over || !error || !hasColumns(table, "order")) return undefined;
-  const [outer, inner] = table.columns.filter((column) => !isNumeric(column)).map((column) => column.name);
-  return {over, error, outer, inner};
+  const keys = table.columns.filter((column) => column.role === "key");
+  const [outer, inner] = keys.filter((column) => !isNumeric(column));
+  const [error, order] = ["error", "order"].map((role) => table.columns.find((column) => column.role === role));
+  return {over: keys.find(isNumeric), error, order, outer: outer.name, inner: inner.name};
 }
 
 /** Straight lines of the orders that were fitted, through the middle of the errors. */
-function slopeLines(orders, rows, over) {
+function slopeLines(orders, rows, over, resolved) {
   const x = rows.map((row) => row[over]), low = Math.min(...x), high = Math.max(...x), top = Math.max(...rows.map((row) => row.error));
   return unique(orders.map(Math.round)).filter((order) => order > 0).sort().map((order) => {
-    const ratio = (high / low) ** order, ends = over === "n" ? [top, top / ratio] : [top / ratio, top];
+    const ratio = (high / low) ** order, ends = resolved ? [top, top / ratio] : [top / ratio, top];
     return {type: "scatter", mode: "lines", name: `slope ${order}`, x: [low, high], y: ends, hoverinfo: "name", line: {color: "#999999", width: 1, dash: "dot"}};
   });
 }
 
 /** A figure for each scene or experiment: errors against steps or resolutions, a curve for each method or form. */
 function convergenceFigures(file, table) {
-  const {over, error, outer, inner} = convergenceColumns(table);
-  const unit = table.columns.find((column) => column.name === error).unit, title = over === "n" ? "particles a side" : "time step h [s]";
+  const columns = convergenceColumns(table), {outer, inner} = columns, {unit} = columns.error, over = columns.over.name;
+  const resolved = columns.over.unit === "1", title = resolved ? "particles a side" : "time step h [s]";  // else over time steps
+  const fittedOf = (row) => (columns.order ? row[columns.order.name] : undefined);
   return [...groupBy(rowsOf(table), (row) => row[outer])].flatMap(([name, all]) => {
-    const rows = all.map((row) => ({...row, error: row[error]})).filter((row) => finitePositive(row.error));
+    const rows = all.map((row) => ({...row, error: row[columns.error.name]})).filter((row) => finitePositive(row.error));
     if (rows.length < 2) return [];
     const series = [...groupBy(rows, (row) => row[inner])];
-    const fits = new Map([...groupBy(all, (row) => row[inner])].map(([key, of]) => [key, of.find((row) => row.fitted_order > 0)?.fitted_order]));
+    const fits = new Map([...groupBy(all, (row) => row[inner])].map(([key, of]) => [key, of.map(fittedOf).find((order) => order > 0)]));
     const uncertainty = Math.max(0, ...rows.map((row) => row.uncertainty || 0));
     const make = (width, colours) => {
       const curves = labelled(series.map(([key, of]) => {
         const look = style(key), fitted = fits.get(key);
         return {type: "scatter", mode: "lines+markers", name: fitted ? `${key}: ${fitted.toFixed(2)}` : key, x: of.map((row) => row[over]), y: of.map((row) => row.error),
                 text: of.map((row) => (Number.isFinite(row.order) ? `order ${row.order.toFixed(3)} from the one before` : "")),
-                hovertemplate: `${key}<br>${over === "n" ? "n" : "h"} = %{x}, error %{y:.3e}<br>%{text}<extra></extra>`,
+                hovertemplate: `${key}<br>${resolved ? "n" : "h"} = %{x}, error %{y:.3e}<br>%{text}<extra></extra>`,
                 line: {color: look.color, dash: look.dash, width: 1.5}, marker: {color: look.color, symbol: look.symbol, size: 7}};
       }), width, () => 0);
-      const slopes = slopeLines([...fits.values()].filter((fitted) => fitted), rows, over);
+      const slopes = slopeLines([...fits.values()].filter((fitted) => fitted), rows, over, resolved);
       const range = logRange(rows.map((row) => row.error));
       const layout = {
         ...baseLayout(width, colours, curves.length + slopes.length),
@@ -111,7 +112,7 @@ function convergenceFigures(file, table) {
     };
     return [{
       file, make, title: `Convergence: ${name}`,
-      says: `Error against ${over === "n" ? "resolution" : "time step"}; the legend has the order fitted over the window that the program found.` +
+      says: `Error against ${resolved ? "resolution" : "time step"}; the legend has the order fitted over the window that the program found.` +
             (uncertainty ? ` In the grey band, below 10 × the uncertainty of ${shortNumber(uncertainty)}, errors say nothing.` : "") + moreCurves(series.length),
       columns: () => columnsWhere(table, (row) => row[outer] === name),
     }];
@@ -188,7 +189,6 @@ function stabilityFigures(file, table) {
 /** What a table of figure 4.3 has of each method over time: its columns are <method>_<curve>. */
 const curvesOverTime = [["CG", "CG iterations a step"], ["updates", "updates a step"], ["contacts", "particles in contact"]];
 const methodsOverTime = (table) => table.columns.map(({name}) => name).filter((name) => name.endsWith("_contacts")).map((name) => name.replace(/_contacts$/, ""));
-const isOverTime = (table) => hasColumns(table, "t") && methodsOverTime(table).length > 0;
 
 /** The three of them below each other over one time. */
 function overTimeFigure(file, table) {
@@ -205,10 +205,7 @@ function overTimeFigure(file, table) {
            columns: () => table.columns.map(exactCells)}];
 }
 
+const figureMakers = {"convergence": convergenceFigures, "work-precision": trialsFigure, "stability": stabilityFigures, "over time": overTimeFigure};
+
 /** All figures of a table; none if it is only to be read. */
-function figuresOfTable(file, table) {
-  if (table.name.startsWith("trials: ")) return trialsFigure(file, table);
-  if (table.name === "stability-atlas") return stabilityFigures(file, table);
-  if (isOverTime(table)) return overTimeFigure(file, table);
-  return convergenceColumns(table) ? convergenceFigures(file, table) : [];
-}
+const figuresOfTable = (file, table) => figureMakers[table.figure]?.(file, table) ?? [];

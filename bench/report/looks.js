@@ -12,7 +12,7 @@ const looks = {
   "solvers": {
     "": ["circle", "solid"], "ic0": ["square", "dash"], "fixed-point/ic0": ["square", "dash"], "cholesky": ["cross", "dot"],
     "fixed-point/cholesky": ["square-open", "dashdot"], "anderson": ["triangle-up", "dot"], "newton": ["diamond", "dashdot"],
-    "lean-newton": ["diamond-open", "dashdot"], "multigrid": ["star", "longdash"], "mic0": ["x", "longdash"]
+    "tension-newton": ["diamond-open", "dashdot"], "multigrid": ["star", "longdash"], "mic0": ["x", "longdash"]
   },
   "other_colours": ["#17BECF", "#BCBD22", "#E377C2", "#8D6E63", "#26A69A", "#EF6C00", "#5C6BC0", "#9CCC65"],
   "other_marks": [["triangle-down", "dash"], ["pentagon", "dot"], ["hexagon", "dashdot"], ["star-diamond", "longdash"], ["hourglass", "dash"]]

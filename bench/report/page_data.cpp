@@ -120,7 +120,10 @@ Json page_provenance(const results::Provenance& provenance) {
 nlohmann::ordered_json page_table(const results::Table& table) {
   Json columns = Json::array();
   for (const results::Column& column : table.columns) columns.push_back(page_column(column));
-  return {{"name", table.name}, {"description", table.description}, {"columns", std::move(columns)}};
+  return {{"name", table.name},
+          {"description", table.description},
+          {"figure", std::string(to_string(table.figure))},
+          {"columns", std::move(columns)}};
 }
 
 Json page_data(const std::string& name, const results::Recording& recording) {

@@ -48,7 +48,7 @@ function tableElement(table) {
   for (let k = 0; k < (columns[0]?.cells.length ?? 0); ++k) {
     const row = element("tr", {"data-row": k});
     columns.forEach((column, c) => {
-      const bad = column.name === "verdict" && isBad(texts[c][k]);
+      const bad = column.role === "verdict" && isMissed(texts[c][k]);
       const className = [isNumeric(column) ? "number" : "", bad ? "bad" : ""].join(" ").trim();
       row.append(c === 0 ? element("th", {scope: "row", className, title: texts[c][k]}, texts[c][k]) : element("td", {className}, texts[c][k]));
     });

@@ -69,6 +69,6 @@ struct adl_serializer<drape::results::Cell> {
 namespace drape::results {
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Column, name, title, unit, description, role, cells, shown)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Table, name, description, columns, headline)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Table, name, description, columns, headline, figure)
 
 }  // namespace drape::results

@@ -191,19 +191,17 @@ std::vector<results::RunRecord> sweep(const std::vector<Group>& groups, const Sw
   const auto parts_of = [&](const Group& group) {
     return static_cast<int>(group.size()) * (1 + options.repetitions) + (options.reference ? 1 : 0);
   };
-  int parts = 0;
-  for (const Group& group : groups) parts += parts_of(group);
-  record_in_file(options, identity(groups, options), parts, [&](results::RunFile& file, Checkpoint& checkpoint) {
-    const std::size_t recorded = file.run_count();
-    std::size_t before = 0;  // runs of the groups before this one
-    for (const Group& group : groups) {
-      if (before >= recorded)
-        run_group(group, options, file, checkpoint);
-      else
-        for (int k = 0; k < parts_of(group); ++k) checkpoint.advance();
-      before += group.size();
-    }
-  });
+  std::vector<Job> jobs;
+  std::size_t before = 0;  // runs of the groups before this one
+  for (const Group& group : groups) {
+    const int parts = parts_of(group);
+    jobs.push_back({parts, [&options, &group, before, parts](results::RunFile& file, Checkpoint& checkpoint) {
+                      if (before >= file.run_count()) return run_group(group, options, file, checkpoint);
+                      for (int k = 0; k < parts; ++k) checkpoint.advance();
+                    }});
+    before += group.size();
+  }
+  record_in_file(options, identity(groups, options), jobs);
   std::vector<results::RunRecord> all = results::read_runs(options.out);
   if (options.frames_every) results::write_xdmf(options.out, all);
   return all;

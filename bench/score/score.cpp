@@ -4,18 +4,30 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
 #include <memory>
 #include <optional>
 
 #include "bench/runs/identity.hpp"
 #include "bench/score/ours.hpp"
 #include "model/scene_file/scene_file.hpp"
+#include "results/columns.hpp"
 
 namespace drape::bench {
 namespace {
 
+using results::Cell;
+using results::ColumnGroup;
+using results::ColumnOf;
+using results::field;
+using results::make_table;
+using results::Measured;
+using results::quartiles;
+using results::Role;
 using results::Table;
-using results::TableBuilder;
+using results::to_cell;
 
 /// What the tables share.
 struct Scoring {
@@ -29,16 +41,61 @@ struct Scoring {
   double size() const { return model::size(scene); }
 };
 
-void add_energies(TableBuilder& table, const FrameScore& frame) {
-  const Observables &own = frame.own, &truth = frame.truth.value, &unsure = frame.truth.uncertainty;
-  const auto energy = [&](const std::string& name, const char* title, double Observables::*which) {
-    table.number(name.c_str(), title, "J", "energy", own.*which);
-    table.number(("reference_" + name).c_str(), "reference", "J", "the same of the reference", truth.*which);
-    table.number((name + "_uncertainty").c_str(), "", "J", "of the reference", unsure.*which);
+/// A frame in units of the scene's size.
+struct Frame {
+  const FrameScore* score;
+  double size;
+};
+
+constexpr ColumnOf<Frame> frame_columns[] = {
+    {"t", "t", "s", "time of the frame", Role::key, [](const Frame& f) -> Cell { return f.score->t; }},
+    {"rms", "rms error", "1", "distance from the reference, over the size", Role::error,
+     [](const Frame& f) -> Cell { return f.score->rms / f.size; }},
+    {"maximum", "largest", "1", "largest distance of a particle, over the size", Role::error,
+     [](const Frame& f) -> Cell { return f.score->maximum / f.size; }},
+    {"reference_error", "reference error", "1", "uncertainty of the reference, as rms", Role::uncertainty,
+     [](const Frame& f) -> Cell { return f.score->uncertainty / f.size; }},
+    {"centre", "", "1", "distance of the centres of mass, over the size", Role::error,
+     [](const Frame& f) -> Cell { return f.score->centre / f.size; }},
+    {"centre_uncertainty", "", "1", "of the reference", Role::note,
+     [](const Frame& f) -> Cell { return f.score->truth.centre_distance / f.size; }},
+};
+
+/// An energy of a frame and of the reference [J].
+struct Energy {
+  double own, truth, uncertainty;
+};
+
+constexpr ColumnOf<Energy> energy_columns[] = {
+    {"{}", "{}", "J", "energy", Role::quantity, field<&Energy::own>},
+    {"reference_{}", "reference", "J", "the same of the reference", Role::quantity, field<&Energy::truth>},
+    {"{}_uncertainty", "", "J", "of the reference", Role::note, field<&Energy::uncertainty>},
+};
+
+constexpr ColumnOf<FrameScore> depth_columns[] = {
+    {"depth", "depth", "m", "greatest depth of a particle in an obstacle", Role::quantity, field<&FrameScore::depth>},
+    {"reference_depth", "reference", "m", "the same of the reference", Role::quantity, field<&FrameScore::true_depth>},
+};
+
+Table frames_table(const Scoring& s) {
+  std::vector<Frame> rows;
+  for (const FrameScore& frame : s.frames) rows.push_back({&frame, s.size()});
+  Table table =
+      make_table("score",
+                 fmt::format("{} on {}, frame by frame; reference {}; energies by our model{}", s.external.name, s.scene.name,
+                             s.truth->families, s.external.differenced ? ", velocities by differences of the frames" : ""),
+                 frame_columns, rows);
+  const auto add_energies = [&](double Observables::*which, const ColumnGroup& group) {
+    const auto energy = [&](const FrameScore& frame) {
+      return std::optional(Energy{frame.own.*which, frame.truth.value.*which, frame.truth.uncertainty.*which});
+    };
+    add_columns(table, energy_columns, s.frames, energy, group);
   };
-  energy("kinetic", "kinetic", &Observables::kinetic);
-  energy("potential", "potential", &Observables::potential);
-  energy("energy", "total", &Observables::total);
+  add_energies(&Observables::kinetic, {"kinetic", "kinetic", ""});
+  add_energies(&Observables::potential, {"potential", "potential", ""});
+  add_energies(&Observables::total, {"energy", "total", ""});
+  if (s.truth->cloth.contacts) add_columns(table, depth_columns, s.frames);
+  return table;
 }
 
 Table over_time(Scoring& s, Checkpoint& checkpoint) {
@@ -47,125 +104,177 @@ Table over_time(Scoring& s, Checkpoint& checkpoint) {
   s.truth = true_motion(s.scene, s.external.times, s.options.agreement, {.say = say});
   s.frames = frame_scores(s.external, *s.truth);
   checkpoint.advance();
-  TableBuilder table(
-      "score", fmt::format("{} on {}, frame by frame; reference {}; energies by our model{}", s.external.name, s.scene.name,
-                           s.truth->families, s.external.differenced ? ", velocities by differences of the frames" : ""));
-  for (const FrameScore& frame : s.frames) {
-    table.row();
-    table.number("t", "t", "s", "time of the frame", frame.t);
-    table.number("rms", "rms error", "1", "distance from the reference, over the size", frame.rms / s.size());
-    table.number("maximum", "largest", "1", "largest distance of a particle, over the size", frame.maximum / s.size());
-    table.number("reference_error", "reference error", "1", "uncertainty of the reference, as rms",
-                 frame.uncertainty / s.size());
-    table.number("centre", "", "1", "distance of the centres of mass, over the size", frame.centre / s.size());
-    table.number("centre_uncertainty", "", "1", "of the reference", frame.truth.centre_distance / s.size());
-    add_energies(table, frame);
-    if (!s.truth->cloth.contacts) continue;
-    table.number("depth", "depth", "m", "greatest depth of a particle in an obstacle", frame.depth);
-    table.number("reference_depth", "reference", "m", "the same of the reference", frame.true_depth);
-  }
-  return table.finish();
+  return frames_table(s);
 }
 
-/// A column and one for its uncertainty.
-void add(TableBuilder& table, const std::string& name, const char* title, const char* unit, const char* description,
-         const Uncertain& number, double divided_by = 1) {
-  table.number(name.c_str(), title, unit, description, number.value / divided_by);
-  table.number((name + "_uncertainty").c_str(), *title == 0 ? "" : "±", unit, "by what the reference is uncertain",
-               number.uncertainty / divided_by);
+/// A whole motion in numbers. Errors are over the size of the scene.
+struct Summary {
+  const Scoring* scoring;
+  const FrameScore *worst, *last, *deepest;
+  double error, maximum, mean_error, end_error, reference_error, reference_depth;
+  Lag late;  ///< what is left: over the size, too
+  Uncertain damping;
+};
+
+constexpr const char* by_reference = "by what the reference is uncertain";
+
+constexpr ColumnOf<Summary> summary_columns[] = {
+    {"scene", "", "", "its name", Role::key, [](const Summary& s) -> Cell { return s.scoring->scene.name; }},
+    {"file", "", "", "what was measured", Role::key, [](const Summary& s) -> Cell { return s.scoring->external.name; }},
+    {"velocities", "", "", "where they are from", Role::key,
+     [](const Summary& s) { return to_cell(s.scoring->external.differenced ? "differences of the frames" : "the file"); }},
+    {"reference", "", "", "the families that agree", Role::note,
+     [](const Summary& s) -> Cell { return s.scoring->truth->families; }},
+    {"frames", "", "1", "how many", Role::quantity, [](const Summary& s) -> Cell { return std::ssize(s.scoring->frames); }},
+    {"end", "", "s", "time of the last frame", Role::quantity, [](const Summary& s) -> Cell { return s.last->t; }},
+    {"growth", "", "1", "largest growth of a small perturbation of the start", Role::quantity,
+     [](const Summary& s) -> Cell { return s.scoring->truth->growth; }},
+    {"error", "rms error", "1", "largest of the frames' rms distances, over the size", Role::error, field<&Summary::error>},
+    {"error_time", "at", "s", "when that is", Role::quantity, [](const Summary& s) -> Cell { return s.worst->t; }},
+    {"maximum", "largest", "1", "largest distance of any particle in any frame, over the size", Role::error,
+     field<&Summary::maximum>},
+    {"mean_error", "", "1", "root mean square over all frames and particles, over the size", Role::error,
+     field<&Summary::mean_error>},
+    {"end_error", "at the end", "1", "rms distance of the last frame, over the size", Role::error, field<&Summary::end_error>},
+    {"reference_error", "reference error", "1", "largest uncertainty of the reference at the frames, as rms", Role::uncertainty,
+     field<&Summary::reference_error>},
+    {"lag", "lag", "s", "delay against the reference", Role::quantity,
+     [](const Summary& s) -> Cell { return s.late.seconds.value; }},
+    {"lag_uncertainty", "±", "s", by_reference, Role::note,
+     [](const Summary& s) -> Cell { return s.late.seconds.uncertainty; }},
+    {"left", "left", "1", "as mean_error, the delay taken out", Role::error,
+     [](const Summary& s) -> Cell { return s.late.left.value; }},
+    {"left_uncertainty", "±", "1", by_reference, Role::note, [](const Summary& s) -> Cell { return s.late.left.uncertainty; }},
+    {"damping", "damping", "1/s", "rate at which the kinetic energy falls behind the reference's, the delay taken out",
+     Role::quantity, [](const Summary& s) -> Cell { return s.damping.value; }},
+    {"damping_uncertainty", "±", "1/s", by_reference, Role::note,
+     [](const Summary& s) -> Cell { return s.damping.uncertainty; }},
+    {"energy", "", "J", "total at the last frame", Role::quantity, [](const Summary& s) -> Cell { return s.last->own.total; }},
+    {"energy_uncertainty", "", "J", by_reference, Role::note,
+     [](const Summary& s) -> Cell { return s.last->truth.uncertainty.total; }},
+    {"reference_energy", "", "J", "the same of the reference", Role::quantity,
+     [](const Summary& s) -> Cell { return s.last->truth.value.total; }},
+};
+
+constexpr ColumnOf<Summary> penetration_columns[] = {
+    {"penetration", "depth", "m", "greatest depth of a particle in an obstacle", Role::quantity,
+     [](const Summary& s) -> Cell { return s.deepest->depth; }},
+    {"penetration_time", "at", "s", "when that is", Role::quantity, [](const Summary& s) -> Cell { return s.deepest->t; }},
+    {"reference_penetration", "", "m", "the same of the reference", Role::quantity, field<&Summary::reference_depth>},
+};
+
+/// A number over another.
+Uncertain over(const Uncertain& number, double divisor) { return {number.value / divisor, number.uncertainty / divisor}; }
+
+Summary summarised(const Scoring& s) {
+  const auto largest = [&](double FrameScore::*value) { return &*std::ranges::max_element(s.frames, {}, value); };
+  const FrameScore *worst = largest(&FrameScore::rms), *last = &s.frames.back();
+  const double size = s.size();
+  double mean = 0;
+  for (const FrameScore& frame : s.frames) mean += frame.rms * frame.rms / static_cast<double>(s.frames.size());
+  const Lag late = lag(s.external, *s.truth);
+  return {.scoring = &s,
+          .worst = worst,
+          .last = last,
+          .deepest = largest(&FrameScore::depth),
+          .error = worst->rms / size,
+          .maximum = largest(&FrameScore::maximum)->maximum / size,
+          .mean_error = std::sqrt(mean) / size,
+          .end_error = last->rms / size,
+          .reference_error = largest(&FrameScore::uncertainty)->uncertainty / size,
+          .reference_depth = largest(&FrameScore::true_depth)->true_depth,
+          .late = {late.seconds, over(late.left, size)},
+          .damping = damping(s.external, *s.truth, late)};
 }
 
 Table summary(const Scoring& s) {
-  const double size = s.size();
-  TableBuilder table("score-summary", fmt::format("{} on {} in numbers", s.external.name, s.scene.name));
-  const FrameScore &worst = std::ranges::max(s.frames, {}, &FrameScore::rms), &last = s.frames.back();
-  double mean = 0;
-  for (const FrameScore& frame : s.frames) mean += frame.rms * frame.rms / static_cast<double>(s.frames.size());
-  table.row();
-  table.text("scene", "", "its name", s.scene.name);
-  table.text("file", "", "what was measured", s.external.name);
-  table.text("velocities", "", "where they are from", s.external.differenced ? "differences of the frames" : "the file");
-  table.text("reference", "", "the families that agree", s.truth->families);
-  table.count("frames", "", "how many", std::ssize(s.frames));
-  table.number("end", "", "s", "time of the last frame", last.t);
-  table.number("growth", "", "1", "largest growth of a small perturbation of the start", s.truth->growth);
-  table.number("error", "rms error", "1", "largest of the frames' rms distances, over the size", worst.rms / size);
-  table.number("error_time", "at", "s", "when that is", worst.t);
-  table.number("maximum", "largest", "1", "largest distance of any particle in any frame, over the size",
-               std::ranges::max(s.frames, {}, &FrameScore::maximum).maximum / size);
-  table.number("mean_error", "", "1", "root mean square over all frames and particles, over the size", std::sqrt(mean) / size);
-  table.number("end_error", "at the end", "1", "rms distance of the last frame, over the size", last.rms / size);
-  table.number("reference_error", "reference error", "1", "largest uncertainty of the reference at the frames, as rms",
-               std::ranges::max(s.frames, {}, &FrameScore::uncertainty).uncertainty / size);
-  const Lag late = lag(s.external, *s.truth);
-  add(table, "lag", "lag", "s", "delay against the reference", late.seconds);
-  add(table, "left", "left", "1", "as mean_error, the delay taken out", late.left, size);
-  add(table, "damping", "damping", "1/s", "rate at which the kinetic energy falls behind the reference's, the delay taken out",
-      damping(s.external, *s.truth, late));
-  add(table, "energy", "", "J", "total at the last frame", {last.own.total, last.truth.uncertainty.total});
-  table.number("reference_energy", "", "J", "the same of the reference", last.truth.value.total);
-  if (!s.truth->cloth.contacts) return table.finish();
-  const FrameScore& deepest = std::ranges::max(s.frames, {}, &FrameScore::depth);
-  table.number("penetration", "depth", "m", "greatest depth of a particle in an obstacle", deepest.depth);
-  table.number("penetration_time", "at", "s", "when that is", deepest.t);
-  table.number("reference_penetration", "", "m", "the same of the reference",
-               std::ranges::max(s.frames, {}, &FrameScore::true_depth).true_depth);
-  return table.finish();
+  const std::array rows{summarised(s)};
+  Table table =
+      make_table("score-summary", fmt::format("{} on {} in numbers", s.external.name, s.scene.name), summary_columns, rows);
+  if (s.truth->cloth.contacts) add_columns(table, penetration_columns, rows);
+  return table;
 }
+
+constexpr const char* of_value = "step [s], or fraction of the stability limit";
+constexpr const char* of_error = "largest of the frames' rms distances, over the size";
+constexpr const char* of_time = "median wall time to the last frame";
+
+constexpr ColumnOf<Trial> trial_columns[] = {
+    {"method", "", "", "time integrator, with what controls it", Role::key,
+     [](const Trial& trial) -> Cell { return trial.family->name; }},
+    {"value", "", "1", of_value, Role::key, [](const Trial& trial) -> Cell { return trial.configuration().value; }},
+    {"outcome", "", "", "success, or why there is none", Role::verdict, field<&Trial::outcome>},
+    {"steps", "", "1", "steps", Role::counter, field<&Trial::steps>},
+};
+
+constexpr ColumnOf<Measured> measured_columns[] = {
+    {"error", "", "1", of_error, Role::error, field<&Measured::error>},
+    {"time", "", "ms", of_time, Role::time, [](const Measured& m) -> Cell { return quartiles(m.times).median; }},
+    {"lower", "", "ms", "lower quartile", Role::time, [](const Measured& m) -> Cell { return quartiles(m.times).lower; }},
+    {"upper", "", "ms", "upper quartile", Role::time, [](const Measured& m) -> Cell { return quartiles(m.times).upper; }},
+    {"repetitions", "", "1", "times it was run for this", Role::time,
+     [](const Measured& m) -> Cell { return std::ssize(m.times); }},
+};
 
 /// All that was tried, for files.
 Table trials(const Scoring& s) {
-  TableBuilder table("score-trials", "All that was tried of our methods");
-  for (const Trial& trial : s.ours.trials) {
-    table.row();
-    table.text("method", "", "time integrator, with what controls it", trial.family->name);
-    table.number("value", "", "1", "step [s], or fraction of the stability limit", trial.configuration().value);
-    table.text("outcome", "", "success, or why there is none", trial.outcome);
-    table.count("steps", "", "steps", trial.steps);
-    if (trial.measured.times.empty()) continue;
-    const results::Quartiles q = results::quartiles(trial.measured.times);
-    table.number("error", "", "1", "largest of the frames' rms distances, over the size", trial.measured.error);
-    table.number("time", "", "ms", "median wall time to the last frame", q.median);
-    table.number("lower", "", "ms", "lower quartile", q.lower);
-    table.number("upper", "", "ms", "upper quartile", q.upper);
-    table.count("repetitions", "", "times it was run for this", std::ssize(trial.measured.times));
-  }
-  return table.finish();
+  Table table = make_table("score-trials", "All that was tried of our methods", trial_columns, s.ours.trials);
+  add_columns(table, measured_columns, s.ours.trials,
+              [](const Trial& trial) { return trial.measured.times.empty() ? nullptr : &trial.measured; });
+  return table;
 }
 
-/// A trial in columns whose names begin with `prefix`.
-void add_answer(TableBuilder& table, const std::string& prefix, const char* question, const Trial* trial, bool best) {
-  if (trial == nullptr) return;
-  const auto name = [&](const char* end) { return prefix + end; };
-  table.number(name("value").c_str(), question, "1", "step [s], or fraction of the stability limit",
-               trial->configuration().value);
-  table.number(name("error").c_str(), "rms error", "1", "largest of the frames' rms distances, over the size",
-               trial->measured.error);
-  table.number(name("time").c_str(), "time", "ms", "median wall time to the last frame",
-               results::quartiles(trial->measured.times).median);
-  if (best) table.text(name("best").c_str(), "best", "which method it is", "best");
+/// A trial that answers a question, and whether no other method answers it better.
+struct Answer {
+  const Trial* trial;
+  bool best;
+};
+
+/// What our methods with a family answer.
+struct OfFamily {
+  std::string method;
+  std::optional<Answer> as_right, at_cost;
+};
+
+constexpr ColumnOf<OfFamily> family_columns[] = {
+    {"method", "method", "", "time integrator, with what controls it", Role::key, field<&OfFamily::method>},
+};
+
+/// Which trial it is depends on times.
+constexpr ColumnOf<Answer> answer_columns[] = {
+    {"{}value", "{}", "1", of_value, Role::time, [](const Answer& a) -> Cell { return a.trial->configuration().value; }},
+    {"{}error", "rms error", "1", of_error, Role::time, [](const Answer& a) -> Cell { return a.trial->measured.error; }},
+    {"{}time", "time", "ms", of_time, Role::time,
+     [](const Answer& a) -> Cell { return quartiles(a.trial->measured.times).median; }},
+    {"{}best", "best", "", "which method it is", Role::note, [](const Answer& a) { return a.best ? to_cell("best") : Cell(); }},
+};
+
+std::optional<Answer> answer(const Trial* trial, const Trial* best) {
+  if (trial == nullptr) return std::nullopt;
+  return Answer{trial, trial == best};
+}
+
+Table answers_table(const Scoring& s) {
+  std::vector<OfFamily> rows;
+  for (std::size_t k = 0; k < s.ours.families.size(); ++k) {
+    const Answers &answers = s.ours.answers[k], &best = s.ours.best;
+    rows.push_back({s.ours.families[k].name, answer(answers.as_right, best.as_right), answer(answers.at_cost, best.at_cost)});
+  }
+  const std::optional<double> cost = s.options.cost;
+  Table table =
+      make_table("score-ours",
+                 fmt::format("Our methods on {} to {:g} s: the quickest at most as wrong as {} (rms error {:.3g}){}",
+                             s.scene.name, s.frames.back().t, s.external.name, known_error(s.frames) / s.size(),
+                             cost ? fmt::format(", and the least wrong that take no longer ({:g} ms)", 1e3 * *cost) : ""),
+                 family_columns, rows);
+  add_columns(table, answer_columns, rows, std::mem_fn(&OfFamily::as_right), {"", "as right with", ""});
+  if (cost) add_columns(table, answer_columns, rows, std::mem_fn(&OfFamily::at_cost), {"cost_", "no longer with", ""});
+  return table;
 }
 
 Table beside_ours(Scoring& s, Checkpoint& checkpoint) {
   s.ours = try_ours(*s.truth, s.frames, s.options.methods, s.options.cost, s.options.repetitions, checkpoint);
-  const double error = known_error(s.frames) / s.size();
-  TableBuilder table(
-      "score-ours",
-      fmt::format(
-          "Our methods on {} to {:g} s: the quickest at most as wrong as {} (rms error {:.3g}){}", s.scene.name,
-          s.frames.back().t, s.external.name, error,
-          s.options.cost ? fmt::format(", and the least wrong that take no longer ({:g} ms)", 1e3 * *s.options.cost) : ""));
-  for (std::size_t k = 0; k < s.ours.families.size(); ++k) {
-    const Answers &answers = s.ours.answers[k], &best = s.ours.best;
-    table.row();
-    table.text("method", "method", "time integrator, with what controls it", s.ours.families[k].name);
-    add_answer(table, "", "as right with", answers.as_right, answers.as_right == best.as_right);
-    add_answer(table, "cost_", "no longer with", answers.at_cost, answers.at_cost == best.at_cost);
-  }
-  Table ours = table.finish();
-  std::stable_partition(ours.columns.begin(), ours.columns.end(),
-                        [](const results::Column& column) { return !column.name.starts_with("cost_"); });
-  return ours;
+  return answers_table(s);
 }
 
 std::string bits(const std::vector<solver::State>& states) {

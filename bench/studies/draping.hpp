@@ -1,22 +1,45 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <string>
 
 #include "model/scene.hpp"
+#include "results/columns.hpp"
 #include "results/run_record.hpp"
-#include "results/table_builder.hpp"
 
 namespace drape::bench {
 
-/// What the thesis printed of a run: of another machine, and of a cloth whose scale of d it leaves open.
+/// What the thesis printed of a run: of a cloth whose scale of d it leaves open.
 struct Printed {
   std::int64_t updates, cg_iterations;
-  std::optional<double> seconds;
 };
 
-/// The columns of a run of a falling sheet in the current row: work, how far the corners sink, contacts, and the thesis'
-/// figures.
-void add_draping(results::TableBuilder& table, const model::Scene& scene, const results::RunRecord& run,
-                 const std::optional<Printed>& thesis);
+/// What became of a falling sheet, beside what the thesis printed of it.
+struct Draping {
+  std::int64_t updates = 0, cg_iterations = 0;
+  double sunk = 0;      ///< by which the four corners have sunk, their mean [m]
+  int contacts = 0;     ///< in the last step
+  std::string outcome;  ///< "success", or what else and when
+  std::optional<Printed> thesis;
+};
+
+Draping draping(const model::Scene& scene, const results::RunRecord& run, const std::optional<Printed>& thesis);
+
+inline constexpr results::ColumnOf<Draping> draping_columns[] = {
+    {"updates", "updates", "1", "of the fixed-point loop; of IMEX methods one a step, more in contact", results::Role::counter,
+     results::field<&Draping::updates>},
+    {"cg_iterations", "CG", "1", "iterations of conjugate gradients", results::Role::counter,
+     results::field<&Draping::cg_iterations>},
+    {"sunk", "corners sink", "m", "mean of the four corners from start to end", results::Role::quantity,
+     results::field<&Draping::sunk>},
+    {"contacts", "in contact", "1", "particles that touched something in the last step", results::Role::quantity,
+     results::field<&Draping::contacts>},
+    {"outcome", "outcome", "", "how the run ended", results::Role::verdict, results::field<&Draping::outcome>},
+    {"thesis_updates", "thesis: updates", "1", "printed in the thesis", results::Role::note,
+     [](const Draping& run) { return run.thesis ? results::to_cell(run.thesis->updates) : results::Cell(); }},
+    {"thesis_cg_iterations", "thesis: CG", "1", "printed in the thesis", results::Role::note,
+     [](const Draping& run) { return run.thesis ? results::to_cell(run.thesis->cg_iterations) : results::Cell(); }},
+};
 
 }  // namespace drape::bench

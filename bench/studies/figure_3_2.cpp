@@ -5,14 +5,22 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <optional>
 
 #include "bench/runs/record.hpp"
 #include "bench/studies/studies.hpp"
 #include "model/scene_file/scene_file.hpp"
-#include "results/table_builder.hpp"
+#include "results/columns.hpp"
+#include "results/verdict.hpp"
 
 namespace drape::bench {
 namespace {
+
+using results::Cell;
+using results::field;
+using results::Role;
+using results::Standing;
+using results::verdict;
 
 constexpr double figure_step = 0.01;  ///< [s]
 constexpr double last = 1;            ///< part of the run that is looked at [s]
@@ -131,70 +139,129 @@ Flutters compare(const char* damping, bool quick, Checkpoint& checkpoint) {
 
 using Runs = std::vector<Flutters>;  ///< one for each damping
 
-void add_damping(results::TableBuilder& table, std::size_t k) {
-  table.row();
-  table.number("damping", "d", "N s/m", "linear damping; 0.2 is the scene's", std::stod(dampings[k]));
-}
+double number(const char* damping) { return std::stod(damping); }
+
+/// How the sheet swings with one method; the truth's swing is that of the same damping.
+struct Swing {
+  double damping;
+  const Flutter* seen;
+  std::optional<std::string> verdict;  ///< in Euler's row
+};
+
+constexpr results::ColumnOf<Swing> swing_columns[] = {
+    {"damping", "d", "N s/m", "linear damping; 0.2 is the scene's", Role::key, field<&Swing::damping>},
+    {"method", "method", "", "time integrator", Role::key,
+     [](const Swing& row) -> Cell { return row.seen->run.method.substr(0, row.seen->run.method.find('/')); }},
+    {"peak_to_peak", "swing", "m", "of the free edge's mean, from peak to peak", Role::quantity,
+     [](const Swing& row) -> Cell { return row.seen->peak_to_peak(); }},
+    {"rms", "rms", "m", "of the same", Role::quantity, [](const Swing& row) -> Cell { return row.seen->rms(); }},
+    {"wrinkles", "wrinkles", "m", "root mean square distance of the free edge from its mean", Role::quantity,
+     [](const Swing& row) -> Cell { return row.seen->wrinkles; }},
+    {"bending", "bending", "J", "energy of the bending along u, mean over time", Role::quantity,
+     [](const Swing& row) -> Cell { return row.seen->bending.sum(); }},
+    {"kinetic", "kinetic", "J", "energy of all waves along u, mean over time", Role::quantity,
+     [](const Swing& row) -> Cell { return row.seen->kinetic.sum(); }},
+    {"verdict", "verdict", "", "whether Euler swings less than the truth", Role::verdict, field<&Swing::verdict>},
+    {"outcome", "outcome", "", "how the run ended", Role::verdict,
+     [](const Swing& row) { return results::to_cell(row.seen->run.outcome); }},
+};
 
 results::Table swings(const Runs& runs) {
-  results::TableBuilder table("figure-3.2",
-                              fmt::format("Figure 3.2: the sheet in the wind, h = {} s, the last second", figure_step));
-  for (std::size_t k = 0; k < runs.size(); ++k)
-    for (const Flutter& seen : runs[k]) {
-      add_damping(table, k);
-      table.text("method", "method", "time integrator", seen.run.method.substr(0, seen.run.method.find('/')));
-      table.number("peak_to_peak", "swing", "m", "of the free edge's mean, from peak to peak", seen.peak_to_peak());
-      table.number("rms", "rms", "m", "of the same", seen.rms());
-      table.number("wrinkles", "wrinkles", "m", "root mean square distance of the free edge from its mean", seen.wrinkles);
-      table.number("bending", "bending", "J", "energy of the bending along u, mean over time", seen.bending.sum());
-      table.number("kinetic", "kinetic", "J", "energy of all waves along u, mean over time", seen.kinetic.sum());
-      table.text("outcome", "outcome", "how the run ended", std::string(to_string(seen.run.outcome)));
-      if (&seen == &runs[k].front())
-        table.text("verdict", "verdict", "whether Euler swings less than the truth",
-                   seen.peak_to_peak() < runs[k][2].peak_to_peak() ? "swings less" : "does NOT swing less");
-    }
-  return table.finish();
+  std::vector<Swing> rows;
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    const auto& [euler, bdf2, truth] = runs[k];
+    const bool less = euler.peak_to_peak() < truth.peak_to_peak();
+    rows.push_back({number(dampings[k]), &euler,
+                    less ? verdict(Standing::met, "swings less") : verdict(Standing::missed, "does not swing less")});
+    for (const Flutter* seen : {&bdf2, &truth}) rows.push_back({number(dampings[k]), seen, {}});
+  }
+  return results::make_table("figure-3.2",
+                             fmt::format("Figure 3.2: the sheet in the wind, h = {} s, the last second", figure_step),
+                             swing_columns, rows);
 }
 
-/// Energies of some waves, and their ratios to the truth. `name` is that of the energy; if not `seen`, people see the ratios
-/// only. Returns what became of the energy.
-std::string add_energies(results::TableBuilder& table, const std::string& name, const std::array<double, 3>& energy,
-                         bool seen) {
+using Energies = std::array<double, 3>;  ///< of the methods, means over the last second [J]
+
+/// Energies of some waves along u.
+struct Spectrum {
+  double damping;
+  std::string waves;  ///< numbers of half-waves: "3", or the first and the last
+  Energies bending, kinetic;
+  std::optional<std::string> verdict;  ///< where it is not a single wave
+
+  double ratio(Energies Spectrum::*energy, std::size_t method) const { return (this->*energy)[method] / (this->*energy)[2]; }
+};
+
+constexpr results::ColumnOf<Spectrum> waves_columns[] = {
+    {"damping", "d", "N s/m", "linear damping; 0.2 is the scene's", Role::key, field<&Spectrum::damping>},
+    {"waves", "m", "", "half-waves between the side edges", Role::key, field<&Spectrum::waves>},
+};
+constexpr results::ColumnOf<double> energy_column[] = {
+    {"{}", "{}", "J", "energy of these waves, mean over the last second", Role::quantity,
+     [](const double& energy) -> Cell { return energy; }},
+};
+constexpr results::ColumnOf<double> ratio_column[] = {
+    {"{}", "{}", "1", "ratio of these energies", Role::quantity, [](const double& ratio) -> Cell { return ratio; }},
+};
+constexpr results::ColumnOf<Spectrum> waves_verdict[] = {
+    {"verdict", "motion", "", "what Euler does to the kinetic energy", Role::verdict, field<&Spectrum::verdict>},
+};
+
+/// The energies of all methods, and their ratios to the truth. `name` is that of the energy; if not `seen`, people see the
+/// ratios only.
+void add_energies(results::Table& table, const std::string& name, const std::vector<Spectrum>& rows, Energies Spectrum::*energy,
+                  bool seen) {
   const std::array<const char*, 3> titles{"Euler", "BDF(2)", "truth"};
-  for (std::size_t k = 0; k < energy.size(); ++k)
-    table.number(fmt::format("{}_{}", name, figure_methods[k]).c_str(),
-                 seen ? fmt::format("{}: {}", name, titles[k]).c_str() : "", "J",
-                 "energy of these waves, mean over the last second", energy[k]);
-  for (const std::size_t k : {0, 1})
-    table.number(fmt::format("{}_ratio_{}", name, figure_methods[k]).c_str(),
-                 fmt::format("{}: {}/truth", name, titles[k]).c_str(), "1", "ratio of these energies", energy[k] / energy[2]);
-  const double euler = energy[0] / energy[2], bdf2 = energy[1] / energy[2];
-  if (std::abs(std::log(bdf2)) > std::abs(std::log(euler))) return "BDF(2) is NOT nearer";
+  for (std::size_t k = 0; k < titles.size(); ++k) {
+    const std::string column = fmt::format("{}_{}", name, figure_methods[k]);
+    const std::string title = seen ? fmt::format("{}: {}", name, titles[k]) : "";
+    add_columns(table, energy_column, rows, [&](const Spectrum& row) { return &(row.*energy)[k]; }, {column, title, ""});
+  }
+  for (const std::size_t k : {0, 1}) {
+    const std::string column = fmt::format("{}_ratio_{}", name, figure_methods[k]);
+    const std::string title = fmt::format("{}: {}/truth", name, titles[k]);
+    add_columns(table, ratio_column, rows, [&](const Spectrum& row) { return std::optional(row.ratio(energy, k)); },
+                {column, title, ""});
+  }
+}
+
+/// What became of the kinetic energy.
+std::string motion_verdict(const Spectrum& row) {
+  const double euler = row.ratio(&Spectrum::kinetic, 0), bdf2 = row.ratio(&Spectrum::kinetic, 1);
+  if (std::abs(std::log(bdf2)) > std::abs(std::log(euler))) return verdict(Standing::missed, "BDF(2) is not nearer");
   return euler < smoothed ? "smoothed by Euler" : "not smoothed";
+}
+
+/// `n` waves from one on.
+Spectrum spectrum_of(double damping, const Flutters& all, Eigen::Index first, Eigen::Index n) {
+  const auto of = [&](Eigen::VectorXd Flutter::*energy) {
+    return Energies{(all[0].*energy).segment(first, n).sum(), (all[1].*energy).segment(first, n).sum(),
+                    (all[2].*energy).segment(first, n).sum()};
+  };
+  Spectrum row{damping,
+               n == 1 ? std::to_string(first + 1) : fmt::format("{}–{}", first + 1, first + n),
+               of(&Flutter::bending),
+               of(&Flutter::kinetic),
+               {}};
+  if (n > 1) row.verdict = motion_verdict(row);
+  return row;
 }
 
 /// Single waves, then thirds of them: of single ones a second is too short to say much where the motion is chaotic.
 results::Table spectrum(const Runs& runs) {
-  results::TableBuilder table("figure-3.2-waves", "Figure 3.2: energy of the waves along u, with m half-waves");
+  std::vector<Spectrum> rows;
   for (std::size_t k = 0; k < runs.size(); ++k) {
-    const Flutters& all = runs[k];
-    const Eigen::Index count = all[0].bending.size(), third = count / 3;
-    const auto add = [&](Eigen::Index first, Eigen::Index n) {
-      const auto of = [&](Eigen::VectorXd Flutter::*energy) {
-        return std::array{(all[0].*energy).segment(first, n).sum(), (all[1].*energy).segment(first, n).sum(),
-                          (all[2].*energy).segment(first, n).sum()};
-      };
-      add_damping(table, k);
-      table.text("waves", "m", "half-waves between the side edges",
-                 n == 1 ? std::to_string(first + 1) : fmt::format("{}–{}", first + 1, first + n));
-      add_energies(table, "bending", of(&Flutter::bending), true);
-      const std::string verdict = add_energies(table, "kinetic", of(&Flutter::kinetic), false);
-      if (n > 1) table.text("verdict", "motion", "what Euler does to the kinetic energy", verdict);
-    };
-    for (Eigen::Index m = 0; m < count; ++m) add(m, 1);
-    for (Eigen::Index m = 0; m + third <= count; m += third) add(m, third);
+    const Eigen::Index count = runs[k][0].bending.size(), third = count / 3;
+    for (Eigen::Index m = 0; m < count; ++m) rows.push_back(spectrum_of(number(dampings[k]), runs[k], m, 1));
+    for (Eigen::Index m = 0; m + third <= count; m += third)
+      rows.push_back(spectrum_of(number(dampings[k]), runs[k], m, third));
   }
-  return table.finish();
+  results::Table table = results::make_table("figure-3.2-waves", "Figure 3.2: energy of the waves along u, with m half-waves",
+                                             waves_columns, rows);
+  add_energies(table, "bending", rows, &Spectrum::bending, true);
+  add_energies(table, "kinetic", rows, &Spectrum::kinetic, false);
+  add_columns(table, waves_verdict, rows);
+  return table;
 }
 
 }  // namespace

@@ -1,16 +1,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <memory>
+#include <optional>
 #include <span>
-#include <tuple>
 
 #include "bench/runs/record.hpp"
 #include "bench/runs/timing.hpp"
-#include "bench/studies/draping.hpp"
 #include "bench/studies/studies.hpp"
 #include "model/scene_file/scene_file.hpp"
-#include "results/analysis/runs_table.hpp"
+#include "results/columns.hpp"
+#include "results/verdict.hpp"
 #include "solver/base/statistics.hpp"
 
 namespace drape::bench {
@@ -34,8 +35,12 @@ RunSpec cell(const model::Scene& scene, std::string_view method) {
 /// The method alone: all runs have the thesis' solvers.
 std::string method_of(const results::RunRecord& run) { return run.method.substr(0, run.method.find('/')); }
 
+using results::field;
+using results::Role;
 using results::RunRecord;
+using results::Standing;
 using results::StepRecord;
+using results::verdict;
 using Steps = std::span<const StepRecord>;
 
 /// The steps before the first contact.
@@ -52,63 +57,107 @@ double mean(Steps steps, int StepRecord::*value) {
 
 double iterations(Steps steps) { return mean(steps, &StepRecord::cg_iterations); }
 
-/// Means of `length` steps a row. Single ones are for the file: without titles people do not see them.
-results::Table over_time(const char* name, const char* title, const std::vector<RunRecord>& runs, std::size_t length) {
-  constexpr std::tuple<const char*, const char*, int StepRecord::*> curves[] = {
-      {"updates", "of the fixed-point loop a step", &StepRecord::updates},
-      {"CG", "iterations a step", &StepRecord::cg_iterations},
-      {"contacts", "constrained particles", &StepRecord::contacts}};
-  const bool seen = length > 1;
+/// Means of a run over some of its steps.
+struct Means {
+  double updates, cg_iterations, contacts;
+};
+
+/// Steps of the same time; of each run that lasts so long, its means.
+struct Window {
+  double until;  ///< end of the last step [s]
+  std::vector<std::optional<Means>> runs;
+};
+
+constexpr results::ColumnOf<Window> time_column[] = {
+    {"t", "until", "s", "end of the last of these steps", Role::key, field<&Window::until>},
+};
+constexpr results::ColumnOf<Means> curves[] = {
+    {"{}_updates", "{}: updates", "1", "of the fixed-point loop a step", Role::counter, field<&Means::updates>},
+    {"{}_CG", "{}: CG", "1", "iterations a step", Role::counter, field<&Means::cg_iterations>},
+    {"{}_contacts", "{}: contacts", "1", "constrained particles", Role::quantity, field<&Means::contacts>},
+};
+
+/// The means of `length` steps from one on, if the run has them.
+std::optional<Means> means(const RunRecord& run, std::size_t first, std::size_t length) {
+  if (first + length > run.steps.size()) return std::nullopt;
+  const Steps steps = Steps(run.steps).subspan(first, length);
+  return Means{mean(steps, &StepRecord::updates), iterations(steps), mean(steps, &StepRecord::contacts)};
+}
+
+std::vector<Window> windows(const std::vector<RunRecord>& runs, std::size_t length) {
   std::size_t steps = 0;
   for (const RunRecord& run : runs) steps = std::max(steps, run.steps.size());
-  results::TableBuilder table(name, title);
+  std::vector<Window> all;
   for (std::size_t first = 0; first + length <= steps; first += length) {
-    table.row();
-    table.number("t", seen ? "until" : "", "s", "end of the last of these steps",
-                 box_step * static_cast<double>(first + length));
-    for (const RunRecord& run : runs) {
-      if (first + length > run.steps.size()) continue;
-      for (const auto& [curve, description, value] : curves)
-        table.number(fmt::format("{}_{}", method_of(run), curve).c_str(),
-                     seen ? fmt::format("{}: {}", method_of(run), curve).c_str() : "", "1", description,
-                     mean(Steps(run.steps).subspan(first, length), value));
-    }
+    Window& next = all.emplace_back(Window{box_step * static_cast<double>(first + length), {}});
+    for (const RunRecord& run : runs) next.runs.push_back(means(run, first, length));
   }
-  return table.finish();
+  return all;
+}
+
+/// Means of `length` steps a row. Single ones are for the file: without titles people do not see them.
+results::Table over_time(const char* name, const char* title, const std::vector<RunRecord>& runs, std::size_t length) {
+  const std::vector<Window> rows = windows(runs, length);
+  results::Table table = results::make_table(name, title, time_column, rows);
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    const std::string method = method_of(runs[k]);
+    results::add_columns(table, curves, rows, [&](const Window& row) -> const auto& { return row.runs[k]; },
+                         {method, method, ""});
+  }
+  table.figure = results::Figure::over_time;
+  if (length == 1)
+    for (results::Column& column : table.columns) column.title.clear();
+  return table;
 }
 
 /// A measured ratio beside what it may be at most.
-void add_bar(results::TableBuilder& table, const RunRecord& run, const char* what, double value, double bar) {
-  table.row();
-  table.text("method", "method", "time integrator", method_of(run));
-  table.text("ratio", "ratio", "of what", what);
-  table.number("value", "value", "1", "measured", value);
-  table.number("bar", "bar", "1", "what it may be at most", bar);
-  if (!run.steps.empty())
-    table.number("motion", "motion", "1", "kinetic energy at the end over the largest one: whether it rests",
-                 run.steps.back().kinetic_energy / std::ranges::max(run.steps, {}, &StepRecord::kinetic_energy).kinetic_energy);
+struct Ratio {
+  std::string method, what;
+  double value, most;
+  std::optional<double> motion;  ///< kinetic energy at the end over the largest one
+  std::string verdict;
+};
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Ratio, method, what, value, most, motion, verdict)
+
+constexpr results::ColumnOf<Ratio> ratio_columns[] = {
+    {"method", "method", "", "time integrator", Role::key, field<&Ratio::method>},
+    {"ratio", "ratio", "", "of what", Role::key, field<&Ratio::what>},
+    {"value", "value", "1", "measured", Role::time, field<&Ratio::value>},  // two of three are ratios of times
+    {"bar", "bar", "1", "what it may be at most", Role::quantity, field<&Ratio::most>},
+    {"motion", "motion", "1", "kinetic energy at the end over the largest one: whether it rests", Role::quantity,
+     field<&Ratio::motion>},
+    {"verdict", "verdict", "", "whether it keeps below the bar", Role::verdict, field<&Ratio::verdict>},
+};
+
+std::string verdict_of(const RunRecord& run, double value, double most) {
+  if (run.outcome != solver::Outcome::success) return std::string(to_string(run.outcome));
   const bool touched = before_contact(run).size() < run.steps.size();
-  std::string verdict = value <= bar ? "below" : "NOT below";
-  if (!touched) verdict = "no contact";
-  if (run.outcome != solver::Outcome::success) verdict = to_string(run.outcome);
-  table.text("verdict", "verdict", "whether it keeps below the bar", verdict);
+  if (!touched) return verdict(Standing::open, "no contact");
+  return value <= most ? verdict(Standing::met, "below") : verdict(Standing::missed, "not below");
 }
 
-/// All bars of a method, from its cells with and without box.
-void add_bars(results::TableBuilder& table, const Group& group, int repetitions) {
+Ratio ratio(const RunRecord& run, const char* what, double value, double most) {
+  std::optional<double> motion;
+  if (!run.steps.empty())
+    motion = run.steps.back().kinetic_energy / std::ranges::max(run.steps, {}, &StepRecord::kinetic_energy).kinetic_energy;
+  return {method_of(run), what, value, most, motion, verdict_of(run, value, most)};
+}
+
+/// All ratios of a method, from its cells with and without box.
+std::vector<Ratio> ratios(const Group& group, int repetitions) {
   const RunRecord with = record(group[0]), without = record(group[1]);
   const auto times = time_group(group, {steps_to_time(with), steps_to_time(without)}, repetitions, [] {});
   const double time = base::quantile(times[0], 0.5) / base::quantile(times[1], 0.5);
   const Steps all = with.steps, rest = all.last(std::min(all.size(), at_rest));
-  add_bar(table, with, "CG iterations a step, at rest over before the first contact",
-          iterations(rest) / iterations(before_contact(with)), most_iterations);
-  add_bar(table, with, "time, with over without box", time, most_time);
-  add_bar(table, with, "time a CG iteration, with over without box", time * iterations(without.steps) / iterations(all),
-          most_time);
+  return {
+      ratio(with, "CG iterations a step, at rest over before the first contact",
+            iterations(rest) / iterations(before_contact(with)), most_iterations),
+      ratio(with, "time, with over without box", time, most_time),
+      ratio(with, "time a CG iteration, with over without box", time * iterations(without.steps) / iterations(all), most_time)};
 }
 
 results::Table bars(bool quick, Checkpoint& checkpoint) {
-  results::TableBuilder table("figure-4.3-bars", "Figure 4.3: what contact costs; the sheet swings with and without the box");
+  std::vector<Ratio> rows;
   const model::Scene scene = swing(quick);
   model::Scene without_box = scene;
   without_box.obstacles.clear();
@@ -116,11 +165,12 @@ results::Table bars(bool quick, Checkpoint& checkpoint) {
     if (!method.implicit()) continue;
     checkpoint.show(fmt::format("cost of contact, {}", method.name));
     const Group group{cell(scene, method.name), cell(without_box, method.name)};
-    checkpoint.rows(table, std::string(method.name),
-                    [&](results::TableBuilder& rows) { add_bars(rows, group, quick ? 1 : 5); });
+    std::ranges::move(checkpoint.once(std::string(method.name), [&] { return ratios(group, quick ? 1 : 5); }),
+                      std::back_inserter(rows));
     checkpoint.advance();
   }
-  return table.finish();
+  return results::make_table("figure-4.3-bars", "Figure 4.3: what contact costs; the sheet swings with and without the box",
+                             ratio_columns, rows);
 }
 
 }  // namespace

@@ -1,15 +1,22 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <iterator>
 #include <limits>
 
 #include "bench/runs/record.hpp"
 #include "bench/studies/draping.hpp"
 #include "bench/studies/studies.hpp"
 #include "model/scene_file/scene_file.hpp"
+#include "results/verdict.hpp"
 
 namespace drape::bench {
 namespace {
+
+using results::Cell;
+using results::field;
+using results::Role;
 
 constexpr double draping_step = 0.01;  ///< [s]
 
@@ -22,11 +29,9 @@ struct Block {
 
 std::vector<Block> blocks() {
   const double d = model::load_scene("tablecloth").sheet.material.damping.weft;  // such that it drapes
-  return {{"thesis",
-           {1e3, 1e5},
-           {160, 1600},
-           {{{Printed{377, 566, {}}, Printed{52, 52, {}}}, {Printed{803, 1160, {}}, Printed{198, 538, {}}}}}},
-          {"drapes", {1e3, 1e5}, {d, 10 * d}, {}}};
+  return {
+      {"thesis", {1e3, 1e5}, {160, 1600}, {{{Printed{377, 566}, Printed{52, 52}}, {Printed{803, 1160}, Printed{198, 538}}}}},
+      {"drapes", {1e3, 1e5}, {d, 10 * d}, {}}};
 }
 
 model::Scene scene(double k, double d, bool quick) {
@@ -59,31 +64,53 @@ std::string verdict(const RunsOfBlock& runs) {
       grows = grows && cost(runs[1][i], work) > cost(runs[0][i], work);
       falls = falls && cost(runs[i][1], work) < cost(runs[i][0], work);
     }
-  return fmt::format("{} with k, {} with d", grows ? "grows" : "does NOT always grow",
-                     falls ? "falls" : "does NOT always fall");
+  const bool as_told = grows && falls;
+  return results::verdict(
+      as_told ? results::Standing::met : results::Standing::missed,
+      fmt::format("{} with k, {} with d", grows ? "grows" : "does not always grow", falls ? "falls" : "does not always fall"));
+}
+
+/// One of the runs of a block.
+struct BlockRun {
+  std::string block;
+  double k, d;
+  Draping run;
+  std::optional<std::string> verdict;  ///< in the last row of a block
+};
+
+constexpr results::ColumnOf<BlockRun> block_columns[] = {
+    {"rows", "rows", "", "the thesis' parameters, or such that the cloth drapes within the time", Role::key,
+     field<&BlockRun::block>},
+    {"tension", "k", "N/m", "tension modulus", Role::key, field<&BlockRun::k>},
+    {"damping", "d", "N s/m", "linear damping", Role::key, field<&BlockRun::d>},
+    {"stiffness_to_damping", "h k/d", "1", "what the fixed-point loop's contraction depends on", Role::quantity,
+     [](const BlockRun& row) -> Cell { return draping_step * row.k / row.d; }},
+    {"verdict", "work", "", "of the four runs: whether updates and CG iterations do as the thesis says", Role::verdict,
+     field<&BlockRun::verdict>},
+};
+
+std::vector<BlockRun> rows_of(const Block& block, bool quick, Checkpoint& checkpoint) {
+  RunsOfBlock runs;
+  std::vector<BlockRun> rows;
+  for (const int i : {0, 1})
+    for (const int j : {0, 1}) {
+      checkpoint.show(fmt::format("tablecloth, k = {}, d = {}", block.k[i], block.d[j]));
+      const model::Scene cloth = scene(block.k[i], block.d[j], quick);
+      runs[i][j] = checkpoint.once(fmt::format("{} {} {}", block.name, i, j), [&] { return run_bdf2(cloth); });
+      rows.push_back({block.name, block.k[i], block.d[j], draping(cloth, runs[i][j], block.thesis[i][j]), {}});
+      checkpoint.advance();
+    }
+  rows.back().verdict = verdict(runs);
+  return rows;
 }
 
 results::Table compute(bool quick, Checkpoint& checkpoint) {
-  results::TableBuilder table("table-3.1", "Table 3.1: the work of BDF(2) on the tablecloth against stiffness k and damping d");
-  for (const Block& block : blocks()) {
-    RunsOfBlock runs;
-    for (const int i : {0, 1})
-      for (const int j : {0, 1}) {
-        checkpoint.show(fmt::format("tablecloth, k = {}, d = {}", block.k[i], block.d[j]));
-        const model::Scene cloth = scene(block.k[i], block.d[j], quick);
-        runs[i][j] = checkpoint.once(fmt::format("{} {} {}", block.name, i, j), [&] { return run_bdf2(cloth); });
-        table.row();
-        table.text("rows", "rows", "the thesis' parameters, or such that the cloth drapes within the time", block.name);
-        table.number("tension", "k", "N/m", "tension modulus", block.k[i]);
-        table.number("damping", "d", "N s/m", "linear damping", block.d[j]);
-        table.number("stiffness_to_damping", "h k/d", "1", "what the fixed-point loop's contraction depends on",
-                     draping_step * block.k[i] / block.d[j]);
-        add_draping(table, cloth, runs[i][j], block.thesis[i][j]);
-        checkpoint.advance();
-      }
-    table.text("verdict", "work", "of the four runs: whether updates and CG iterations do as the thesis says", verdict(runs));
-  }
-  return table.finish();
+  std::vector<BlockRun> rows;
+  for (const Block& block : blocks()) std::ranges::move(rows_of(block, quick, checkpoint), std::back_inserter(rows));
+  results::Table table = results::make_table(
+      "table-3.1", "Table 3.1: the work of BDF(2) on the tablecloth against stiffness k and damping d", block_columns, rows);
+  results::add_columns(table, draping_columns, rows, [](const BlockRun& row) { return &row.run; });
+  return table;
 }
 
 }  // namespace

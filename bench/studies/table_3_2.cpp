@@ -7,15 +7,25 @@
 #include "bench/studies/draping.hpp"
 #include "bench/studies/studies.hpp"
 #include "model/scene_file/scene_file.hpp"
+#include "solver/base/statistics.hpp"
 
 namespace drape::bench {
 namespace {
 
-const std::map<std::string_view, Printed> thesis_counts{{"imex-euler", {100, 745, 1.69}},
-                                                        {"implicit-euler", {206, 1038, 3.06}},
-                                                        {"sbdf2", {100, 304, 1.57}},
-                                                        {"bdf2", {122, 857, 2.57}},
-                                                        {"midpoint", {494, 813, 4.39}}};
+using results::field;
+using results::Role;
+
+/// What the thesis printed of a method: its work, and the time on another machine [s].
+struct PrintedRun {
+  Printed work;
+  double seconds;
+};
+
+const std::map<std::string_view, PrintedRun> thesis_runs{{"imex-euler", {{100, 745}, 1.69}},
+                                                         {"implicit-euler", {{206, 1038}, 3.06}},
+                                                         {"sbdf2", {{100, 304}, 1.57}},
+                                                         {"bdf2", {{122, 857}, 2.57}},
+                                                         {"midpoint", {{494, 813}, 4.39}}};
 
 /// All methods with the same cloth and the same tolerances.
 struct TableclothBlock {
@@ -50,17 +60,44 @@ Group cells(const TableclothBlock& block, bool quick) {
 
 int repetitions(bool quick) { return quick ? 1 : 3; }
 
-void add_row(results::TableBuilder& table, const TableclothBlock& block, const RunSpec& cell, const results::RunRecord& run) {
-  table.row();
-  table.text("cloth", "cloth", "k and d as in the thesis, or those of the scene", block.name);
-  table.number("damping", "d", "N s/m", "linear damping", cell.scene.sheet.material.damping.weft);
-  table.number("loop_tolerance", "loop tol.", "1", "of the fixed-point loop, over |b|", cell.options.loop_tolerance);
-  table.number("cg_tolerance", "CG tol.", "1", "of a linear solve, over |b|; in the loop at most half of its",
-               cell.options.cg_tolerance);
-  table.text("method", "method", "time integrator", std::string(cell.method->name));
-  const auto printed = thesis_counts.find(cell.method->name);
-  const bool known = block.of_thesis && printed != thesis_counts.end();
-  add_draping(table, cell.scene, run, known ? std::optional(printed->second) : std::nullopt);
+/// A method on a cloth.
+struct MethodRun {
+  std::string cloth, method;
+  double damping, loop_tolerance, cg_tolerance;
+  Draping run;
+  std::optional<double> solver_ms, thesis_seconds;
+};
+
+constexpr results::ColumnOf<MethodRun> method_columns[] = {
+    {"cloth", "cloth", "", "k and d as in the thesis, or those of the scene", Role::key, field<&MethodRun::cloth>},
+    {"damping", "d", "N s/m", "linear damping", Role::key, field<&MethodRun::damping>},
+    {"loop_tolerance", "loop tol.", "1", "of the fixed-point loop, over |b|", Role::key, field<&MethodRun::loop_tolerance>},
+    {"cg_tolerance", "CG tol.", "1", "of a linear solve, over |b|; in the loop at most half of its", Role::key,
+     field<&MethodRun::cg_tolerance>},
+    {"method", "method", "", "time integrator", Role::key, field<&MethodRun::method>},
+};
+constexpr results::ColumnOf<MethodRun> time_columns[] = {
+    {"solver_ms", "solver", "ms", "wall time of the solver, median of interleaved runs", Role::time,
+     field<&MethodRun::solver_ms>},
+    {"thesis_seconds", "thesis: solver", "s", "printed in the thesis: Pentium III, 660 MHz", Role::note,
+     field<&MethodRun::thesis_seconds>},
+};
+
+MethodRun row_of(const TableclothBlock& block, const RunSpec& cell, const results::RunRecord& run) {
+  MethodRun row{block.name,
+                std::string(cell.method->name),
+                cell.scene.sheet.material.damping.weft,
+                cell.options.loop_tolerance,
+                cell.options.cg_tolerance,
+                {},
+                {},
+                {}};
+  const auto printed = thesis_runs.find(cell.method->name);
+  const bool known = block.of_thesis && printed != thesis_runs.end();
+  row.run = draping(cell.scene, run, known ? std::optional(printed->second.work) : std::nullopt);
+  if (known) row.thesis_seconds = printed->second.seconds;
+  if (!run.times_ms.empty()) row.solver_ms = base::quantile(run.times_ms, 0.5);
+  return row;
 }
 
 std::vector<results::RunRecord> timed_runs(const Group& group, int count) {
@@ -73,18 +110,22 @@ std::vector<results::RunRecord> timed_runs(const Group& group, int count) {
 }
 
 results::Table compute_tablecloth(bool quick, Checkpoint& checkpoint) {
-  results::TableBuilder table("table-3.2",
-                              "Table 3.2: the methods on the tablecloth; the thesis' figures are from a Pentium III");
+  std::vector<MethodRun> rows;
   for (const TableclothBlock& block : tablecloth_blocks()) {
     checkpoint.show("tablecloth, " + block.name);
     const Group group = cells(block, quick);
     const auto runs = checkpoint.once(block.name, [&] { return timed_runs(group, repetitions(quick)); });
     for (std::size_t k = 0; k < group.size(); ++k) {
-      add_row(table, block, group[k], runs[k]);
+      rows.push_back(row_of(block, group[k], runs[k]));
       checkpoint.advance();
     }
   }
-  return table.finish();
+  results::Table table =
+      results::make_table("table-3.2", "Table 3.2: the methods on the tablecloth; the thesis' figures are from a Pentium III",
+                          method_columns, rows);
+  results::add_columns(table, draping_columns, rows, [](const MethodRun& row) { return &row.run; });
+  results::add_columns(table, time_columns, rows);
+  return table;
 }
 
 }  // namespace

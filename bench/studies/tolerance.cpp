@@ -63,7 +63,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Controlled, scene, set, method, tolerance, er
 using ControlledRuns = std::vector<Controlled>;
 
 std::string judge(const Controlled& run) {
-  if (run.outcome != solver::Outcome::success) return run.steps == 0 ? "cost explodes" : "fails";
+  if (run.outcome != to_string(solver::Outcome::success)) return run.steps == 0 ? "cost explodes" : "fails";
   const double ratio = run.error / run.tolerance;
   if (ratio > band) return fmt::format("NOT within {:g}: over by {:.2g}", band, ratio);
   if (ratio * band >= 1) return fmt::format("within {:g}", band);

@@ -67,7 +67,7 @@ Term unprojected(LinearOperators operators) {
     return -0.5 * x.cwiseProduct(evaluate->q).sum();
   };
   term.jacobian = [evaluate](const Configuration&, const JacobianEntries& entries) {
-    if (entries.curvature == Curvature::lean) return;
+    if (entries.curvature == Curvature::tension) return;
     const Eigen::Matrix3d I = Eigen::Matrix3d::Identity();
     for_each(evaluate->operators.elastic, [&](int i, int j, double b) { entries.add_dx(i, j, b * I); });
     for_each(evaluate->operators.viscous, [&](int i, int j, double b) { entries.add_dv(i, j, b * I); });
@@ -87,7 +87,7 @@ Term projected(const Grid& grid, LinearOperators operators) {
   const LinearOperators convex{symmetric_part(evaluate->operators.elastic), symmetric_part(evaluate->operators.viscous)};
   term.jacobian = [evaluate, convex, normals = Normals(grid)](const Configuration& c, const JacobianEntries& entries) {
     if (!entries.exact()) {
-      if (entries.curvature == Curvature::lean) return;
+      if (entries.curvature == Curvature::tension) return;
       const auto NN = [&](int i, int j) -> Eigen::Matrix3d { return c.normals.row(i).transpose() * c.normals.row(j); };
       for_each(convex.elastic, [&](int i, int j, double b) { entries.add_dx(i, j, b * NN(i, j)); });
       for_each(convex.viscous, [&](int i, int j, double b) { entries.add_dv(i, j, b * NN(i, j)); });

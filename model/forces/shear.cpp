@@ -61,7 +61,7 @@ std::optional<Term> make_shear(const Sheet& sheet) {
     return energy;
   };
   term.jacobian = [=](const Configuration& c, const JacobianEntries& entries) {
-    if (entries.curvature == Curvature::lean) return;
+    if (entries.curvature == Curvature::tension) return;
     for (const Cell& cell : *all)
       for (const auto& [p, q] : quadrants(cell)) quadrant_jacobian(c, p, q, kappa, kappa_d, entries);
   };

@@ -23,7 +23,7 @@ struct Configuration {
 enum class Curvature {
   exact,  ///< all of them
   convex,  ///< only a symmetric negative semidefinite part of every element, so that M − γ² ∂f/∂x − γ ∂f/∂v can be factored
-  lean,  ///< of that nothing that couples more than the ends of an edge
+  tension,  ///< of that nothing that couples more than the ends of an edge
 };
 
 /// Takes 3 × 3 blocks of ∂f/∂x and ∂f/∂v: row particle i, column particle j. A term adds its blocks in an order that depends

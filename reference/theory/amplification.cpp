@@ -46,51 +46,56 @@ struct Lags {
 /// The second coordinate is displaced, or tolerances would be relative to nothing where u is but a velocity in the past.
 solver::Point point(const Eigen::Ref<const Eigen::VectorXd>& u) {
   const Eigen::Index kept = u.size() - 2;
-  solver::Point p{{solver::Vectors::Zero(1, 3), solver::Vectors::Zero(1, 3)},
-                  solver::Vectors::Zero(std::max<Eigen::Index>(kept, 1), 3)};
+  solver::Point p{0,
+                  {solver::Vectors::Zero(1, 3), solver::Vectors::Zero(1, 3)},
+                  solver::Vectors::Zero(std::max<Eigen::Index>(kept, 1), 3),
+                  kept > 0};
   p.y.x(0) = u[0];
   p.y.x(1) = 1;
   p.y.v(0) = u[1] / h;
-  p.has_f = kept > 0;
   if (p.has_f) p.f.col(0) = u.tail(kept) / (h * h);
   return p;
 }
 
-/// The states, the newest at time 0.
-solver::History history(const solver::Method& method, const Lags& memory, const Eigen::VectorXd& u) {
-  solver::History states(method.past_states);
-  for (Eigen::Index k = memory.states; k-- > 0 && method.past_states > 0;)
-    states.push(-static_cast<double>(k) * h, point(u.segment(k * memory.entries(), memory.entries())).y);
-  return states;
+/// The points, the newest at time 0.
+solver::History history(const Lags& memory, const Eigen::VectorXd& u) {
+  const auto lag = [&](Eigen::Index k) {
+    solver::Point p = point(u.segment(k * memory.entries(), memory.entries()));
+    p.t = -static_cast<double>(k) * h;
+    return p;
+  };
+  const int points = static_cast<int>(memory.states);
+  solver::History all(points, points, lag(memory.states - 1));
+  for (Eigen::Index k = memory.states - 1; k-- > 0;) {
+    solver::Point next = lag(k);
+    all.push(next, h);
+  }
+  return all;
 }
 
 /// One step on the mode: the point at which it ends.
 solver::Point advance(const solver::Method& method, const solver::SplitOde& ode, const solver::Options& options,
                       solver::StageSolver* stage, const Lags& memory, const Eigen::VectorXd& u) {
-  const Eigen::Index n = memory.entries();
   const solver::Vectors none = solver::Vectors::Zero(1, 3);
   std::int64_t substeps = 0, limits = 0;
+  solver::History past = history(memory, u);
+  solver::Point next = point(Eigen::VectorXd::Zero(2));
+  solver::Scratch scratch{none, none, none, {}};
+  solver::SubStepping sub_stepping{.limit = h, .substeps = substeps, .limits = limits};
   solver::Step step{.ode = ode,
                     .options = options,
                     .stage = stage,
+                    .history = past,
+                    .next = next,
+                    .scratch = scratch,
+                    .sub_stepping = sub_stepping,
                     .h = h,
-                    .w = method.two_step ? 1.0 : 0.0,
-                    .before = point(u.segment(memory.states > 1 ? n : 0, n)),
-                    .now = point(u.head(n)),
-                    .next = point(Eigen::VectorXd::Zero(2)),
-                    .history = history(method, memory, u),
-                    .ax = none,
-                    .av = none,
-                    .f_hat = none,
-                    .explicit_limit = h,
-                    .substeps = substeps,
-                    .limits = limits,
-                    .result = {}};
+                    .w = 1};
   method.step(step);
   if (step.result.outcome != solver::Outcome::success)
     throw std::runtime_error("a step of " + std::string(method.name) +
                              " on a linear mode failed: " + std::string(to_string(step.result.outcome)));
-  return step.next;
+  return next;
 }
 
 /// The same as a vector, which the memory before it follows.
@@ -139,7 +144,7 @@ Eigen::MatrixXd amplification_matrix(const solver::Method& method, const Mode& m
     return advance(method, ode, options, stage ? &*stage : nullptr, memory, u);
   };
 
-  Lags memory{std::max(method.two_step ? 2 : 1, method.past_states), 0};
+  Lags memory{method.history, 0};
   if (const solver::Point first = end(memory, Eigen::VectorXd::Unit(memory.size(), 0)); first.has_f)
     memory.kept = first.f.rows();
   Eigen::MatrixXd G(memory.size(), memory.size());
@@ -154,7 +159,7 @@ std::vector<std::complex<double>> amplification_factors(const solver::Method& me
   const Eigen::MatrixXd G = amplification_matrix(method, mode);
   // Velocities in units of ω, so that the entries are less unequal: the factors are the same with fewer roundings.
   const double omega = std::sqrt(1 + mode.W);
-  const Eigen::Index entries = G.rows() / std::max(method.two_step ? 2 : 1, method.past_states);
+  const Eigen::Index entries = G.rows() / method.history;
   const auto unit = [&](Eigen::Index i) { return i % entries == 1 ? omega : 1; };
   const Eigen::MatrixXd scaled =
       Eigen::MatrixXd::NullaryExpr(G.rows(), G.cols(), [&](auto i, auto j) { return G(i, j) * unit(j) / unit(i); });

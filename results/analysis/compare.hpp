@@ -30,9 +30,9 @@ struct CompareOptions {
   bool quiet = false;          ///< whether the machine was as quick for b as for a: then what all cells share is judged, too
 };
 
-/// Compares b with a. Cells are matched by scene, method, parameters, step and end; tables by name, rows by their texts.
-/// - accuracy: outcomes; errors (where positions are not comparable, of energy and centre); what tables say of orders, errors
-///   and other numbers that do not depend on time
+/// Compares b with a. Cells are matched by scene, method, parameters, step and end; tables by name, rows by their keys.
+/// - accuracy: outcomes; errors (where positions are not comparable, of energy and centre); errors, orders, verdicts and
+///   quantities in tables
 /// - work: counters, which are the same whenever the same program does the same; any more is a regression
 /// - time: the repetitions' times by rank tests with Holm's correction. They are interleaved within a file, so cells of a file
 ///   compare with each other whatever the machine does meanwhile, but not with those of another hour: the ratio that all cells

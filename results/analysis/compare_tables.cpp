@@ -2,55 +2,58 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
-#include <string_view>
+#include <string>
+#include <vector>
 
 #include "results/analysis/findings.hpp"
+#include "results/verdict.hpp"
 
 namespace drape::results {
 namespace {
 
-/// What is known of a column by its name and unit.
-enum class Kind { key, verdict, ignored, work, error, order, other };
+/// A column of the table a and the one of that name in b. Files of before schema 5 do not say what their columns are: what only
+/// one of them takes for a key, a time or a note is left out.
+struct Matched {
+  const Column *a, *b;
+  Role role;
+};
 
-bool one_of(std::string_view name, std::initializer_list<std::string_view> names) {
-  return std::ranges::find(names, name) != names.end();
+Role shared_role(Role a, Role b) {
+  const auto either = [&](Role role) { return a == role || b == role; };
+  if (a == b) return a;
+  return either(Role::key) || either(Role::time) || either(Role::note) ? Role::note : b;
 }
 
-bool timed(const Column& column) {
-  return one_of(column.unit, {"ms", "ns", "s/s", "GB/s", "MB"}) || one_of(column.name, {"wall", "exponent", "repetitions"});
+std::vector<Matched> matched(const Table& a, const Table& b) {
+  std::vector<Matched> columns;
+  for (const Column& column : a.columns)
+    if (const Column* other = find_column(b, column.name))
+      columns.push_back({&column, other, shared_role(column.role, other->role)});
+  return columns;
 }
 
-Kind kind_of(const Column& column) {
-  if (one_of(column.name, {"verdict", "outcome"})) return Kind::verdict;
-  if (one_of(column.name, {"spread", "remark", "detail"})) return Kind::ignored;  // text made of numbers
-  if (column.unit.empty()) return Kind::key;
-  if (timed(column) || one_of(column.name, {"residual", "uncertainty", "order"}))
-    return Kind::ignored;  // what a solver left of what it was allowed to leave, and what follows from errors
-  if (one_of(column.name, {"updates", "cg_iterations", "steps", "factorisations", "forces", "escalations"})) return Kind::work;
-  if (one_of(column.name, {"error", "rms", "maximum", "distance"})) return Kind::error;
-  return column.name == "fitted_order" ? Kind::order : Kind::other;
+bool has(const std::vector<Matched>& columns, Role role) {
+  return std::ranges::find(columns, role, &Matched::role) != columns.end();
 }
 
-bool timed(const Table& table) {
-  return std::ranges::any_of(table.columns, [](const Column& column) { return timed(column); });
+std::string key(const Column& column, std::size_t row) {
+  const double number = number_in(&column, row);
+  return std::isnan(number) ? text_in(&column, row) : fmt::format("{:.6g}", number);
 }
 
-bool counts_work(const Table& table) {
-  return std::ranges::any_of(table.columns, [](const Column& column) { return kind_of(column) == Kind::work; });
-}
-
-std::string row_name(const Table& table, std::size_t row) {
-  std::string name = table.name;
-  for (const Column& column : table.columns)
-    if (kind_of(column) == Kind::key && !text_in(&column, row).empty()) name += " " + text_in(&column, row);
+std::string row_name(const std::string& table, const std::vector<Matched>& columns, const Column* Matched::*side,
+                     std::size_t row) {
+  std::string name = table;
+  for (const Matched& column : columns)
+    if (const std::string text = column.role == Role::key ? key(*(column.*side), row) : ""; !text.empty())
+      name.append(" ").append(text);
   return name;
 }
 
-bool same_rows(const Table& a, const Table& b) {
+bool same_rows(const Table& a, const Table& b, const std::vector<Matched>& columns) {
   if (rows(a) != rows(b)) return false;
   for (std::size_t row = 0; row < rows(a); ++row)
-    if (row_name(a, row) != row_name(b, row)) return false;
+    if (row_name(a.name, columns, &Matched::a, row) != row_name(b.name, columns, &Matched::b, row)) return false;
   return true;
 }
 
@@ -62,16 +65,21 @@ Judgement judge_order(double a, double b) {
   return !(b >= a - steady) ? Judgement::regression : b > a + steady ? Judgement::better : Judgement::same;
 }
 
-/// A number of which only that is known that it depends on no time: nobody knows which way is better.
-Judgement judge_other(double a, double b, double factor) {
+/// The same program counts the same; any more is a regression.
+Judgement judge_counter(double a, double b) {
+  if (a == b || (std::isnan(a) && std::isnan(b))) return Judgement::same;
+  return a > b ? Judgement::better : Judgement::regression;
+}
+
+/// A number of which nobody knows which way is better.
+Judgement judge_quantity(double a, double b, double factor) {
   if (std::isnan(a) && std::isnan(b)) return Judgement::same;
   const bool near = a == b || std::abs(b - a) <= (factor - 1) * std::max(std::abs(a), std::abs(b)) + round_off;
   return near ? Judgement::same : Judgement::regression;
 }
 
 Judgement judge_verdict(const std::string& a, const std::string& b) {
-  const auto bad = [](const std::string& verdict) { return verdict.starts_with("NOT") || verdict.starts_with("no "); };
-  return a == b ? Judgement::same : bad(a) && !bad(b) ? Judgement::better : Judgement::regression;
+  return a == b ? Judgement::same : standing(b) < standing(a) ? Judgement::better : Judgement::regression;
 }
 
 struct Judge {
@@ -79,25 +87,24 @@ struct Judge {
   Findings &accuracy, &work;
 
   /// `noise`: of errors in this row.
-  void cell(const std::string& name, const Column& column, const Column& other, std::size_t row, double noise) const {
-    const double a = number_in(&column, row), b = number_in(&other, row);
-    switch (kind_of(column)) {
-      case Kind::key:
-      case Kind::ignored: return;
-      case Kind::verdict:
-        return note(accuracy, judge_verdict(text_in(&column, row), text_in(&other, row)), name, column, text_in(&column, row),
-                    text_in(&other, row), 0);
-      case Kind::work:
-        return note(work,
-                    a == b || (std::isnan(a) && std::isnan(b)) ? Judgement::same
-                    : a > b                                    ? Judgement::better
-                                                               : Judgement::regression,
-                    name, column, shown(a), shown(b), std::log((b + 0.5) / (a + 0.5)));
-      case Kind::error:
-        return note(accuracy, judge_error(a, b, options.error_factor, noise + round_off), name, column, shown(a), shown(b),
-                    std::log(b / a));
-      case Kind::order: return note(accuracy, judge_order(a, b), name, column, shown(a), shown(b), a - b);
-      case Kind::other: return note(accuracy, judge_other(a, b, options.error_factor), name, column, shown(a), shown(b), 0);
+  void cell(const std::string& name, const Matched& column, std::size_t row, double noise) const {
+    const double a = number_in(column.a, row), b = number_in(column.b, row);
+    const auto numbers = [&](Findings& findings, Judgement judgement, double change) {
+      note(findings, judgement, name, *column.a, shown(a), shown(b), change);
+    };
+    switch (column.role) {
+      case Role::key:
+      case Role::uncertainty:
+      case Role::time:
+      case Role::note: return;
+      case Role::verdict: {
+        const std::string before = text_in(column.a, row), after = text_in(column.b, row);
+        return note(accuracy, judge_verdict(before, after), name, *column.a, before, after, 0);
+      }
+      case Role::counter: return numbers(work, judge_counter(a, b), std::log((b + 0.5) / (a + 0.5)));
+      case Role::error: return numbers(accuracy, judge_error(a, b, options.error_factor, noise + round_off), std::log(b / a));
+      case Role::order: return numbers(accuracy, judge_order(a, b), a - b);
+      case Role::quantity: return numbers(accuracy, judge_quantity(a, b, options.error_factor), 0);
     }
   }
 
@@ -109,19 +116,16 @@ struct Judge {
 };
 
 double uncertainty(const Table& table, std::size_t row) {
-  const double value = number_in(find_column(table, "uncertainty"), row);
+  const double value = number_in(find_column(table, Role::uncertainty), row);
   return std::isnan(value) ? 0 : value;
 }
 
-void compare_rows(const Table& a, const Table& b, const Judge& judge) {
+void compare_rows(const Table& a, const Table& b, const std::vector<Matched>& columns, const Judge& judge) {
   for (std::size_t row = 0; row < rows(a); ++row) {
-    const std::string name = row_name(a, row);
-    if (name.find(" time") != std::string::npos) continue;  // its number is a time, whatever its column's unit says
     ++judge.accuracy.cells;
-    judge.work.cells += counts_work(a);
+    judge.work.cells += has(columns, Role::counter);
     const double noise = uncertainty(a, row) + uncertainty(b, row);
-    for (const Column& column : a.columns)
-      if (const Column* other = find_column(b, column.name)) judge.cell(name, column, *other, row, noise);
+    for (const Matched& column : columns) judge.cell(row_name(a.name, columns, &Matched::a, row), column, row, noise);
   }
 }
 
@@ -131,13 +135,16 @@ void compare_tables(const std::vector<Table>& a, const std::vector<Table>& b, co
                     Findings& work) {
   for (const Table& table : a) {
     const auto other = std::ranges::find(b, table.name, &Table::name);
-    if (other != b.end() && same_rows(table, *other)) {
-      compare_rows(table, *other, {options, accuracy, work});
-    } else if (other == b.end() || !timed(table)) {  // rows of a search for the quickest depend on times
-      accuracy.add({table.name, "table", fmt::format("{} rows", rows(table)),
-                    other == b.end() ? "no such table" : fmt::format("{} rows, not the same", rows(*other)), 0,
-                    Judgement::not_comparable});
+    if (other == b.end()) {
+      accuracy.add({table.name, "table", fmt::format("{} rows", rows(table)), "no such table", 0, Judgement::not_comparable});
+      continue;
     }
+    const std::vector<Matched> columns = matched(table, *other);
+    if (same_rows(table, *other, columns))
+      compare_rows(table, *other, columns, {options, accuracy, work});
+    else if (!has(columns, Role::time))  // rows of a search for the quickest depend on times
+      accuracy.add({table.name, "table", fmt::format("{} rows", rows(table)),
+                    fmt::format("{} rows, not the same", rows(*other)), 0, Judgement::not_comparable});
   }
 }
 

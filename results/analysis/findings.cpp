@@ -4,10 +4,24 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
+#include <utility>
 
-#include "results/table_builder.hpp"
+#include "results/columns.hpp"
 
 namespace drape::results {
+namespace {
+
+constexpr ColumnOf<Finding> finding_columns[] = {
+    {"cell", "cell", "", "a run or a row of a table", Role::key, field<&Finding::cell>},
+    {"quantity", "quantity", "", "what differs", Role::key, field<&Finding::quantity>},
+    {"a", "a", "", "in the first file", Role::note, field<&Finding::a>},
+    {"b", "b", "", "in the second file", Role::note, field<&Finding::b>},
+    {"judgement", "judgement", "", "what that means", Role::verdict,
+     [](const Finding& finding) { return to_cell(to_string(finding.judgement)); }},
+};
+
+}  // namespace
 
 std::string shown(double value) { return fmt::format("{:.6g}", value); }
 
@@ -17,7 +31,7 @@ Judgement judge_error(double a, double b, double factor, double noise) {
 }
 
 Judged summary(const Findings& findings, const std::string& name) {
-  constexpr std::size_t most = 10;
+  constexpr std::ptrdiff_t most = 10;
   std::vector<Finding> sorted = findings.all;
   std::ranges::stable_sort(sorted, std::ranges::greater(), &Finding::change);
   const auto count = [&](Judgement judgement) { return std::ranges::count(sorted, judgement, &Finding::judgement); };
@@ -30,16 +44,8 @@ Judged summary(const Findings& findings, const std::string& name) {
                                         : Judgement::same;
   judged.reason =
       fmt::format("{} cells: {} worse, {} better, {} not comparable", findings.cells, regressions, improvements, unknown);
-  TableBuilder table(name, fmt::format("the worst of {} differences in {}", sorted.size(), name));
-  for (std::size_t k = 0; k < std::min(most, sorted.size()); ++k) {
-    table.row();
-    table.text("cell", "cell", "a run or a row of a table", sorted[k].cell);
-    table.text("quantity", "quantity", "what differs", sorted[k].quantity);
-    table.text("a", "a", "in the first file", sorted[k].a);
-    table.text("b", "b", "in the second file", sorted[k].b);
-    table.text("judgement", "judgement", "what that means", to_string(sorted[k].judgement));
-  }
-  judged.worst = table.finish();
+  std::string description = fmt::format("the worst of {} differences in {}", sorted.size(), name);
+  judged.worst = make_table(name, std::move(description), finding_columns, std::views::take(sorted, most));
   return judged;
 }
 

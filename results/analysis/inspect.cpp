@@ -5,129 +5,141 @@
 #include <sstream>
 #include <type_traits>
 
-#include "results/analysis/runs_table.hpp"
+#include "results/columns.hpp"
 #include "results/file/schema.hpp"
-#include "results/table_builder.hpp"
 #include "solver/base/statistics.hpp"
 
 namespace drape::results {
 namespace {
 
-/// A table of names with values of any kind.
-class Facts {
- public:
-  Facts(std::string name, std::string description) : table_(std::move(name), std::move(description)) {}
+/// A name with a value of any kind.
+struct NamedValue {
+  std::string name;
+  Cell value;
+  std::string unit, description;
+};
 
-  void add(const std::string& name, const std::string& value, const std::string& description) {
-    begin(name);
-    table_.text("value", "value", "its value", value);
-    end("", description);
-  }
-  void add(const std::string& name, std::int64_t value, const std::string& unit, const std::string& description) {
-    begin(name);
-    table_.count("value", "value", "its value", value);
-    end(unit, description);
-  }
-  void add(const std::string& name, double value, const std::string& unit, const std::string& description) {
-    begin(name);
-    table_.number("value", "value", "", "its value", value);
-    end(unit, description);
-  }
-  Table finish() { return table_.finish(); }
+constexpr const char* of_name = "what it is";
+constexpr const char* of_value = "its value";
+constexpr const char* of_unit = "of the number, 1 if it has none";
+constexpr const char* of_description = "what it means";
 
- private:
-  void begin(const std::string& name) {
-    table_.row();
-    table_.text("name", "name", "what it is", name);
-  }
-  void end(const std::string& unit, const std::string& description) {
-    table_.text("unit", "unit", "of the number, 1 if it has none", unit);
-    table_.text("description", "description", "what it means", description);
-  }
+constexpr ColumnOf<NamedValue> value_columns[] = {
+    {"name", "name", "", of_name, Role::key, field<&NamedValue::name>},
+    {"value", "value", "", of_value, Role::note, [](const NamedValue& named) { return named.value; }},
+    {"unit", "unit", "", of_unit, Role::note, field<&NamedValue::unit>},
+    {"description", "description", "", of_description, Role::note, field<&NamedValue::description>},
+};
 
-  TableBuilder table_;
+constexpr ColumnOf<Fact> fact_columns[] = {
+    {"name", "name", "", of_name, Role::key, field<&Fact::name>},
+    {"value", "value", "", of_value, Role::note, field<&Fact::value>},
+    {"unit", "unit", "", of_unit, Role::note, [](const Fact&) { return to_cell(""); }},
+    {"description", "description", "", of_description, Role::note, field<&Fact::description>},
+};
+
+constexpr ColumnOf<Parameter> parameter_columns[] = {
+    {"name", "name", "", of_name, Role::key, field<&Parameter::name>},
+    {"value", "value", "", of_value, Role::quantity, field<&Parameter::value>},
+    {"unit", "unit", "", of_unit, Role::note, field<&Parameter::unit>},
+    {"description", "description", "", of_description, Role::note, field<&Parameter::description>},
+};
+
+constexpr ColumnOf<WorkCount> work_columns[] = {
+    {"name", "name", "", of_name, Role::key, field<&WorkCount::name>},
+    {"value", "value", "1", of_value, Role::counter, field<&WorkCount::count>},
+    {"unit", "unit", "", of_unit, Role::note, [](const WorkCount&) { return to_cell("1"); }},
+    {"description", "description", "", of_description, Role::note, field<&WorkCount::description>},
 };
 
 /// The members of a record that are single texts or numbers.
 template <class Record>
-Table members(const std::string& name, const std::string& description, const auto& fields, const Record& record) {
-  Facts facts(name, description);
-  for_each(fields, [&](const auto& field) {
-    using Value = std::remove_cvref_t<decltype(record.*field.member)>;
-    const auto& value = record.*field.member;
-    if constexpr (std::is_same_v<Value, double>) facts.add(field.name, value, field.unit, field.description);
-    if constexpr (std::is_same_v<Value, solver::Outcome>)
-      facts.add(field.name, std::string(to_string(value)), field.description);
+Table members(std::string name, std::string description, const auto& fields, const Record& record) {
+  std::vector<NamedValue> rows;
+  for_each(fields, [&](const auto& member) {
+    using Value = std::remove_cvref_t<decltype(record.*member.member)>;
+    const auto& value = record.*member.member;
+    if constexpr (std::is_same_v<Value, double> || std::is_same_v<Value, solver::Outcome>)
+      rows.push_back({member.name, to_cell(value), member.unit, member.description});
     if constexpr (std::is_same_v<Value, std::string>)
-      if (value.find('\n') == std::string::npos) facts.add(field.name, value, field.description);
+      if (value.find('\n') == std::string::npos) rows.push_back({member.name, value, "", member.description});
   });
-  return facts.finish();
+  return make_table(std::move(name), std::move(description), value_columns, rows);
 }
 
+/// A line of a TOML file.
+struct Line {
+  std::string key, value;
+};
+
+constexpr ColumnOf<Line> line_columns[] = {
+    {"key", "key", "", "of the scene file", Role::key, field<&Line::key>},
+    {"value", "value", "", "in TOML", Role::note, field<&Line::value>},
+};
+
 Table scene_table(const std::string& toml) {
-  TableBuilder table("scene", "the complete scene, as a TOML file would have it");
+  std::vector<Line> rows;
   std::istringstream lines(toml);
   for (std::string line; std::getline(lines, line);) {
     const auto equal = std::min(line.find(" = "), line.size());
-    table.row();
-    table.text("key", "key", "of the scene file", line.substr(0, equal));
-    table.text("value", "value", "in TOML", equal == line.size() ? "" : line.substr(equal + 3));
+    rows.push_back({line.substr(0, equal), equal == line.size() ? "" : line.substr(equal + 3)});
   }
-  return table.finish();
+  return make_table("scene", "the complete scene, as a TOML file would have it", line_columns, rows);
 }
 
-void add_series(TableBuilder& table, const char* name, const char* unit, const std::vector<double>& values) {
-  if (values.empty()) return;
-  table.row();
-  table.text("series", "series", "list of numbers", name);
-  table.text("unit", "unit", "of the numbers", unit);
-  table.count("length", "length", "how many there are", std::ssize(values));
-  table.number("first", "first", "1", "of the numbers", values.front());
-  table.number("least", "least", "1", "of the numbers", base::quantile(values, 0));
-  table.number("median", "median", "1", "of the numbers", base::quantile(values, 0.5));
-  table.number("largest", "largest", "1", "of the numbers", base::quantile(values, 1));
-  table.number("last", "last", "1", "of the numbers", values.back());
-}
+/// At least one number.
+struct Series {
+  std::string name, unit;
+  std::vector<double> values;
+};
+
+Cell quantile_of(const Series& series, double share) { return base::quantile(series.values, share); }
+
+constexpr const char* of_numbers = "of the numbers";
+
+constexpr ColumnOf<Series> series_columns[] = {
+    {"series", "series", "", "list of numbers", Role::key, field<&Series::name>},
+    {"unit", "unit", "", of_numbers, Role::note, field<&Series::unit>},
+    {"length", "length", "1", "how many there are", Role::quantity,
+     [](const Series& series) -> Cell { return std::ssize(series.values); }},
+    {"first", "first", "1", of_numbers, Role::quantity, [](const Series& series) -> Cell { return series.values.front(); }},
+    {"least", "least", "1", of_numbers, Role::quantity, [](const Series& series) { return quantile_of(series, 0); }},
+    {"median", "median", "1", of_numbers, Role::quantity, [](const Series& series) { return quantile_of(series, 0.5); }},
+    {"largest", "largest", "1", of_numbers, Role::quantity, [](const Series& series) { return quantile_of(series, 1); }},
+    {"last", "last", "1", of_numbers, Role::quantity, [](const Series& series) -> Cell { return series.values.back(); }},
+};
 
 Table series_table(const RunRecord& run) {
-  TableBuilder table("series", "series of numbers: one for each accepted step, repetition or frame");
-  for_each(step_fields, [&](const auto& field) {
-    std::vector<double> values;
-    for (const StepRecord& step : run.steps) values.push_back(static_cast<double>(step.*field.member));
-    add_series(table, field.name, field.unit, values);
+  std::vector<Series> rows;
+  for_each(step_fields, [&](const auto& member) {
+    Series& series = rows.emplace_back(Series{member.name, member.unit, {}});
+    for (const StepRecord& step : run.steps) series.values.push_back(static_cast<double>(step.*member.member));
   });
-  add_series(table, "times_ms", "ms", run.times_ms);
-  if (run.trajectory) add_series(table, "trajectory/t", "s", run.trajectory->times);
-  return table.finish();
+  rows.push_back({"times_ms", "ms", run.times_ms});
+  if (run.trajectory) rows.push_back({"trajectory/t", "s", run.trajectory->times});
+  std::erase_if(rows, [](const Series& series) { return series.values.empty(); });
+  return make_table("series", "series of numbers: one for each accepted step, repetition or frame", series_columns, rows);
 }
+
+constexpr ColumnOf<Table> table_columns[] = {
+    {"name", "table", "", "its name", Role::key, field<&Table::name>},
+    {"rows", "rows", "1", "how many there are", Role::quantity, [](const Table& table) { return to_cell(rows(table)); }},
+    {"description", "description", "", "what it shows", Role::note, field<&Table::description>},
+};
 
 }  // namespace
 
-Table to_table(const Provenance& facts) {
-  Facts table("provenance", "where the results come from");
-  for (const auto& [name, value, description] : facts) table.add(name, value, description);
-  return table.finish();
-}
+Table to_table(const Provenance& facts) { return make_table("provenance", "where the results come from", fact_columns, facts); }
 
 Table list_of(const std::vector<Table>& tables) {
-  TableBuilder list("tables", "tables of studies; --table NAME shows one");
-  for (const Table& table : tables) {
-    list.row();
-    list.text("name", "table", "its name", table.name);
-    list.count("rows", "rows", "how many there are", table.columns.empty() ? 0 : std::ssize(table.columns.front().cells));
-    list.text("description", "description", "what it shows", table.description);
-  }
-  return list.finish();
+  return make_table("tables", "tables of studies; --table NAME shows one", table_columns, tables);
 }
 
 std::vector<Table> in_full(const RunRecord& run) {
-  std::vector<Table> tables{members("run", "one run of one method on one scene", run_fields, run), scene_table(run.scene_toml)};
-  Facts parameters("parameters", "parameters of the scene and the solvers"),
-      work("work", "how often each kind of work was done");
-  for (const Parameter& p : run.parameters) parameters.add(p.name, p.value, p.unit, p.description);
-  for (const WorkCount& w : run.work) work.add(w.name, w.count, "1", w.description);
-  tables.push_back(parameters.finish());
-  tables.push_back(work.finish());
+  std::vector<Table> tables{
+      members("run", "one run of one method on one scene", run_fields, run), scene_table(run.scene_toml),
+      make_table("parameters", "parameters of the scene and the solvers", parameter_columns, run.parameters),
+      make_table("work", "how often each kind of work was done", work_columns, run.work)};
   if (run.error)
     tables.push_back(members("error", "distance of the final positions from a reference", error_fields, *run.error));
   if (run.motion_error)

@@ -67,7 +67,7 @@ std::string shown_area(Run run) {
   return fmt::format("{:.3g} ({:.3g})", run.contact->area, run.contact->reference_area);
 }
 
-constexpr ColumnOf<RunRecord> columns[] = {
+constexpr ColumnOf<RunRecord> run_columns[] = {
     {"scene", "scene", "", "", Role::key, field<&RunRecord::scene>},
     {"method", "method", "", "", Role::key, field<&RunRecord::method>, shown_method},
     {"step", "step", "s", "", Role::key, field<&RunRecord::step>},
@@ -111,6 +111,6 @@ constexpr ColumnOf<RunRecord> columns[] = {
 
 }  // namespace
 
-Table to_table(std::span<const RunRecord> runs) { return make_table("runs", "one row for each run", columns, runs); }
+Table to_table(std::span<const RunRecord> runs) { return make_table("runs", "one row for each run", run_columns, runs); }
 
 }  // namespace drape::results

@@ -17,7 +17,7 @@ bool one_of(std::string_view name, std::initializer_list<std::string_view> names
 Role usual_role(std::string_view name, std::string_view unit) {
   if (one_of(name, {"verdict", "outcome"})) return Role::verdict;
   if (one_of(name, {"spread", "remark", "detail", "residual", "order"})) return Role::note;  // follow from other numbers
-  if (unit.empty()) return Role::key;
+  if (unit.empty() || one_of(name, {"step", "n"})) return Role::key;
   if (one_of(unit, {"ms", "ns", "s/s", "GB/s", "MB"}) || one_of(name, {"wall", "exponent", "repetitions"})) return Role::time;
   if (name == "uncertainty") return Role::uncertainty;
   if (name == "fitted_order") return Role::order;
@@ -25,11 +25,24 @@ Role usual_role(std::string_view name, std::string_view unit) {
   return one_of(name, {"error", "rms", "maximum", "distance"}) ? Role::error : Role::quantity;
 }
 
+Figure usual_figure(const Table& table) {
+  const auto has = [&](std::initializer_list<std::string_view> names) {
+    return std::ranges::any_of(names, [&](std::string_view name) { return find_column(table, name) != nullptr; });
+  };
+  if (table.name.starts_with("trials: ")) return Figure::work_precision;
+  if (table.name == "stability-atlas") return Figure::stability;
+  if (table.name.starts_with("figure-4.3") && has({"t"})) return Figure::over_time;
+  return has({"step", "n"}) && has({"error", "rms"}) && has({"order"}) ? Figure::convergence : Figure::none;
+}
+
 std::string usual_verdict(const std::string& text) {
   constexpr std::string_view no = "NOT";
-  if (const std::size_t place = text.find(no); place != std::string::npos)
-    return verdict(Standing::missed, std::string(text).replace(place, no.size(), "not"));
-  for (const std::string_view good : {"as declared", "as in theory", "as predicted", "below"})
+  if (text.find(no) != std::string::npos) {
+    std::string detail = text;
+    for (std::size_t place = 0; (place = detail.find(no, place)) != std::string::npos;) detail.replace(place, no.size(), "not");
+    return verdict(Standing::missed, detail);
+  }
+  for (const std::string_view good : {"as declared", "as in theory", "as predicted", "below", "falls with d", "swings less"})
     if (text.ends_with(good)) return verdict(Standing::met, text);
   if (one_of(text, {"agrees", "as wanted", "proportional", "within 10"})) return verdict(Standing::met, text);
   return text.starts_with("no ") ? verdict(Standing::open, text) : text;

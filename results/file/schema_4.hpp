@@ -10,6 +10,8 @@ namespace drape::results {
 
 Role usual_role(std::string_view name, std::string_view unit);
 
+Figure usual_figure(const Table& table);
+
 /// A verdict of such a file as verdict.hpp has it: "NOT 4" is "missed: not 4".
 std::string usual_verdict(const std::string& text);
 

@@ -44,11 +44,15 @@ void write_column(const Handle& group, const Column& column) {
   hdf5::write_text(group, name + ".role", std::string(to_string(role)));
 }
 
-Role read_role(const Handle& group, const std::string& name) {
-  const std::string text = hdf5::read_text(group, name + ".role");
-  const auto role = role_named(text);
-  if (!role) throw hdf5::Error(fmt::format("the role of the column {} is '{}', which this program does not know", name, text));
-  return *role;
+/// `find` gives what has this name.
+auto read_named(const std::string& attribute, const std::string& name, const auto& find) {
+  const auto found = find(name);
+  if (!found) throw hdf5::Error(fmt::format("{} is '{}', which this program does not know", attribute, name));
+  return *found;
+}
+
+Role read_role(const Handle& group, const std::string& column) {
+  return read_named(column + ".role", hdf5::read_text(group, column + ".role"), role_named);
 }
 
 std::vector<Cell> read_cells(const Handle& group, const std::string& name, const std::string& unit) {
@@ -73,11 +77,12 @@ void write_table(const Handle& tables, const Table& table) {
   }
   hdf5::write_described_text(group, "columns", fmt::format("{}", fmt::join(names, " ")), "the columns in their order");
   hdf5::write_integer(group, "headline", table.headline ? 1 : 0);
+  hdf5::write_text(group, "figure", std::string(to_string(table.figure)));
 }
 
 Table read_table(const Handle& tables, const std::string& name, int version) {
   const Handle group = hdf5::open_group(tables, name);
-  Table table{name, hdf5::read_text(group, "description"), {}, version > 4 && hdf5::read_integer(group, "headline") != 0};
+  Table table{name, hdf5::read_text(group, "description"), {}};
   const auto infos = hdf5::datasets(group);
   std::istringstream names(hdf5::read_text(group, "columns"));
   for (std::string column; names >> column;) {
@@ -94,6 +99,12 @@ Table read_table(const Handle& tables, const std::string& name, int version) {
       for (Cell& cell : table.columns.back().cells) cell = usual_verdict(std::get<std::string>(cell));
     if (table.columns.back().cells.size() != rows(table))
       throw hdf5::Error(fmt::format("the columns of the table {} are not equally long", name));
+  }
+  if (version > 4) {
+    table.headline = hdf5::read_integer(group, "headline") != 0;
+    table.figure = read_named("figure", hdf5::read_text(group, "figure"), figure_named);
+  } else {
+    table.figure = usual_figure(table);
   }
   return table;
 }

@@ -221,7 +221,10 @@ void check_table(Check& check, const Handle& file, const std::string& group, boo
   if (!check.group(group)) return;
   const bool named = check.find(group + "@columns") != nullptr && check.find(group + "@columns")->type == "text";
   check.described_text(group, "columns");
-  if (has_roles) check.attribute(group, "headline", "int32");
+  if (has_roles) {
+    check.attribute(group, "headline", "int32");
+    check.attribute(group, "figure", "text");
+  }
   if (!named) return;
   SameRows rows(check, "rows");
   std::istringstream names(hdf5::read_text(hdf5::open_group(file, group), "columns"));

@@ -35,11 +35,15 @@ class Preconditioner {
 };
 
 /// A linear solver of the constant matrix: conjugate gradients with one of these preconditioners; an exact one alone will do.
-/// How systems with a Newton matrix are solved goes by it, too (NewtonSystem).
 struct LinearSolver {
   std::string_view name;
   std::string_view description;
   std::unique_ptr<Preconditioner> (*make)();
+  enum class Newton {
+    factored,
+    iterative,
+    by_size
+  } newton = Newton::iterative;  ///< how systems with a Newton matrix are solved
 };
 
 /// All linear solvers; the first is the default.

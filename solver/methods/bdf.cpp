@@ -7,23 +7,24 @@ namespace {
 
 /// The first steps of BDF(k) are of order 4, so that they do not spoil its own.
 void bdf(Step& s, int k) {
-  s.starting = s.history.size() < k;
+  s.starting = s.history.smooth() < k;
   if (s.starting) return s.after_impact ? implicit_euler(s) : esdirk4(s);
   const double t1 = s.t + s.h;
   // dy/dt(t1) ≈ α y1 − Σ α_j y_j of the polynomial through y1 and the last k states
   double alpha = 0;
-  for (int j = 0; j < k; ++j) alpha += 1 / (t1 - s.history.time(j));
+  for (int j = 0; j < k; ++j) alpha += 1 / (t1 - s.history[j].t);
   const History::Weights weights = s.history.weights(t1, k);
-  s.ax.setZero();
-  s.av.setZero();
+  Vectors &ax = s.scratch.ax, &av = s.scratch.av;
+  ax.setZero();
+  av.setZero();
   for (int j = 0; j < k; ++j) {
-    const double c = weights[j] / ((t1 - s.history.time(j)) * alpha);
-    s.ax += c * s.history.state(j).x;
-    s.av += c * s.history.state(j).v;
+    const double c = weights[j] / ((t1 - s.history[j].t) * alpha);
+    ax += c * s.history[j].y.x;
+    av += c * s.history[j].y.v;
   }
   double remainder = 1;
-  for (int j = 0; j < k; ++j) remainder *= (t1 - s.history.time(j)) / (j + 1);
-  s.solve({1 / alpha, t1, s.ax, s.av}, remainder / (alpha * (k + 1)) / std::pow(s.h, k + 1));
+  for (int j = 0; j < k; ++j) remainder *= (t1 - s.history[j].t) / (j + 1);
+  s.solve({1 / alpha, t1, ax, av}, remainder / (alpha * (k + 1)) / std::pow(s.h, k + 1));
 }
 
 }  // namespace

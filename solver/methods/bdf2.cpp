@@ -7,9 +7,10 @@ void bdf2(Step& s) {
   s.starting = s.w == 0;
   if (s.starting) return s.after_impact ? implicit_euler(s) : midpoint(s);  // a first step that damps, or one of second order
   const auto [c1, c2, c3] = bdf2_coefficients(s.w);
-  s.ax = c1 * s.y0().x - c2 * s.ym1().x;
-  s.av = c1 * s.y0().v - c2 * s.ym1().v;
-  s.solve({c3 * s.h, s.t + s.h, s.ax, s.av}, bdf2_error(s.w));
+  Vectors &ax = s.scratch.ax, &av = s.scratch.av;
+  ax = c1 * s.y0().x - c2 * s.ym1().x;
+  av = c1 * s.y0().v - c2 * s.ym1().v;
+  s.solve({c3 * s.h, s.t + s.h, ax, av}, bdf2_error(s.w));
 }
 
 }  // namespace drape::solver

@@ -26,36 +26,41 @@ void add(double weight, const State& rate, Vectors& x, Vectors& v) {
 
 /// M⁻¹ f at the start; the last stage of the step before knows it.
 void start_rate(Step& s) {
-  s.rates[0].x = s.y0().v;
-  if (!s.now.has_f) {
-    s.ode.force(s.t, s.y0().x, s.y0().v, s.now.f);
-    filter(s.ode.pins, s.now.f);
-    s.now.f = s.ode.mass.cwiseInverse().asDiagonal() * s.now.f;
-    s.now.has_f = true;
+  Point& now = s.now();
+  if (!now.has_f) {
+    s.ode.force(s.t, now.y.x, now.y.v, now.f);
+    filter(s.ode.pins, now.f);
+    now.f = s.ode.mass.cwiseInverse().asDiagonal() * now.f;
+    now.has_f = true;
   }
-  s.rates[0].v = s.now.f;
+  State& rate = s.scratch.rates[0];
+  rate.x = now.y.v;
+  rate.v = now.f;
 }
 
 // Y_i = y0 + h Σ_{j<i} a_ij F_j + h a_ii F_i with F = (v, M⁻¹ f);   y1 = Y_s;   error = h Σ (a_sj − b̂_j) F_j
 void esdirk(Step& s, const Tableau& T) {
-  s.rates.resize(T.stages);
+  Vectors &ax = s.scratch.ax, &av = s.scratch.av;
+  std::vector<State>& rates = s.scratch.rates;
+  rates.resize(T.stages);
   start_rate(s);
   State& y = s.y1();
   for (int i = 1; i < T.stages; ++i) {
-    s.ax = s.y0().x;
-    s.av = s.y0().v;
-    for (int j = 0; j < i; ++j) add(s.h * T.a[i][j], s.rates[j], s.ax, s.av);
+    ax = s.y0().x;
+    av = s.y0().v;
+    for (int j = 0; j < i; ++j) add(s.h * T.a[i][j], rates[j], ax, av);
     const double gamma = s.h * T.a[i][i];
-    if (!s.solve({gamma, s.t + T.c[i] * s.h, s.ax, s.av}, embedded_error)) return;
-    s.rates[i].x = y.v;
-    s.rates[i].v = (y.v - s.av) / gamma;
+    if (!s.solve({gamma, s.t + T.c[i] * s.h, ax, av}, embedded_error)) return;
+    rates[i].x = y.v;
+    rates[i].v = (y.v - av) / gamma;
   }
-  s.error.x.setZero(y.x.rows(), 3);
-  s.error.v.setZero(y.v.rows(), 3);
-  for (int j = 0; j < T.stages; ++j) add(s.h * (T.a[T.stages - 1][j] - T.b_hat[j]), s.rates[j], s.error.x, s.error.v);
-  s.next.f = s.rates[T.stages - 1].v;
+  State& error = s.error.estimate;
+  error.x.setZero(y.x.rows(), 3);
+  error.v.setZero(y.v.rows(), 3);
+  for (int j = 0; j < T.stages; ++j) add(s.h * (T.a[T.stages - 1][j] - T.b_hat[j]), rates[j], error.x, error.v);
+  s.next.f = rates[T.stages - 1].v;
   s.next.has_f = true;
-  s.embedded = true;
+  s.error.embedded = true;
 }
 
 }  // namespace

@@ -9,10 +9,12 @@ void sbdf2(Step& s) {
   s.starting = s.w == 0;
   if (s.starting) return s.after_impact ? imex_euler(s) : imex_midpoint(s);  // a first step that damps, or one of second order
   const auto [c1, c2, c3] = bdf2_coefficients(s.w);
-  s.ax = c1 * s.y0().x - c2 * s.ym1().x;
-  s.av = c1 * s.y0().v - c2 * s.ym1().v;
-  s.f_hat = (1 + s.w) * s.explicit_force(s.now, s.t) - s.w * s.explicit_force(s.before, s.t - s.h / s.w);
-  s.solve_split({c3 * s.h, s.t + s.h, s.ax, s.av}, s.f_hat, bdf2_error(s.w));
+  Vectors &ax = s.scratch.ax, &av = s.scratch.av;
+  ax = c1 * s.y0().x - c2 * s.ym1().x;
+  av = c1 * s.y0().v - c2 * s.ym1().v;
+  Vectors& f_hat = s.scratch.f_hat;
+  f_hat = (1 + s.w) * s.explicit_force(s.now(), s.t) - s.w * s.explicit_force(s.history[1], s.t - s.h / s.w);
+  s.solve_split({c3 * s.h, s.t + s.h, ax, av}, f_hat, bdf2_error(s.w));
 }
 
 }  // namespace drape::solver

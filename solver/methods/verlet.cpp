@@ -11,8 +11,8 @@ namespace {
 constexpr double most_substeps = 1e8;
 
 double limit_at(Step& s, double t, const State& y) {
-  ++s.limits;
-  s.stretch_watch.begin(s.ode.stiffness, y.x);
+  ++s.sub_stepping.limits;
+  s.sub_stepping.stretch_watch.begin(s.ode.stiffness, y.x);
   return verlet_limit(spectrum(s.ode, t, y));
 }
 
@@ -21,27 +21,27 @@ double limit_at(Step& s, double t, const State& y) {
 bool narrowed(Step& s, double t, const Vectors& f) {
   constexpr int stretch_period = 8;
   constexpr double worthwhile = 0.98;
-  const bool alarmed = s.limit_watch.alarmed(f, s.ax);
-  const bool looks = ++s.substeps % stretch_period == 0;
-  if (!alarmed && !(looks && s.stretch_watch.stretched(s.ode.stiffness, s.y1().x))) return false;
-  const double limit = limit_at(s, t, {s.y1().x, s.av});
-  if (limit < worthwhile * s.explicit_limit) {
-    s.explicit_limit = limit;
+  const bool alarmed = s.sub_stepping.limit_watch.alarmed(f, s.scratch.ax);
+  const bool looks = ++s.sub_stepping.substeps % stretch_period == 0;
+  if (!alarmed && !(looks && s.sub_stepping.stretch_watch.stretched(s.ode.stiffness, s.y1().x))) return false;
+  const double limit = limit_at(s, t, {s.y1().x, s.scratch.av});
+  if (limit < worthwhile * s.sub_stepping.limit) {
+    s.sub_stepping.limit = limit;
     return true;
   }
-  if (alarmed) s.limit_watch.rest();
+  if (alarmed) s.sub_stepping.limit_watch.rest();
   return false;
 }
 
 /// The state is kept at (x1, v at the middle of the sub-step), so that all that happens between two evaluations of the force
 /// is one pass over memory. False if the limit has become narrower on the way.
 bool sub_steps(Step& s, double tau, double count) {
-  const Eigen::Index n = s.ax.size();
-  const double* const w = s.ax.data();
+  const Eigen::Index n = s.scratch.ax.size();
+  const double* const w = s.scratch.ax.data();
   const double* const f = s.next.f.data();
   double* const x = s.y1().x.data();
   double* const v = s.y1().v.data();
-  double* const ahead = s.av.data();  // the velocity that a1 is evaluated with
+  double* const ahead = s.scratch.av.data();  // the velocity that a1 is evaluated with
   const auto advance = [=](double kick) {
 #pragma GCC ivdep
     for (Eigen::Index i = 0; i < n; ++i) {
@@ -53,10 +53,10 @@ bool sub_steps(Step& s, double tau, double count) {
   };
   for (double k = 1; k <= count; ++k) {
     advance(k == 1 ? 0.5 * tau : tau);
-    s.ode.force(s.t + k * tau, s.y1().x, s.av, s.next.f);
+    s.ode.force(s.t + k * tau, s.y1().x, s.scratch.av, s.next.f);
     if (narrowed(s, s.t + k * tau, s.next.f)) return false;
   }
-  s.y1().v.array() += (0.5 * tau) * s.ax.array() * s.next.f.array();
+  s.y1().v.array() += (0.5 * tau) * s.scratch.ax.array() * s.next.f.array();
   return true;
 }
 
@@ -64,19 +64,19 @@ bool sub_steps(Step& s, double tau, double count) {
 bool sub_steps_with_impacts(Step& s, double tau, double count) {
   State& y = s.y1();
   Vectors& a = s.next.f;
-  a.array() *= s.ax.array();
-  s.impacts->push_out(0, y.x);
-  s.impacts->stop(tau, true, y.v, a);
+  a.array() *= s.scratch.ax.array();
+  s.sub_stepping.impacts->push_out(0, y.x);
+  s.sub_stepping.impacts->stop(tau, true, y.v, a);
   for (double k = 1; k <= count; ++k) {
     y.x += tau * y.v + (0.5 * tau * tau) * a;
-    s.impacts->push_out(k * tau, y.x);
-    y.v += (0.5 * tau) * a;        // the half of a0
-    s.av = y.v + (0.5 * tau) * a;  // the velocity that a1 is evaluated with
-    s.ode.force(s.t + k * tau, y.x, s.av, a);
+    s.sub_stepping.impacts->push_out(k * tau, y.x);
+    y.v += (0.5 * tau) * a;                // the half of a0
+    s.scratch.av = y.v + (0.5 * tau) * a;  // the velocity that a1 is evaluated with
+    s.ode.force(s.t + k * tau, y.x, s.scratch.av, a);
     if (narrowed(s, s.t + k * tau, a)) return false;
-    a.array() *= s.ax.array();
+    a.array() *= s.scratch.ax.array();
     y.v += (0.5 * tau) * a;
-    s.impacts->stop(tau, false, y.v, a);
+    s.sub_stepping.impacts->stop(tau, false, y.v, a);
   }
   return true;
 }
@@ -87,15 +87,15 @@ bool whole_step(Step& s, double substeps) {
   State& y = s.y1();
   y = s.y0();
   prescribe(s.ode.pins, y.v);
-  for (int c = 0; c < 3; ++c) s.ax.col(c) = s.ode.mass.cwiseInverse();  // but pins have no acceleration:
-  filter(s.ode.pins, s.ax);
-  if (s.now.has_f)
-    s.next.f = s.now.f;
+  for (int c = 0; c < 3; ++c) s.scratch.ax.col(c) = s.ode.mass.cwiseInverse();  // but pins have no acceleration:
+  filter(s.ode.pins, s.scratch.ax);
+  if (s.now().has_f)
+    s.next.f = s.now().f;
   else
     s.ode.force(s.t, y.x, y.v, s.next.f);
-  const bool contacts = s.impacts != nullptr && !s.impacts->empty();
+  const bool contacts = s.sub_stepping.impacts != nullptr && !s.sub_stepping.impacts->empty();
   s.next.has_f = !contacts;  // what obstacles bear was taken from it
-  s.error_constant = 1.0 / (6 * substeps * substeps);
+  s.error.constant = 1.0 / (6 * substeps * substeps);
   return (contacts ? sub_steps_with_impacts : sub_steps)(s, tau, substeps);
 }
 
@@ -108,19 +108,19 @@ bool whole_step(Step& s, double substeps) {
 // The limit is that of the initial state until neighbours have moved apart by a tenth, or modes alternate and grow: then it is
 // estimated anew, and where it has become narrower the step begins again.
 void verlet(Step& s) {
-  if (s.explicit_limit == 0) s.explicit_limit = limit_at(s, s.t, s.y0());
+  if (s.sub_stepping.limit == 0) s.sub_stepping.limit = limit_at(s, s.t, s.y0());
   for (bool done = false; !done;) {
-    if (!(s.explicit_limit > 0)) {
+    if (!(s.sub_stepping.limit > 0)) {
       s.result.outcome = Outcome::not_finite;
       return;
     }
-    const double substeps = std::max(1.0, std::ceil(s.h / (s.options.verlet_fraction * s.explicit_limit)));
+    const double substeps = std::max(1.0, std::ceil(s.h / (s.options.verlet_fraction * s.sub_stepping.limit)));
     if (substeps > most_substeps) {
       s.result.outcome = Outcome::not_converged;
       return;
     }
     done = whole_step(s, substeps);
-    if (!done && s.impacts != nullptr) s.impacts->begin(s.t, s.h, s.y0());
+    if (!done && s.sub_stepping.impacts != nullptr) s.sub_stepping.impacts->begin(s.t, s.h, s.y0());
   }
 }
 

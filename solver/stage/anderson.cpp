@@ -56,11 +56,11 @@ void Anderson::add_pair(const double* v, const double* d) {
   gram_.row(slot).head(count) = gram_.col(slot).head(count).transpose();
 }
 
-double Anderson::weakest() const {
+double Anderson::smallest_response() const {
   if (kept() < 1) return unknown_response;
-  double weakest = 1;
-  for (int i = 0; i < kept(); ++i) weakest = std::min(weakest, response(i));
-  return weakest;
+  double smallest = 1;
+  for (int i = 0; i < kept(); ++i) smallest = std::min(smallest, response(i));
+  return smallest;
 }
 
 /// Those of the normal equations of min |d − Σ w_i Δd_i|, with columns of length one.

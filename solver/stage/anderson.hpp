@@ -34,9 +34,9 @@ class Anderson {
   /// Replaces v by the next iterate; d: its update without acceleration, replaced by the accelerated one.
   void advance(Vectors& v, Vectors& d);
 
-  /// Smallest |Δd|/|Δv| of the past differences: what is left of a change of v in the update it makes. |d| over it is an
+  /// The smallest |Δd|/|Δv| of the past differences: what is left of a change of v in the update it makes. |d| over it is an
   /// estimate of the error of v.
-  double weakest() const;
+  double smallest_response() const;
 
  private:
   using Columns = Eigen::Matrix<double, Eigen::Dynamic, depth>;

@@ -8,24 +8,28 @@ namespace {
 /// and about the same at 100 × 100.
 constexpr int most_factored = 2500;
 
-bool wants_factor(const LinearSolver& solver, int particles) {
-  if (solver.name == "auto") return particles <= most_factored;
-  return solver.name == "cholesky";
+bool factors(const LinearSolver& solver, int particles) {
+  switch (solver.newton) {
+    case LinearSolver::Newton::factored: return true;
+    case LinearSolver::Newton::iterative: return false;
+    case LinearSolver::Newton::by_size: break;
+  }
+  return particles <= most_factored;
 }
 
 }  // namespace
 
-NewtonSystem::NewtonSystem(const SplitOde& ode, const Options& options, StageSystem& system, bool lean)
+NewtonSystem::NewtonSystem(const SplitOde& ode, const Options& options, StageSystem& system, Jacobian part)
     : ode_(ode),
       options_(options),
       system_(system),
-      lean_(lean),
-      factors_(wants_factor(*options.linear_solver, ode.particles())),
+      part_(part),
+      factors_(factors(*options.linear_solver, ode.particles())),
       factor_(*ode.work) {}
 
 Outcome NewtonSystem::renew(double t, const State& y, double gamma) {
   gamma_ = 0;
-  ode_.newton_matrix(t, y.x, y.v, gamma, lean_, J_);
+  ode_.newton_matrix(t, y.x, y.v, gamma, part_, J_);
   Outcome outcome = Outcome::success;
   if (factors_) {
     outcome = factor_.factor(J_);

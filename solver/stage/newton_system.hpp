@@ -13,8 +13,7 @@ namespace drape::solver {
 /// memory.
 class NewtonSystem {
  public:
-  /// `lean`: as SplitOde::newton_matrix has it.
-  NewtonSystem(const SplitOde& ode, const Options& options, StageSystem& system, bool lean);
+  NewtonSystem(const SplitOde& ode, const Options& options, StageSystem& system, Jacobian part);
 
   bool empty() const { return gamma_ == 0; }
   double gamma() const { return gamma_; }  ///< that it was made for, 0 if there is none
@@ -29,7 +28,8 @@ class NewtonSystem {
   const SplitOde& ode_;
   const Options& options_;
   StageSystem& system_;
-  const bool lean_, factors_;
+  const Jacobian part_;
+  const bool factors_;
   SparseMatrix J_;
   NewtonFactor factor_;                       ///< of J, if it factors
   std::optional<NewtonGradients> gradients_;  ///< if it does not, from the first renewal on

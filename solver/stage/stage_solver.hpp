@@ -32,7 +32,10 @@ class StageSolver {
   const Vectors& respond(const Vectors& r, StageResult& result);
 
  private:
-  StageResult solve(const Stage& stage, const Vectors* f_explicit, State& y);
+  StageResult one_system(const Stage& stage, const Vectors& f_explicit, State& y);
+
+  /// Algorithm 6, with the response to contacts. f̂ is given for linear stages with contacts.
+  StageResult fixed_point(const Stage& stage, const Vectors* f_explicit, State& y);
 
   const SplitOde& ode_;
   const Options options_;

@@ -28,10 +28,25 @@ using reference::Mode;
 using solver::Integrator;
 using Stages = Method::Stages;
 
-const std::vector<Method> newcomers{
-    {"linear-euler", "one Newton step of implicit Euler", 1, false, false, Stages::none, solver::linear_euler, 0, false},
-    {"ros2", "Rosenbrock-W method", 2, false, false, Stages::linear, solver::ros2, 0, false},
-    {"gen-alpha", "generalised alpha", 2, true, true, Stages::nonlinear, solver::gen_alpha, 0, false}};
+const std::vector<Method> newcomers{{.name = "linear-euler",
+                                     .description = "one Newton step of implicit Euler",
+                                     .order = 1,
+                                     .stages = Stages::none,
+                                     .step = solver::linear_euler,
+                                     .meets_obstacles = false},
+                                    {.name = "ros2",
+                                     .description = "Rosenbrock-W method",
+                                     .order = 2,
+                                     .stages = Stages::linear,
+                                     .step = solver::ros2,
+                                     .meets_obstacles = false},
+                                    {.name = "gen-alpha",
+                                     .description = "generalised alpha",
+                                     .order = 2,
+                                     .stages = Stages::nonlinear,
+                                     .step = solver::gen_alpha,
+                                     .forces = 1,
+                                     .meets_obstacles = false}};
 
 class Newcomer : public testing::TestWithParam<Method> {};
 INSTANTIATE_TEST_SUITE_P(, Newcomer, testing::ValuesIn(newcomers),

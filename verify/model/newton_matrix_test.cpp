@@ -19,9 +19,9 @@ model::Cloth sheet(std::vector<model::Override> changes) {
   return model::compile(model::load_scene("hung-corners", changes));
 }
 
-Eigen::MatrixXd newton(const model::Cloth& cloth, const State& y, bool lean = false) {
+Eigen::MatrixXd newton(const model::Cloth& cloth, const State& y, solver::Jacobian part = solver::Jacobian::whole) {
   SparseMatrix J;
-  cloth.ode.newton_matrix(0, y.x, y.v, gamma, lean, J);
+  cloth.ode.newton_matrix(0, y.x, y.v, gamma, part, J);
   return Eigen::MatrixXd(SparseMatrix(J.selfadjointView<Eigen::Upper>()));
 }
 
@@ -65,15 +65,15 @@ TEST(NewtonMatrix, IsNotExactForACrumpledOne) {
   EXPECT_GE(relative(newton(cloth, y) - exact(cloth, y), exact(cloth, y)), 1e-2);
 }
 
-TEST(NewtonMatrix, LeavesOutShearIfItIsToBeLean) {
+TEST(NewtonMatrix, LeavesOutShearIfOnlyTensionIsWanted) {
   const model::Cloth with = sheet({}), without = sheet({{"material.shear", "0"}});
   const State y = stretched(with);
-  EXPECT_EQ((newton(with, y, true) - newton(without, y)).norm(), 0);
+  EXPECT_EQ((newton(with, y, solver::Jacobian::tension) - newton(without, y)).norm(), 0);
   EXPECT_GT((newton(with, y) - newton(without, y)).norm(), 0);
-  SparseMatrix lean, whole;
-  with.ode.newton_matrix(0, y.x, y.v, gamma, true, lean);
-  with.ode.newton_matrix(0, y.x, y.v, gamma, false, whole);
-  EXPECT_LT(lean.nonZeros(), whole.nonZeros());
+  SparseMatrix tension, whole;
+  with.ode.newton_matrix(0, y.x, y.v, gamma, solver::Jacobian::tension, tension);
+  with.ode.newton_matrix(0, y.x, y.v, gamma, solver::Jacobian::whole, whole);
+  EXPECT_LT(tension.nonZeros(), whole.nonZeros());
 }
 
 class NewtonMatrixOf : public testing::TestWithParam<std::pair<const char*, std::vector<model::Override>>> {};
@@ -94,9 +94,9 @@ TEST_P(NewtonMatrixOf, IsPositiveDefiniteHoweverCrumpledTheSheetIs) {
   const model::Cloth cloth = sheet(GetParam().second);
   const double lightest = cloth.ode.mass.minCoeff();
   for (const double size : {0.0, 0.05, 0.3})
-    for (const bool lean : {false, true}) {
-      const Eigen::MatrixXd J = newton(cloth, crumpled(cloth, size), lean);
-      EXPECT_GE(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(J).eigenvalues()[0], lightest * (1 - 1e-9)) << size << lean;
+    for (const auto part : {solver::Jacobian::whole, solver::Jacobian::tension}) {
+      const Eigen::MatrixXd J = newton(cloth, crumpled(cloth, size), part);
+      EXPECT_GE(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(J).eigenvalues()[0], lightest * (1 - 1e-9)) << size << int(part);
     }
 }
 
@@ -104,10 +104,10 @@ TEST_P(NewtonMatrixOf, IsAssembledAnewIntoTheSamePlaces) {
   const model::Cloth cloth = sheet(GetParam().second);
   SparseMatrix J;
   const State first = stretched(cloth), second = crumpled(cloth, 0.05);
-  cloth.ode.newton_matrix(0, first.x, first.v, gamma, false, J);
-  cloth.ode.newton_matrix(0, second.x, second.v, 3 * gamma, false, J);
+  cloth.ode.newton_matrix(0, first.x, first.v, gamma, solver::Jacobian::whole, J);
+  cloth.ode.newton_matrix(0, second.x, second.v, 3 * gamma, solver::Jacobian::whole, J);
   SparseMatrix fresh;
-  cloth.ode.newton_matrix(0, second.x, second.v, 3 * gamma, false, fresh);
+  cloth.ode.newton_matrix(0, second.x, second.v, 3 * gamma, solver::Jacobian::whole, fresh);
   EXPECT_EQ((J - fresh).norm(), 0);
 }
 

@@ -26,12 +26,12 @@ void linear_euler(Step& s) {
   const State& y0 = s.y0();
   SparseMatrix df_dx, df_dv, M(3 * ode.particles(), 3 * ode.particles());
   ode.jacobian(s.t + s.h, y0.x, y0.v, df_dx, df_dv);
-  ode.force(s.t + s.h, y0.x, y0.v, s.f_hat);
+  ode.force(s.t + s.h, y0.x, y0.v, s.scratch.f_hat);
   M.setIdentity();
   for (int i = 0; i < 3 * ode.particles(); ++i) M.coeffRef(i, i) = ode.mass[i / 3];
   SparseMatrix A = M - s.h * s.h * df_dx - s.h * df_dv;
   const Eigen::VectorXd v0 = y0.v.reshaped<Eigen::RowMajor>();
-  Eigen::VectorXd b = s.h * (s.f_hat.reshaped<Eigen::RowMajor>() + s.h * (df_dx * v0));
+  Eigen::VectorXd b = s.h * (s.scratch.f_hat.reshaped<Eigen::RowMajor>() + s.h * (df_dx * v0));
   pin(ode.pins, A, b);
   Eigen::SparseLU<Eigen::SparseMatrix<double>> factor(A);
   if (factor.info() != Eigen::Success) {

@@ -8,7 +8,7 @@ namespace {
 /// (1 − g A) k = r with A of K and D, so (M − g D − g² K) k_v = M r_v + g K r_x and k_x = r_x + g k_v, by conjugate gradients.
 bool solve(Step& s, double g, const State& r, State& k) {
   const SplitOde& ode = s.ode;
-  Vectors &left = s.ax, &p = s.av, &q = s.f_hat;
+  Vectors &left = s.scratch.ax, &p = s.scratch.av, &q = s.scratch.f_hat;
   left.noalias() = ode.stiffness * r.x;
   left *= g;
   left += ode.mass.asDiagonal() * r.v;
@@ -53,8 +53,8 @@ void rate(const SplitOde& ode, double t, const State& y, State& r) {
 // second order for any A, here of K and D: the Rosenbrock-W method ROS2   [Verwer et al. 1999]
 void ros2(Step& s) {
   static const double gamma = 1 - std::sqrt(0.5);
-  s.rates.resize(3);
-  State &k1 = s.rates[0], &k2 = s.rates[1], &r = s.rates[2], &y1 = s.y1();
+  s.scratch.rates.resize(3);
+  State &k1 = s.scratch.rates[0], &k2 = s.scratch.rates[1], &r = s.scratch.rates[2], &y1 = s.y1();
   rate(s.ode, s.t, s.y0(), r);
   if (!solve(s, gamma * s.h, r, k1)) return;
   y1.x = s.y0().x + s.h * k1.x;

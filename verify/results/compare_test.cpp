@@ -9,9 +9,9 @@
 #include <cmath>
 #include <random>
 
-#include "results/table_builder.hpp"
 #include "solver/base/statistics.hpp"
 #include "verify/support/slow.hpp"
+#include "verify/support/tables.hpp"
 
 namespace drape::verify::compare_test {
 namespace {
@@ -110,7 +110,7 @@ Recording timed(unsigned seed, double spread = 0.05, int repetitions = 10) {
   return recorded;
 }
 
-std::vector<std::string> column(const Judged& judged, const std::string& name) {
+std::vector<std::string> texts_in(const Judged& judged, const std::string& name) {
   std::vector<std::string> texts;
   for (const Column& c : judged.worst.columns)
     if (c.name == name)
@@ -123,7 +123,7 @@ TEST(Compare, FindsNothingInARecordingAndItself) {
   const Comparison comparison = compare(a, a);
   for (const Judged* judged : {&comparison.accuracy, &comparison.work, &comparison.time}) {
     EXPECT_EQ(judged->judgement, Judgement::same) << judged->reason;
-    EXPECT_TRUE(judged->worst.columns.empty());
+    EXPECT_EQ(rows(judged->worst), 0u);
   }
   EXPECT_EQ(exit_code(comparison), 0);
 }
@@ -134,9 +134,9 @@ TEST(Compare, FindsACounterThatDiffersByOne) {
   ++b.runs[3].work[1].count;
   const Comparison more = compare(a, b);
   EXPECT_EQ(more.work.judgement, Judgement::regression);
-  EXPECT_THAT(column(more.work, "cell"), ElementsAre(HasSubstr("method3")));
-  EXPECT_THAT(column(more.work, "quantity"), ElementsAre("force/tension"));
-  EXPECT_THAT(column(more.work, "b"), ElementsAre("301"));
+  EXPECT_THAT(texts_in(more.work, "cell"), ElementsAre(HasSubstr("method3")));
+  EXPECT_THAT(texts_in(more.work, "quantity"), ElementsAre("force/tension"));
+  EXPECT_THAT(texts_in(more.work, "b"), ElementsAre("301"));
   EXPECT_EQ(more.accuracy.judgement, Judgement::same);
   EXPECT_EQ(exit_code(more), 1);
   const Comparison less = compare(b, a);
@@ -156,7 +156,7 @@ TEST(Compare, FindsAnErrorThatGrewBeyondItsUncertaintyAndNoOther) {
   EXPECT_EQ(with_error(0.9e-3).accuracy.judgement, Judgement::better);
   EXPECT_EQ(with_error(NAN).accuracy.judgement, Judgement::regression);
   EXPECT_EQ(exit_code(with_error(1.04e-3)), 1);
-  EXPECT_THAT(column(with_error(1.04e-3).accuracy, "b"), ElementsAre("0.00104 ± 1e-05"));
+  EXPECT_THAT(texts_in(with_error(1.04e-3).accuracy, "b"), ElementsAre("0.00104 ± 1e-05"));
 }
 
 TEST(Compare, LooksAtEnergiesWherePositionsSayLittle) {
@@ -184,11 +184,11 @@ TEST(Compare, SaysWhatMakesCellsDifferent) {
   for (RunRecord& r : b.runs) r.parameters[0].value = 1e-6;
   const Comparison comparison = compare(a, b);
   EXPECT_EQ(comparison.accuracy.judgement, Judgement::not_comparable);
-  EXPECT_THAT(column(comparison.accuracy, "b")[0], HasSubstr("parameter loop_tolerance (1e-05 and 1e-06)"));
+  EXPECT_THAT(texts_in(comparison.accuracy, "b")[0], HasSubstr("parameter loop_tolerance (1e-05 and 1e-06)"));
   EXPECT_EQ(exit_code(comparison), 2);
   b = a;
   b.runs[0].scene_toml = "grid.n = [20, 20]\nmaterial.damping = [5, 5]\n";
-  EXPECT_THAT(column(compare(a, b).accuracy, "b"), ElementsAre("differs in scene: material.damping ([50, 50] and [5, 5])"));
+  EXPECT_THAT(texts_in(compare(a, b).accuracy, "b"), ElementsAre("differs in scene: material.damping ([50, 50] and [5, 5])"));
   EXPECT_EQ(exit_code(compare(a, b)), 2);
   EXPECT_EQ(exit_code(compare(Recording(), Recording())), 2);
 }
@@ -230,7 +230,7 @@ TEST(CompareTimes, FindsOneCellThatIsAFifthSlowerWhateverTheMachine) {
     Clock(2 * seed + 1).time(b, 10, 0.05, 1.8);
     for (double& time : b.runs[4].times_ms) time *= 1.2;
     const Judged time = compare(a, b).time;
-    found += time.judgement == Judgement::regression && column(time, "cell")[0].find("method4") != std::string::npos;
+    found += time.judgement == Judgement::regression && texts_in(time, "cell")[0].find("method4") != std::string::npos;
   }
   EXPECT_GE(found, 19);
 }
@@ -240,7 +240,7 @@ TEST(CompareTimes, FindsThatAllAreAFifthSlowerOnAQuietMachine) {
   Recording b = recording();
   Clock(2).time(b, 3, 0.05, 1.2);
   EXPECT_EQ(compare(a, b, {.quiet = true}).time.judgement, Judgement::regression);
-  EXPECT_THAT(column(compare(a, b, {.quiet = true}).time, "cell"), ElementsAre("all together"));
+  EXPECT_THAT(texts_in(compare(a, b, {.quiet = true}).time, "cell"), ElementsAre("all together"));
   EXPECT_EQ(compare(b, a, {.quiet = true}).time.judgement, Judgement::better);
 }
 
@@ -269,49 +269,41 @@ TEST(CompareTimes, SayWhyTheyCannotBeCompared) {
 // --- Tables --------------------------------------------------------------------------------------------------------------
 
 Table orders(double order, const std::string& verdict, double rms, std::int64_t updates, double wall) {
-  TableBuilder table("orders", "");
-  table.row();
-  table.text("method", "", "", "bdf2");
-  table.number("fitted_order", "", "1", "", order);
-  table.number("rms", "", "m", "", rms);
-  table.count("updates", "", "", updates);
-  table.number("wall", "", "s", "", wall);
-  table.text("verdict", "", "", verdict);
-  return table.finish();
+  return {"orders",
+          "",
+          {column("method", "", Role::key, {"bdf2"}), column("fitted_order", "1", Role::order, {order}),
+           column("rms", "m", Role::error, {rms}), column("updates", "1", Role::counter, {updates}),
+           column("wall", "s", Role::time, {wall}), column("verdict", "", Role::verdict, {verdict})}};
 }
 
 TEST(CompareTables, JudgeOrdersErrorsAndCountersButNoTimes) {
-  const Table good = orders(2.01, "2 as declared", 1e-4, 10, 1);
+  const Table good = orders(2.01, "met: 2 as declared", 1e-4, 10, 1);
   const auto against = [&](const Table& b) { return compare({{}, {}, {good}}, {{}, {}, {b}}); };
-  EXPECT_EQ(exit_code(against(orders(2.02, "2 as declared", 1e-4, 10, 5))), 0);
-  EXPECT_EQ(against(orders(1.9, "2 as declared", 1e-4, 10, 1)).accuracy.judgement, Judgement::regression);
-  EXPECT_EQ(against(orders(2.01, "NOT 2", 1e-4, 10, 1)).accuracy.judgement, Judgement::regression);
-  EXPECT_EQ(against(orders(2.01, "2 as declared", 1.1e-4, 10, 1)).accuracy.judgement, Judgement::regression);
-  EXPECT_EQ(against(orders(2.01, "2 as declared", 0.9e-4, 10, 1)).accuracy.judgement, Judgement::better);
-  EXPECT_EQ(against(orders(2.01, "2 as declared", 1e-4, 11, 1)).work.judgement, Judgement::regression);
+  EXPECT_EQ(exit_code(against(orders(2.02, "met: 2 as declared", 1e-4, 10, 5))), 0);
+  EXPECT_EQ(against(orders(1.9, "met: 2 as declared", 1e-4, 10, 1)).accuracy.judgement, Judgement::regression);
+  EXPECT_EQ(against(orders(2.01, "missed: not 2", 1e-4, 10, 1)).accuracy.judgement, Judgement::regression);
+  EXPECT_EQ(against(orders(2.01, "met: 2 as declared", 1.1e-4, 10, 1)).accuracy.judgement, Judgement::regression);
+  EXPECT_EQ(against(orders(2.01, "met: 2 as declared", 0.9e-4, 10, 1)).accuracy.judgement, Judgement::better);
+  EXPECT_EQ(against(orders(2.01, "met: 2 as declared", 1e-4, 11, 1)).work.judgement, Judgement::regression);
   EXPECT_THAT(against(good).work.reason, HasSubstr("1 cells"));
   EXPECT_EQ(compare({{}, {}, {good}}, {{}, {}, {}}).accuracy.judgement, Judgement::not_comparable);
 }
 
 /// A row with one number, and what the reference of its error is uncertain by.
-Table one_number(const char* name, double value, double uncertainty) {
-  TableBuilder table("numbers", "");
-  table.row();
-  table.number(name, "", "1", "", value);
-  table.number("uncertainty", "", "1", "", uncertainty);
-  return table.finish();
+Table one_number(Role role, double value, double uncertainty) {
+  return {"numbers", "", {column("number", "1", role, {value}), column("uncertainty", "1", Role::uncertainty, {uncertainty})}};
 }
 
 TEST(CompareTables, JudgeNoNoise) {
-  const auto judgement = [](const char* name, double a, double b, double uncertainty) {
-    return compare({{}, {}, {one_number(name, a, uncertainty)}}, {{}, {}, {one_number(name, b, 2 * uncertainty)}})
+  const auto judgement = [](Role role, double a, double b, double uncertainty) {
+    return compare({{}, {}, {one_number(role, a, uncertainty)}}, {{}, {}, {one_number(role, b, 2 * uncertainty)}})
         .accuracy.judgement;
   };
-  EXPECT_EQ(judgement("error", 1e-8, 2e-8, 1e-9), Judgement::regression);
-  EXPECT_EQ(judgement("error", 1e-8, 2e-8, 1e-8), Judgement::same);
-  EXPECT_EQ(judgement("swing", 1e-8, 2e-8, 0), Judgement::regression);
-  EXPECT_EQ(judgement("swing", 0, 1e-13, 0), Judgement::same) << "round-off";
-  for (const char* consequence : {"residual", "order"}) EXPECT_EQ(judgement(consequence, 1e-8, 2e-8, 0), Judgement::same);
+  EXPECT_EQ(judgement(Role::error, 1e-8, 2e-8, 1e-9), Judgement::regression);
+  EXPECT_EQ(judgement(Role::error, 1e-8, 2e-8, 1e-8), Judgement::same);
+  EXPECT_EQ(judgement(Role::quantity, 1e-8, 2e-8, 0), Judgement::regression);
+  EXPECT_EQ(judgement(Role::quantity, 0, 1e-13, 0), Judgement::same) << "round-off";
+  for (const Role untold : {Role::note, Role::time}) EXPECT_EQ(judgement(untold, 1e-8, 2e-8, 0), Judgement::same);
 }
 
 }  // namespace

@@ -28,7 +28,8 @@ class Inspect : public testing::Test {
     results::RunFile(file, {{"version", "0.1", "of drape"}})
         .add(results::Table{"areas",
                             "areas of things",
-                            {{"thing", "thing", "", "", {"a, b", "c"}, {}}, {"area", "area", "m²", "", {2.5, 1.0 / 3}, {}}}});
+                            {{"thing", "thing", "", "", results::Role::key, {"a, b", "c"}, {}},
+                             {"area", "area", "m²", "", results::Role::quantity, {2.5, 1.0 / 3}, {}}}});
   }
   std::string inspect(const Words& arguments) const { return program_.output(Words{"inspect"} + arguments); }
   nlohmann::json json(const Words& arguments) const { return nlohmann::json::parse(inspect(arguments + Words{"--json"})); }

@@ -6,21 +6,22 @@
 #include <gtest/gtest.h>
 
 #include "results/analysis/conclusion.hpp"
-#include "results/table_builder.hpp"
+#include "verify/support/tables.hpp"
 
 namespace drape::verify::overview_test {
 namespace {
 
+using results::Cell;
 using results::Recording;
+using results::Role;
 using results::RunRecord;
 using results::Table;
-using results::TableBuilder;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-Recording recording(TableBuilder table) { return {{}, {}, {table.finish()}}; }
+Recording recording(const Table& table) { return {{}, {}, {table}}; }
 
 /// A table of the overview, which is the only one beside the conclusion.
 std::string shown(const Recording& recording, const std::string& name) {
@@ -39,30 +40,21 @@ std::vector<std::string> conclusion(const Recording& recording) {
 }
 
 TEST(Overview, CountsOrdersThatAreAsDeclaredAndNamesTheOthers) {
-  TableBuilder table("orders-sheet", "");
-  const auto curve = [&](const char* method, const char* verdict, double order) {
-    table.row();
-    table.text("method", "method", "", method);
-    table.text("verdict", "verdict", "", verdict);
-    if (order > 0) table.number("fitted_order", "fitted", "1", "", order);
-  };
-  curve("bdf2", "", 0);
-  curve("bdf2", "2 as declared", 2.01);
-  curve("bdf3", "NOT 3", 2.5);
-  curve("bdf5", "no order to be seen", 0);
+  const Table table{
+      "orders-sheet",
+      "",
+      {column("method", "", Role::key, {"bdf2", "bdf2", "bdf3", "bdf5"}),
+       column("verdict", "", Role::verdict, {{}, "met: 2 as declared", "missed: not 3", "open: no order to be seen"}),
+       column("fitted_order", "1", Role::order, {{}, 2.01, 2.5, {}})}};
   EXPECT_EQ(shown(recording(table), "orders"),
-            "table,good,others\norders-sheet,1 of 3,bdf3: NOT 3 but 2.50; bdf5: no order to be seen\n");
+            "table,good,others\norders-sheet,1 of 3,bdf3: missed: not 3 but 2.50; bdf5: open: no order to be seen\n");
 }
 
 TEST(Overview, ShowsHeadlineTablesWhole) {
-  TableBuilder builder("quickest", "Who is quick");
-  for (int k = 0; k < 12; ++k) {
-    builder.row();
-    builder.count("k", "k", "", k);
-  }
-  Table headline = builder.finish(), other = headline, without_rows{"nothing", "", {}, true};
+  const Table other{"quickest", "Who is quick", {column("k", "1", Role::key, std::vector<results::Cell>(12, 1.5))}};
+  Table headline = other;
   headline.headline = true;
-  other.name = "other";
+  const Table without_rows{"nothing", "", {}, true};
   const Recording all{{}, {}, {other, headline, without_rows}};
   const std::vector<Table> tables = results::overview({&all, 1});
   ASSERT_THAT(tables, SizeIs(1));
@@ -103,13 +95,13 @@ TEST(Overview, ShowsWhatFailedAndWhy) {
 }
 
 TEST(Overview, ShowsTenOfWhatIsNotAsItWasWanted) {
-  TableBuilder table("bars", "");
-  for (int k = 0; k < 24; ++k) {
-    table.row();
-    table.text("bar", "bar", "", "faster");
-    table.number("error", "error", "1", "", 0.1);
-    table.text("verdict", "verdict", "", k % 2 == 0 ? "met" : "NOT met by 2");
-  }
+  const std::vector<Cell> bars(24, "faster"), errors(24, 0.1);
+  std::vector<Cell> verdicts;
+  for (int k = 0; k < 24; ++k) verdicts.emplace_back(k % 2 == 0 ? "met" : "missed: not met by 2");
+  const Table table{"bars",
+                    "",
+                    {column("bar", "", Role::key, bars), column("error", "1", Role::key, errors),
+                     column("verdict", "", Role::verdict, verdicts)}};
   const Recording all = recording(table);
   const Table not_met = results::overview({&all, 1}).at(0);
   EXPECT_EQ(rows(not_met), 10);
@@ -128,14 +120,11 @@ TEST(Conclusion, SaysOfRunsWhoIsQuickWhoIsWrongAndWhoFails) {
 }
 
 TEST(Conclusion, SaysOfTablesHowManyOrdersAreAsDeclared) {
-  TableBuilder orders("orders-sheet", "");
-  for (const char* verdict : {"", "2 as declared", "NOT 3"}) {
-    orders.row();
-    orders.text("verdict", "verdict", "", verdict);
-    orders.number("fitted_order", "fitted", "1", "", 2);
-  }
-  EXPECT_THAT(conclusion({{}, {}, {orders.finish()}}),
-              ElementsAre("orders-sheet: 1 of 2 methods converge with the order they declare"));
+  const Table orders{"orders-sheet",
+                     "",
+                     {column("verdict", "", Role::verdict, {"", "met: 2 as declared", "missed: not 3"}),
+                      column("fitted_order", "1", Role::order, {2.0, 2.0, 2.0})}};
+  EXPECT_THAT(conclusion({{}, {}, {orders}}), ElementsAre("orders-sheet: 1 of 2 methods converge with the order they declare"));
 }
 
 TEST(Overview, OfNothingIsEmpty) { EXPECT_THAT(results::overview({}), IsEmpty()); }

@@ -7,32 +7,38 @@
 
 #include <cmath>
 
-#include "results/table_builder.hpp"
+#include "results/columns.hpp"
 
 namespace drape::verify::ranking_test {
 namespace {
 
+using results::ColumnOf;
+using results::field;
+using results::Role;
 using results::Table;
 
 struct Trial {
   const char *code, *method;
   double error, time;
-  int repetitions = 5;
+  int repetitions = 5;  ///< 0: it failed
+  double uncertainty = 1e-9;
 };
 
-Table trials(const std::string& scene, const std::vector<Trial>& list, double uncertainty = 1e-9) {
-  results::TableBuilder table("trials: " + scene, "");
-  for (const Trial& trial : list) {
-    table.row();
-    table.text("code", "", "", trial.code);
-    table.text("method", "", "", trial.method);
-    table.number("uncertainty", "", "1", "", uncertainty);
-    if (trial.repetitions == 0) continue;  // it failed
-    table.number("error", "", "1", "", trial.error);
-    table.number("time", "", "ms", "", trial.time);
-    table.count("repetitions", "", "", trial.repetitions);
-  }
-  return table.finish();
+constexpr ColumnOf<Trial> columns[] = {
+    {"code", "", "", "", Role::key, field<&Trial::code>},
+    {"method", "", "", "", Role::key, field<&Trial::method>},
+    {"uncertainty", "", "1", "", Role::uncertainty, field<&Trial::uncertainty>},
+};
+constexpr ColumnOf<Trial> measured_columns[] = {
+    {"error", "", "1", "", Role::error, field<&Trial::error>},
+    {"time", "", "ms", "", Role::time, field<&Trial::time>},
+    {"repetitions", "", "1", "", Role::time, field<&Trial::repetitions>},
+};
+
+Table trials(const std::string& scene, const std::vector<Trial>& list) {
+  Table table = make_table("trials: " + scene, "", columns, list);
+  add_columns(table, measured_columns, list, [](const Trial& trial) { return trial.repetitions > 0 ? &trial : nullptr; });
+  return table;
 }
 
 /// The row of a method at an error of 1e-1 to 1e-7.
@@ -69,13 +75,14 @@ TEST(Ranking, IsTheGeometricMeanAndTheRangeOverTheScenesThatAreReached) {
 }
 
 TEST(Ranking, CountsOnlyOursTimedRepeatedlyWhereTheReferenceResolvesTheError) {
-  const std::vector<Trial> list{
+  std::vector<Trial> list{
       {"cvode-bdf", "", 1e-4, 0.1}, {"drape", "", 1e-4, 0.5, 1}, {"drape", "", 1e-4, 1}, {"drape", "a", 1e-4, 3}};
   const Table all = results::ranking(std::vector{trials("one", list), Table{"winners", "", {}}});
   EXPECT_DOUBLE_EQ(row_of(all, "a", 3).mean, 3);
   EXPECT_EQ(row_of(all, "a", 3).scenes, 1);
   EXPECT_TRUE(std::isnan(row_of(all, "a", 5).scenes)) << "nothing of ours reaches it";
-  const Table uncertain = results::ranking(std::vector{trials("one", list, 1e-4)});
+  for (Trial& trial : list) trial.uncertainty = 1e-4;
+  const Table uncertain = results::ranking(std::vector{trials("one", list)});
   EXPECT_DOUBLE_EQ(row_of(uncertain, "a", 3).mean, 3);
   EXPECT_TRUE(std::isnan(row_of(uncertain, "a", 4).scenes));
 }

@@ -71,7 +71,8 @@ TEST(AcceleratedStages, CountOnNoReductionsWhereConvergenceIsIrregular) {
 
 class StageKinds : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(, StageKinds,
-                         testing::Values("anderson", "newton", "lean-newton", "auto", "newton/multigrid", "lean-newton/ic0"),
+                         testing::Values("anderson", "newton", "tension-newton", "auto", "newton/multigrid",
+                                         "tension-newton/ic0"),
                          [](const auto& test) { return identifier(test.param); });
 
 TEST_P(StageKinds, SolveTheSameEquationAsTheFixedPointLoop) {
@@ -150,7 +151,7 @@ TEST(NewtonSearch, SolvesWhatNothingElseDoesWithoutCuttingSteps) {
 
 TEST(Auto, DoesNotTrustAConstantMatrixThatIsFarTooStiff) {
   const Vectors exact = run(inextensible(), "implicit-euler", stage("newton", 1e-7), 0.01).end.x;
-  for (const char* kind : {"auto", "newton", "lean-newton"})
+  for (const char* kind : {"auto", "newton", "tension-newton"})
     EXPECT_LE(rms(run(inextensible(), "implicit-euler", stage(kind), 0.01).end.x - exact), 1e-4) << kind;
 }
 
@@ -176,7 +177,7 @@ TEST(Newton, KeepsItsFactorWhileItConverges) {
 }
 
 TEST(Newton, LeavesTheConstantMatrixAlone) {
-  for (const char* kind : {"newton", "lean-newton"}) {
+  for (const char* kind : {"newton", "tension-newton"}) {
     const model::Cloth cloth = sheet();
     EXPECT_EQ(run(cloth, "bdf2", stage(kind), 0.005).result.outcome, Outcome::success);
     EXPECT_EQ(cloth.ode.work->count("matrix_builds"), 0) << kind;

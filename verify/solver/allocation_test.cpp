@@ -98,7 +98,7 @@ class Allocations : public testing::TestWithParam<std::tuple<std::string, std::s
     const auto steps = [&](int n) {
       for (int k = 0; k < n; ++k) EXPECT_EQ(integrator.step(2e-4).outcome, Outcome::success);
     };
-    steps(method.past_states + 2);
+    steps(method.history + 2);
     return allocations_of([&] { steps(50); });
   }
 };

@@ -82,15 +82,15 @@ TEST(Anderson, DoesNotTrustWhatRespondedWeakly) {
   const Vectors plain = d;
   anderson.advance(v, d);
   EXPECT_EQ(v, plain);
-  EXPECT_LE(anderson.weakest(), 0.51 * Anderson::lasting_response);  // but knows that there are such
+  EXPECT_LE(anderson.smallest_response(), 0.51 * Anderson::lasting_response);  // but knows that there are such
 }
 
 TEST(Anderson, KnowsTheWeakestResponseItHasSeen) {
   const double weakest = 1e-3;
   Anderson anderson(2);
   Relaxation(weakest).left(anderson, 6);
-  EXPECT_LE(anderson.weakest(), 0.2);
-  EXPECT_GE(anderson.weakest(), weakest * 0.999);
+  EXPECT_LE(anderson.smallest_response(), 0.2);
+  EXPECT_GE(anderson.smallest_response(), weakest * 0.999);
 }
 
 State polynomial(double t, int degree) {
@@ -98,9 +98,19 @@ State polynomial(double t, int degree) {
   return {c * std::pow(t, degree), c * (1 + std::pow(t - 0.3, degree))};
 }
 
+/// Points on a cubic.
+History on_a_cubic(int points, const std::vector<double>& times) {
+  const auto point = [](double t) { return solver::Point{t, polynomial(t, 3), {}, false}; };
+  History history(points, 0, point(times.front()));
+  for (std::size_t k = 1; k < times.size(); ++k) {
+    solver::Point next = point(times[k]);
+    history.push(next, times[k] - times[k - 1]);
+  }
+  return history;
+}
+
 TEST(History, ExtrapolatesPolynomialsExactly) {
-  History history(4);
-  for (const double t : {0.0, 0.1, 0.25, 0.3, 0.5}) history.push(t, polynomial(t, 3));
+  const History history = on_a_cubic(4, {0, 0.1, 0.25, 0.3, 0.5});
   ASSERT_TRUE(history.full());
   State y = polynomial(0, 0);
   history.extrapolate(0.7, y.v, &y.x);
@@ -109,8 +119,7 @@ TEST(History, ExtrapolatesPolynomialsExactly) {
 }
 
 TEST(History, KnowsWhatExtrapolationMisses) {
-  History history(3);
-  for (const double t : {0.0, 0.1, 0.25}) history.push(t, polynomial(t, 3));
+  const History history = on_a_cubic(3, {0, 0.1, 0.25});
   State y = polynomial(0, 0);
   history.extrapolate(0.4, y.v, &y.x);
   const Vectors third_derivative = 6 * small_problems::noise(4, 7);
@@ -119,14 +128,39 @@ TEST(History, KnowsWhatExtrapolationMisses) {
 }
 
 TEST(History, KeepsTheNewestOnlyAfterARestart) {
-  History history(3);
-  for (const double t : {0.0, 0.1, 0.25}) history.push(t, polynomial(t, 3));
+  History history = on_a_cubic(3, {0, 0.1, 0.25});
+  EXPECT_EQ(history.last_step(), 0.25 - 0.1);
   history.restart();
   ASSERT_EQ(history.size(), 1);
-  EXPECT_EQ(history.time(0), 0.25);
-  history.push(0.3, polynomial(0.3, 3));
-  EXPECT_EQ(history.time(0), 0.3);
-  EXPECT_EQ(history.time(1), 0.25);
+  EXPECT_EQ(history[0].t, 0.25);
+  EXPECT_EQ(history.last_step(), 0);
+  solver::Point next{0.3, polynomial(0.3, 3), {}, false};
+  history.push(next, 0.05);
+  EXPECT_EQ(history[0].t, 0.3);
+  EXPECT_EQ(history[1].t, 0.25);
+}
+
+TEST(History, KeepsPointsThatAreNotSmoothButDoesNotExtrapolateThem) {
+  History history = on_a_cubic(3, {0, 0.1, 0.25});
+  history.begin_smooth();
+  EXPECT_EQ(history.size(), 3);
+  State y = polynomial(0, 0);
+  history.extrapolate(0.4, y.v, &y.x);
+  EXPECT_EQ((y.x - polynomial(0.25, 3).x).norm(), 0);
+}
+
+TEST(History, KeepsForcesOfTheNewestPointsOnly) {
+  const auto point = [](double t) { return solver::Point{t, polynomial(t, 3), Vectors::Constant(4, 3, t), true}; };
+  History history(3, 2, point(0));
+  for (const double t : {1.0, 2.0, 3.0}) {
+    solver::Point next = point(t);
+    history.push(next, 1);
+    EXPECT_EQ(next.f.size(), 12) << "memory for the next";
+  }
+  EXPECT_EQ(history[0].f(0), 3);
+  EXPECT_EQ(history[1].f(0), 2);
+  EXPECT_FALSE(history[2].has_f);
+  EXPECT_EQ(history[2].f.size(), 0);
 }
 
 }  // namespace

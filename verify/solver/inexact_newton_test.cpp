@@ -39,7 +39,7 @@ struct Solved {
   explicit Solved(const model::Cloth& cloth, const char* linear_solver, Options options = {}) : d(cloth.ode.particles(), 3) {
     options.linear_solver = &solver::linear_solver(linear_solver);
     solver::StageSystem system(cloth.ode, options, nullptr);
-    solver::NewtonSystem newton(cloth.ode, options, system, false);
+    solver::NewtonSystem newton(cloth.ode, options, system, solver::Jacobian::whole);
     State y = cloth.start;
     y.x = 0.99 * y.x + 1e-3 * noise(cloth.ode.particles(), 5);
     r.setZero(cloth.ode.particles(), 3);
@@ -48,7 +48,7 @@ struct Solved {
     EXPECT_EQ(newton.renew(0, y, gamma), Outcome::success);
     result = newton.solve(r, d);
     SparseMatrix J;
-    cloth.ode.newton_matrix(0, y.x, y.v, gamma, false, J);
+    cloth.ode.newton_matrix(0, y.x, y.v, gamma, solver::Jacobian::whole, J);
     const Eigen::VectorXd flat_d = d.reshaped<Eigen::RowMajor>(), flat_r = r.reshaped<Eigen::RowMajor>();
     residual = (J.selfadjointView<Eigen::Upper>() * flat_d - flat_r).norm() / flat_r.norm();
   }

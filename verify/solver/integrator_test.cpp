@@ -56,7 +56,7 @@ TEST_P(IntegratorWithThesisMethod, MakesAMatrixForItsStepsAndOneForTheStart) {
     const Problem p = partly_pinned();
     Integrator integrator(p.ode, method, tight(), p.start, start_time);
     ASSERT_EQ(integrate(integrator, t_end, 1.0 / n).outcome, Outcome::success);
-    const int matrices = !method.implicit() ? 0 : method.two_step && n > 1 ? 2 : 1;
+    const int matrices = !method.implicit() ? 0 : method.history == 2 && n > 1 ? 2 : 1;
     EXPECT_EQ(p.ode.work->count("matrix_builds"), matrices) << n;
   }
 }
@@ -154,7 +154,7 @@ TEST_P(IntegratorWith, BuildsAndKeepsOnlyWhatTheMethodNeeds) {
   Integrator integrator(p.ode, method, tight(), p.start, start_time);
   ASSERT_EQ(integrate(integrator, t_end, 0.1).outcome, Outcome::success);
   const auto count = [&](const char* kind) { return p.ode.work->count(kind); };
-  EXPECT_EQ(count("history_states"), method.two_step ? 1 : 0);
+  EXPECT_EQ(count("history_states"), method.history - 1);
   const bool solves = count("updates") > 0;  // by the stage solver: methods may have systems of their own
   EXPECT_TRUE(method.implicit() || !solves);
   for (const char* kind : {"matrix_builds", "factorisations", "matrix_products", "linear_bytes"})

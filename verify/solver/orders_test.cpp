@@ -127,22 +127,18 @@ INSTANTIATE_TEST_SUITE_P(, Order,
                          testing::Combine(testing::ValuesIn(names(solver::methods())), testing::ValuesIn(names(problems()))),
                          [](const auto& test) { return identifier(std::get<0>(test.param)) + "_" + std::get<1>(test.param); });
 
-bool in_thesis(const Method& method) {
-  return std::ranges::find(solver::thesis_methods(), method.name, &Method::name) != solver::thesis_methods().end();
-}
-
 TEST_P(Order, IsTheDeclaredOneWithEqualSteps) {
-  DRAPE_SLOW_IF(!in_thesis(method));
+  DRAPE_SLOW_IF(!method.in_thesis);
   EXPECT_TRUE(has_order(with_equal_steps(problem, method), method.order));
 }
 
 TEST_P(Order, IsTheDeclaredOneWithAClippedLastStep) {
-  DRAPE_SLOW_IF(!in_thesis(method));
+  DRAPE_SLOW_IF(!method.in_thesis);
   EXPECT_TRUE(has_order(with_a_clipped_last_step(problem, method), method.order));
 }
 
 TEST_P(Order, IsTheDeclaredOneWithVariableSteps) {
-  DRAPE_SLOW_IF(!in_thesis(method));
+  DRAPE_SLOW_IF(!method.in_thesis);
   for (const Pattern& pattern : patterns)
     EXPECT_TRUE(has_order(with_variable_steps(problem, method, pattern), method.order)) << pattern.name;
 }
@@ -166,10 +162,11 @@ TEST(OrderCheck, RejectsWhatTheThesisPrintsForVariableSteps) {
   const Method printed = with_step("sbdf2", [](Step& s) {  // f̂ = 2 f0 − f₋₁ for every w
     if (s.w == 0) return imex_midpoint(s);
     const auto [c1, c2, c3] = bdf2_coefficients(s.w);
-    s.ax = c1 * s.y0().x - c2 * s.ym1().x;
-    s.av = c1 * s.y0().v - c2 * s.ym1().v;
-    s.f_hat = 2 * s.explicit_force(s.now, s.t) - s.explicit_force(s.before, s.t - s.h / s.w);
-    s.accept(s.stage->solve_linear({c3 * s.h, s.t + s.h, s.ax, s.av}, s.f_hat, s.y1()));
+    Vectors &ax = s.scratch.ax, &av = s.scratch.av, &f_hat = s.scratch.f_hat;
+    ax = c1 * s.y0().x - c2 * s.ym1().x;
+    av = c1 * s.y0().v - c2 * s.ym1().v;
+    f_hat = 2 * s.explicit_force(s.now(), s.t) - s.explicit_force(s.history[1], s.t - s.h / s.w);
+    s.accept(s.stage->solve_linear({c3 * s.h, s.t + s.h, ax, av}, f_hat, s.y1()));
   });
   EXPECT_TRUE(has_order(with_equal_steps(free_particles(), printed), 2));
   for (const Pattern& pattern : patterns)

@@ -119,7 +119,7 @@ double step_of_period(const Method& m, const LinearMode& mode) {
 
 /// The decay of the amplitude a step that an undamped mode has for no other reason than the method, to leading order.
 double leading_decay(const Method& m, const reference::Mode& mode) {
-  const double theta = 2 * std::numbers::pi / period, of_two_steps = m.two_step ? std::pow(theta, 4) / 4 : 0;
+  const double theta = 2 * std::numbers::pi / period, of_two_steps = m.history == 2 ? std::pow(theta, 4) / 4 : 0;
   return predicted_behaviour(m.name, mode).decay + of_two_steps;
 }
 
@@ -131,7 +131,7 @@ TEST_P(OscillationBy, DriftsWithoutDampingAsTheAmplificationSays) {
     const model::Cloth cloth = o.cloth();
     const double h = step_of_period(m, o.linear()), rest = cloth.ode.potential_energy(0, start(scene_of(o.sheet)).x);
     const auto E = energies(cloth, m, h, 2 * period);
-    const int n = m.two_step ? period : 0;  // what the first step left has died away after a period
+    const int n = m.history == 2 ? period : 0;  // what the first step left has died away after a period
     const double measured = std::log((E[n] - rest) / (E[n + period] - rest)) / (2 * period);
     const reference::Mode at_h = at_step(o.linear(), h);
     EXPECT_NEAR(measured, measured_behaviour(m, at_h).decay, 1e-5 * measured + 2e-8);

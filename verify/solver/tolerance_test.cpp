@@ -196,7 +196,7 @@ TEST(StartingSteps, AreCounted) {
     const Problem problem = partly_pinned();
     Integrator integrator(problem.ode, method, tight(), problem.start, start_time);
     for (int k = 0; k < 8; ++k) ASSERT_EQ(integrator.step(0.01).outcome, Outcome::success);
-    const int expected = method.past_states > 1 ? method.past_states - 1 : method.two_step ? 1 : 0;
+    const int expected = method.history - 1;
     EXPECT_EQ(problem.ode.work->count("starting_steps"), expected) << method.name;
   }
 }

@@ -69,7 +69,7 @@ std::vector<Problem> problems();
 
 /// Tests are parameterised by the names of rows, which GoogleTest can print.
 template <class Rows>
-std::vector<std::string> names(const Rows& rows) {
+std::vector<std::string> names(Rows&& rows) {
   std::vector<std::string> result;
   for (const auto& row : rows) result.emplace_back(row.name);
   return result;

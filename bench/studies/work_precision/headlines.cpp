@@ -33,7 +33,7 @@ std::vector<Quickest> quickest_on(const SceneTrials& scene) {
 
 using Row = const Quickest&;
 
-constexpr ColumnOf<Quickest> columns[] = {
+constexpr ColumnOf<Quickest> quickest_columns[] = {
     {"scene", "scene", "", "its name", Role::key, field<&Quickest::scene>},
     {"error", "error <=", "1", "over the size of the scene", Role::key, field<&Quickest::error>},
     {"ours", "our quickest", "", "with that error", Role::note, [](Row row) -> Cell { return row.ours.name(); }},
@@ -73,7 +73,7 @@ constexpr ColumnOf<Summary> summary_columns[] = {
 results::Table quickest_table(const std::vector<SceneTrials>& scenes) {
   std::vector<Quickest> rows;
   for (const SceneTrials& scene : scenes) std::ranges::move(quickest_on(scene), std::back_inserter(rows));
-  results::Table table = results::make_table("quickest", "The quickest at each error", columns, rows);
+  results::Table table = results::make_table("quickest", "The quickest at each error", quickest_columns, rows);
   table.headline = true;
   return table;
 }

@@ -1,0 +1,45 @@
+#include <algorithm>
+#include <cmath>
+
+#include "solver/stage/stage_solver.hpp"
+
+namespace drape::solver {
+
+StageResult StageSolver::fixed_point(const Stage& stage, const Vectors* f_explicit, State& y) {
+  StageResult result;
+  result.outcome = system_.prepare(stage.gamma);
+  if (result.outcome != Outcome::success) return result;
+  prescribe(ode_.pins, y.v);
+  const auto ended = [&](Outcome outcome) { return StageResult{outcome, result.updates, result.cg_iterations}; };
+
+  const bool linear = f_explicit != nullptr, contacts = system_.touches();
+  const double loop_tolerance = linear ? options_.cg_tolerance : options_.loop_tolerance;
+  const double cg_tolerance =
+      linear ? loop_tolerance : std::min(options_.cg_tolerance, loop_tolerance / 2);  // or it could not end
+  const int changing_updates = linear ? 10 : 50;
+  StageSystem::Scale size{};
+  for (;; ++result.updates, ++work_.updates) {
+    system_.evaluate(stage, f_explicit, y);
+    const bool solved = result.updates > 0;
+    const bool changed =
+        contacts && solved &&
+        system_.adapt_contacts(stage, f_explicit, y, size.target(loop_tolerance), result.updates >= changing_updates);
+    const double whole = contacts ? system_.residual().norm() : 0;
+    system_.filter_residual(stage.gamma);
+    if (!solved) size = system_.scale(y, stage.gamma);
+    size.round_off = std::max(size.round_off, StageSystem::round_off(whole));
+
+    const double residual = system_.residual().norm();
+    if (!std::isfinite(residual)) return ended(Outcome::not_finite);
+    const bool guessed = !linear && !contacts && residual <= size.target(cg_tolerance);
+    if (solved ? !changed && residual <= size.target(loop_tolerance) : guessed) return ended(Outcome::success);
+    if (result.updates == options_.max_updates) return ended(Outcome::not_converged);
+
+    const LinearResult system = system_.correct(size.target(cg_tolerance));
+    result.cg_iterations += system.iterations;
+    y.v += system_.correction();
+    if (system.outcome != Outcome::success) return ended(system.outcome);
+  }
+}
+
+}  // namespace drape::solver
