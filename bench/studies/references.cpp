@@ -55,7 +55,7 @@ double largest_distance(const Solution& a, const Solution& b, double size) {
 }
 
 /// What a family has computed of a scene, and how far that is from what CVODE has; it is the first.
-struct Compared {
+struct FamilySolution {
   std::string scene;
   double damping;
   std::string family;
@@ -74,27 +74,29 @@ std::string agreement(double distance) {
                              : results::verdict(Standing::missed, "not in agreement");
 }
 
-constexpr ColumnOf<Compared> compared_columns[] = {
-    {"scene", "scene", "", "its name", Role::key, field<&Compared::scene>},
-    {"damping", "d", "N s/m", "linear damping", Role::key, field<&Compared::damping>},
-    {"family", "family", "", "the solver and its methods", Role::key, field<&Compared::family>},
+constexpr ColumnOf<FamilySolution> compared_columns[] = {
+    {"scene", "scene", "", "its name", Role::key, field<&FamilySolution::scene>},
+    {"damping", "d", "N s/m", "linear damping", Role::key, field<&FamilySolution::damping>},
+    {"family", "family", "", "the solver and its methods", Role::key, field<&FamilySolution::family>},
     {"steps", "steps", "1", "steps of the solver", Role::counter,
-     [](const Compared& row) -> Cell { return row.solution.steps; }},
+     [](const FamilySolution& row) -> Cell { return row.solution.steps; }},
     {"factorisations", "LU", "1", "factorisations of the sparse Newton matrix", Role::counter,
-     [](const Compared& row) -> Cell { return row.solution.factorisations; }},
-    {"wall", "wall", "s", "wall time, once", Role::time, [](const Compared& row) -> Cell { return row.solution.seconds; }},
+     [](const FamilySolution& row) -> Cell { return row.solution.factorisations; }},
+    {"wall", "wall", "s", "wall time, once", Role::time,
+     [](const FamilySolution& row) -> Cell { return row.solution.seconds; }},
     {"distance", "from CVODE", "1", "largest distance of positions at ten times, over the size of the scene", Role::error,
-     field<&Compared::distance>},
+     field<&FamilySolution::distance>},
     {"verdict", "verdict", "", "whether it agrees with CVODE to 1e-8", Role::verdict,
-     [](const Compared& row) { return row.distance ? Cell(agreement(*row.distance)) : Cell(); }},
+     [](const FamilySolution& row) { return row.distance ? Cell(agreement(*row.distance)) : Cell(); }},
 };
 
 /// The solutions of all families on a scene.
-std::vector<Compared> compared_on(const std::string& name, const std::string& damping, bool quick, Checkpoint& checkpoint) {
+std::vector<FamilySolution> compared_on(const std::string& name, const std::string& damping, bool quick,
+                                        Checkpoint& checkpoint) {
   std::vector<model::Override> overrides{{"material.damping", damping}};
   if (quick) overrides.insert(overrides.end(), {{"grid.n", "6"}, {"end.time", "0.2"}});
   const model::Scene scene = model::load_scene(name, overrides);
-  std::vector<Compared> rows;
+  std::vector<FamilySolution> rows;
   for (const std::string& family : family_names) {
     checkpoint.show(fmt::format("{}, d = {}, {}", name, damping, family));
     Solution solution = checkpoint.once(fmt::format("{} {} {}", name, damping, family), [&] { return solve(family, scene); });
@@ -107,7 +109,7 @@ std::vector<Compared> compared_on(const std::string& name, const std::string& da
 }
 
 results::Table compare(bool quick, Checkpoint& checkpoint) {
-  std::vector<Compared> rows;
+  std::vector<FamilySolution> rows;
   for (const std::string& name : reference_scenes)
     for (const std::string& damping : reference_dampings)
       std::ranges::move(compared_on(name, damping, quick, checkpoint), std::back_inserter(rows));
