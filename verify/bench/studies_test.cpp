@@ -256,13 +256,13 @@ TEST_F(ProgramStudies, OrdersAreAsDeclared) {
 TEST_F(ProgramStudies, ErrorsAreNearTheirTolerances) {
   const auto all = tables("tolerance");
   ASSERT_THAT(all, SizeIs(3));
-  const auto known = AnyOf("within 10", HasSubstr("under by"), "cost explodes");
+  const auto known = AnyOf("met: within 10", HasSubstr("under by"), "cost explodes");
   for (const char* name : {"tolerance-hung-edge", "tolerance-chain"}) {
     const auto found = verdicts(*std::ranges::find(all, name, &Table::name));
     EXPECT_THAT(found, AllOf(SizeIs(2 * solver::methods().size()), Each(known))) << name << ": one for each row";
-    EXPECT_THAT(found, Contains("within 10").Times(testing::Ge(8))) << name;
+    EXPECT_THAT(found, Contains("met: within 10").Times(testing::Ge(8))) << name;
   }
-  EXPECT_THAT(verdicts(*std::ranges::find(all, "tolerance-summary", &Table::name)), Each("proportional"));
+  EXPECT_THAT(verdicts(*std::ranges::find(all, "tolerance-summary", &Table::name)), Each("met: proportional"));
 }
 
 TEST_F(ProgramStudies, EquilibriaConvergeAsDeclared) {
