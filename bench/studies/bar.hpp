@@ -13,7 +13,7 @@ struct Bar {
 /// ">= 5"
 std::string to_string(const Bar& bar);
 
-/// "met", or by what factor it is not.
+/// "met", or "missed: not met by 1.30", the factor between value and bar.
 std::string verdict(const Bar& bar, double value);
 
 }  // namespace drape::bench

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 
 #include "bench/runs/certified_reference.hpp"
 #include "bench/runs/timing.hpp"
@@ -13,7 +14,7 @@
 #include "reference/reference.hpp"
 #include "reference/sundials/sundials_build.hpp"
 #include "results/analysis/work_precision.hpp"
-#include "results/table_builder.hpp"
+#include "results/columns.hpp"
 #include "solver/base/largest.hpp"
 
 namespace drape::bench {
@@ -87,37 +88,55 @@ results::Measured measure(const PeerRow& row, const Case& on, Checkpoint& checkp
           })[0]};
 }
 
-void add_row(results::TableBuilder& table, const PeerRow& row, const Case& on, Checkpoint& checkpoint) {
+/// What the driver measured, and what we do.
+struct Reproduced {
+  PeerRow row;
+  double error, over_motion;
+  results::Quartiles times;
+};
+
+Reproduced reproduced(const PeerRow& row, const Case& on, Checkpoint& checkpoint) {
   const auto positions = solve(row, on);
-  const auto q = results::quartiles(measure(row, on, checkpoint).times);
-  table.row();
-  table.text("damping", "d", "linear damping [N s/m] of hung-corners", row.damping);
-  table.text("setup", "setup", "of SUNDIALS", row.setup.name());
-  table.number("value", "value", "1", "step [s] or tolerance", row.value);
-  table.number("error", "error", "1", "largest at 0.7, 0.9 and 1 of the end, over the scene's size",
-               on.error(positions, {7, 9, 10}));
-  table.number("theirs", "driver's", "1", "the same by an independent driver", row.their_error);
-  table.number("over_motion", "over motion", "1", "largest error at all tenths",
-               on.error(positions, {1, 2, 3, 4, 5, 6, 7, 8, 9, 10}));
-  table.number("time", "CPU", "ms", "median CPU time", q.median);
-  table.number("lower", "", "ms", "lower quartile", q.lower);
-  table.number("upper", "", "ms", "upper quartile", q.upper);
-  table.number("their_time", "driver's", "ms", "the driver's, the minimum of three, with SUNDIALS built with our flags",
-               row.their_ms);
+  return {.row = row,
+          .error = on.error(positions, {7, 9, 10}),
+          .over_motion = on.error(positions, {1, 2, 3, 4, 5, 6, 7, 8, 9, 10}),
+          .times = results::quartiles(measure(row, on, checkpoint).times)};
 }
 
+using results::Cell;
+using results::field;
+using results::Role;
+
+constexpr results::ColumnOf<Reproduced> reproduced_columns[] = {
+    {"damping", "d", "", "linear damping [N s/m] of hung-corners", Role::key,
+     [](const Reproduced& r) -> Cell { return r.row.damping; }},
+    {"setup", "setup", "", "of SUNDIALS", Role::key, [](const Reproduced& r) -> Cell { return r.row.setup.name(); }},
+    {"value", "value", "1", "step [s] or tolerance", Role::key, [](const Reproduced& r) -> Cell { return r.row.value; }},
+    {"error", "error", "1", "largest at 0.7, 0.9 and 1 of the end, over the scene's size", Role::error,
+     field<&Reproduced::error>},
+    {"theirs", "driver's", "1", "the same by an independent driver", Role::quantity,
+     [](const Reproduced& r) -> Cell { return r.row.their_error; }},
+    {"over_motion", "over motion", "1", "largest error at all tenths", Role::error, field<&Reproduced::over_motion>},
+    {"time", "CPU", "ms", "median CPU time", Role::time, [](const Reproduced& r) -> Cell { return r.times.median; }},
+    {"lower", "", "ms", "lower quartile", Role::time, [](const Reproduced& r) -> Cell { return r.times.lower; }},
+    {"upper", "", "ms", "upper quartile", Role::time, [](const Reproduced& r) -> Cell { return r.times.upper; }},
+    {"their_time", "driver's", "ms", "the driver's, the minimum of three, with SUNDIALS built with our flags", Role::time,
+     [](const Reproduced& r) -> Cell { return r.row.their_ms; }},
+};
+
 results::Table reproduce(bool quick, Checkpoint& checkpoint) {
-  results::TableBuilder table("peers",
-                              fmt::format("SUNDIALS as an independent driver has set it up; {}", reference::sundials_build()));
+  std::vector<Reproduced> all;
   std::string damping;
   std::optional<Case> on;
   for (const PeerRow& row : rows(quick)) {
     checkpoint.show(fmt::format("d = {}, {}: {:g}", row.damping, row.setup.name(), row.value));
     if (row.damping != damping) on = make_case(damping = row.damping, quick);
-    add_row(table, row, *on, checkpoint);
+    all.push_back(reproduced(row, *on, checkpoint));
     checkpoint.advance();
   }
-  return table.finish();
+  return results::make_table("peers",
+                             fmt::format("SUNDIALS as an independent driver has set it up; {}", reference::sundials_build()),
+                             reproduced_columns, all);
 }
 
 }  // namespace

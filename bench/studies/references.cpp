@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <iterator>
+#include <optional>
 
 #include "bench/studies/references_growth.hpp"
 #include "bench/studies/studies.hpp"
@@ -9,7 +11,8 @@
 #include "model/scene_file/scene_file.hpp"
 #include "reference/reference.hpp"
 #include "reference/sundials/peer_solvers.hpp"
-#include "results/table_builder.hpp"
+#include "results/columns.hpp"
+#include "results/verdict.hpp"
 
 namespace drape::bench {
 namespace {
@@ -51,40 +54,68 @@ double largest_distance(const Solution& a, const Solution& b, double size) {
   return reference::largest_rms_distance(a.positions, b.positions) / size;
 }
 
-void add_row(results::TableBuilder& table, const model::Scene& scene, const std::string& family, const Solution& solution,
-             const Solution& first) {
-  table.row();
-  table.text("scene", "scene", "its name", scene.name);
-  table.number("damping", "d", "N s/m", "linear damping", scene.sheet.material.damping.weft);
-  table.text("family", "family", "the solver and its methods", family);
-  table.count("steps", "steps", "steps of the solver", solution.steps);
-  table.count("factorisations", "LU", "factorisations of the sparse Newton matrix", solution.factorisations);
-  table.number("wall", "wall", "s", "wall time, once", solution.seconds);
-  if (&solution == &first) return;
-  const double apart = largest_distance(solution, first, model::size(scene));
-  table.number("distance", "from CVODE", "1", "largest distance of positions at ten times, over the size of the scene", apart);
-  table.text("verdict", "verdict", "whether it agrees with CVODE to 1e-8", apart <= closest ? "agrees" : "NOT in agreement");
+/// What a family has computed of a scene, and how far that is from what CVODE has; it is the first.
+struct FamilySolution {
+  std::string scene;
+  double damping;
+  std::string family;
+  Solution solution;
+  std::optional<double> distance;
+};
+
+using results::Cell;
+using results::ColumnOf;
+using results::field;
+using results::Role;
+using results::Standing;
+
+std::string agreement(double distance) {
+  return distance <= closest ? results::verdict(Standing::met, "agrees")
+                             : results::verdict(Standing::missed, "not in agreement");
+}
+
+constexpr ColumnOf<FamilySolution> compared_columns[] = {
+    {"scene", "scene", "", "its name", Role::key, field<&FamilySolution::scene>},
+    {"damping", "d", "N s/m", "linear damping", Role::key, field<&FamilySolution::damping>},
+    {"family", "family", "", "the solver and its methods", Role::key, field<&FamilySolution::family>},
+    {"steps", "steps", "1", "steps of the solver", Role::counter,
+     [](const FamilySolution& row) -> Cell { return row.solution.steps; }},
+    {"factorisations", "LU", "1", "factorisations of the sparse Newton matrix", Role::counter,
+     [](const FamilySolution& row) -> Cell { return row.solution.factorisations; }},
+    {"wall", "wall", "s", "wall time, once", Role::time,
+     [](const FamilySolution& row) -> Cell { return row.solution.seconds; }},
+    {"distance", "from CVODE", "1", "largest distance of positions at ten times, over the size of the scene", Role::error,
+     field<&FamilySolution::distance>},
+    {"verdict", "verdict", "", "whether it agrees with CVODE to 1e-8", Role::verdict,
+     [](const FamilySolution& row) { return row.distance ? Cell(agreement(*row.distance)) : Cell(); }},
+};
+
+/// The solutions of all families on a scene.
+std::vector<FamilySolution> compared_on(const std::string& name, const std::string& damping, bool quick,
+                                        Checkpoint& checkpoint) {
+  std::vector<model::Override> overrides{{"material.damping", damping}};
+  if (quick) overrides.insert(overrides.end(), {{"grid.n", "6"}, {"end.time", "0.2"}});
+  const model::Scene scene = model::load_scene(name, overrides);
+  std::vector<FamilySolution> rows;
+  for (const std::string& family : family_names) {
+    checkpoint.show(fmt::format("{}, d = {}, {}", name, damping, family));
+    Solution solution = checkpoint.once(fmt::format("{} {} {}", name, damping, family), [&] { return solve(family, scene); });
+    checkpoint.advance();
+    std::optional<double> distance;
+    if (!rows.empty()) distance = largest_distance(solution, rows.front().solution, model::size(scene));
+    rows.push_back({scene.name, scene.sheet.material.damping.weft, family, std::move(solution), distance});
+  }
+  return rows;
 }
 
 results::Table compare(bool quick, Checkpoint& checkpoint) {
-  results::TableBuilder table(
-      "references", fmt::format("Three families of solvers on the same equation of motion, rtol = {:g}", reference_rtol));
+  std::vector<FamilySolution> rows;
   for (const std::string& name : reference_scenes)
-    for (const std::string& damping : reference_dampings) {
-      std::vector<model::Override> overrides{{"material.damping", damping}};
-      if (quick) overrides.insert(overrides.end(), {{"grid.n", "6"}, {"end.time", "0.2"}});
-      const model::Scene scene = model::load_scene(name, overrides);
-      std::vector<Solution> solutions;
-      for (const std::string& family : family_names) {
-        checkpoint.show(fmt::format("{}, d = {}, {}", name, damping, family));
-        solutions.push_back(
-            checkpoint.once(fmt::format("{} {} {}", name, damping, family), [&] { return solve(family, scene); }));
-        checkpoint.advance();
-      }
-      for (std::size_t k = 0; k < family_names.size(); ++k)
-        add_row(table, scene, family_names[k], solutions[k], solutions.front());
-    }
-  return table.finish();
+    for (const std::string& damping : reference_dampings)
+      std::ranges::move(compared_on(name, damping, quick, checkpoint), std::back_inserter(rows));
+  return results::make_table(
+      "references", fmt::format("Three families of solvers on the same equation of motion, rtol = {:g}", reference_rtol),
+      compared_columns, rows);
 }
 
 }  // namespace

@@ -11,6 +11,8 @@
 #include "model/scene_file/scene_file.hpp"
 #include "reference/growth.hpp"
 #include "reference/sundials/cvode.hpp"
+#include "results/columns.hpp"
+#include "results/verdict.hpp"
 
 namespace drape::bench {
 namespace {
@@ -50,27 +52,64 @@ Growths grow(const model::Scene& scene) {
   return growths;
 }
 
-void add_row(results::TableBuilder& table, const model::Scene& scene, const Growths& growths) {
-  table.row();
-  table.text("scene", "scene", "its name", scene.name);
-  table.count("n", "n", "particles a side", scene.sheet.grid.nu);
-  table.number("damping", "d", "N s/m", "linear damping", scene.sheet.material.damping.weft);
-  table.number("end", "end", "s", "when it is measured", scene.end);
-  table.number("largest", "largest", "1", "largest singular value of the motion, by differences", growths.largest);
-  for (std::size_t k = 0; k < growths.found.size(); ++k)
-    table.number(fmt::format("rounds_{}", rounds[k]).c_str(), fmt::format("{} rounds", rounds[k]).c_str(), "1",
-                 "growth of the perturbation that so many rounds find", growths.found[k]);
-  const double factor = growths.largest / growths.found.back();
-  table.number("factor", "factor", "1", "the largest over the last", factor);
-  table.text("verdict", "verdict", "whether the factor is at most 2", factor <= bar ? "as wanted" : "NOT as wanted");
+/// A sheet with its growths.
+struct Grown {
+  model::Scene scene;
+  Growths growths;
+
+  double factor() const { return growths.largest / growths.found.back(); }
+};
+
+using results::Cell;
+using results::ColumnOf;
+using results::Role;
+using results::Standing;
+
+constexpr ColumnOf<Grown> sheet_columns[] = {
+    {"scene", "scene", "", "its name", Role::key, [](const Grown& row) -> Cell { return row.scene.name; }},
+    {"n", "n", "1", "particles a side", Role::key, [](const Grown& row) { return results::to_cell(row.scene.sheet.grid.nu); }},
+    {"damping", "d", "N s/m", "linear damping", Role::key,
+     [](const Grown& row) -> Cell { return row.scene.sheet.material.damping.weft; }},
+    {"end", "end", "s", "when it is measured", Role::key, [](const Grown& row) -> Cell { return row.scene.end; }},
+    {"largest", "largest", "1", "largest singular value of the motion, by differences", Role::quantity,
+     [](const Grown& row) -> Cell { return row.growths.largest; }},
+};
+
+constexpr ColumnOf<double> round_columns[] = {
+    {"rounds_{}", "{} rounds", "1", "growth of the perturbation that so many rounds find", Role::quantity,
+     [](const double& growth) -> Cell { return growth; }},
+};
+
+std::string judge(double factor) {
+  return factor <= bar ? results::verdict(Standing::met, "as wanted") : results::verdict(Standing::missed, "not as wanted");
+}
+
+constexpr ColumnOf<Grown> factor_columns[] = {
+    {"factor", "factor", "1", "the largest over the last", Role::quantity,
+     [](const Grown& row) -> Cell { return row.factor(); }},
+    {"verdict", "verdict", "", "whether the factor is at most 2", Role::verdict,
+     [](const Grown& row) -> Cell { return judge(row.factor()); }},
+};
+
+results::Table to_table(const std::vector<Grown>& rows) {
+  results::Table table =
+      results::make_table("growth",
+                          "Growth of a small perturbation of the start: of the one that grows most, as rounds "
+                          "of the power method find it, and of any",
+                          sheet_columns, rows);
+  for (std::size_t k = 0; k < std::size(rounds); ++k) {
+    const std::string count = std::to_string(rounds[k]);
+    results::add_columns(table, round_columns, rows, [k](const Grown& row) { return &row.growths.found[k]; },
+                         {count, count, {}});
+  }
+  results::add_columns(table, factor_columns, rows);
+  return table;
 }
 
 }  // namespace
 
 results::Table growth_of_perturbations(bool quick, Checkpoint& checkpoint) {
-  results::TableBuilder table("growth",
-                              "Growth of a small perturbation of the start: of the one that grows most, as rounds of the "
-                              "power method find it, and of any");
+  std::vector<Grown> rows;
   for (const GrowthScene& sheet : growing) {
     std::vector<model::Override> overrides{{"grid.n", quick ? "4" : "6"}, {"material.damping", sheet.damping}};
     if (std::string_view(sheet.scene) == "wind") overrides.push_back({"start.pleats", "[1, 35]"});  // as many as it can have
@@ -78,10 +117,10 @@ results::Table growth_of_perturbations(bool quick, Checkpoint& checkpoint) {
     scene.end = quick ? sheet.end / 2 : sheet.end;
     const std::string name = fmt::format("growth on {}, d = {}", sheet.scene, sheet.damping);
     checkpoint.show(name);
-    add_row(table, scene, checkpoint.once(name, [&] { return grow(scene); }));
+    rows.push_back({scene, checkpoint.once(name, [&] { return grow(scene); })});
     checkpoint.advance();
   }
-  return table.finish();
+  return to_table(rows);
 }
 
 }  // namespace drape::bench

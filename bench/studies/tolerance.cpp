@@ -11,11 +11,18 @@
 #include "bench/studies/studies.hpp"
 #include "model/scene_file/scene_file.hpp"
 #include "reference/distance.hpp"
+#include "results/columns.hpp"
+#include "results/verdict.hpp"
 #include "solver/dense_output.hpp"
 
 namespace drape::bench {
 namespace {
 
+using results::Cell;
+using results::ColumnOf;
+using results::field;
+using results::Role;
+using results::Standing;
 using solver::Method;
 
 /// Error over tolerance that a user may rely on, to both sides.
@@ -65,12 +72,12 @@ using ControlledRuns = std::vector<Controlled>;
 std::string judge(const Controlled& run) {
   if (run.outcome != to_string(solver::Outcome::success)) return run.steps == 0 ? "cost explodes" : "fails";
   const double ratio = run.error / run.tolerance;
-  if (ratio > band) return fmt::format("NOT within {:g}: over by {:.2g}", band, ratio);
-  if (ratio * band >= 1) return fmt::format("within {:g}", band);
+  if (ratio > band) return results::verdict(Standing::missed, fmt::format("not within {:g}: over by {:.2g}", band, ratio));
+  if (ratio * band >= 1) return results::verdict(Standing::met, fmt::format("within {:g}", band));
   if (run.error < results::resolution * run.uncertainty) return "under: not resolved";
   if (run.largest_steps) return fmt::format("under by {:.2g}: largest steps", 1 / ratio);
   if (!run.note.empty()) return fmt::format("under by {:.2g}: stability", 1 / ratio);
-  return fmt::format("NOT within {:g}: under by {:.2g}", band, 1 / ratio);
+  return results::verdict(Standing::missed, fmt::format("not within {:g}: under by {:.2g}", band, 1 / ratio));
 }
 
 /// Runs of a scene, measured at all tenths of its time.
@@ -125,77 +132,98 @@ class Measurement {
   const reference::Reference reference_;
 };
 
-void add_row(results::TableBuilder& table, const Controlled& run) {
-  table.row();
-  table.text("scene", "scene", "its name", run.scene);
-  table.text("set", "set", "what differs from its file", run.set);
-  table.text("method", "method", "time integrator", run.method);
-  table.number("tolerance", "tolerance", "1", "of the error over the size of the scene", run.tolerance);
-  if (std::isfinite(run.error)) {
-    table.number("error", "error", "1", "largest RMS distance from the reference at ten times, over the size", run.error);
-    table.number("ratio", "error/tolerance", "1", "error over tolerance", run.error / run.tolerance);
-  }
-  table.number("uncertainty", "±", "1", "of the reference, in the measure of the error", run.uncertainty);
-  table.count("steps", "steps", "accepted steps", run.steps);
-  table.count("rejected", "rejected", "steps that were not", run.rejected);
-  table.count("pilot_steps", "pilot steps", "steps of the runs that measured the error before", run.pilots);
-  table.count("forces", "forces", "evaluations, those of pilot runs among them", run.forces);
-  table.text("outcome", "outcome", "how the run ended", run.outcome);
-  table.text("note", "", "what the run says of itself", run.note);
-  table.text("verdict", "verdict", "whether the error is within ten times of the tolerance, to both sides", run.verdict);
-}
+constexpr ColumnOf<Controlled> controlled_columns[] = {
+    {"scene", "scene", "", "its name", Role::key, field<&Controlled::scene>},
+    {"set", "set", "", "what differs from its file", Role::key, field<&Controlled::set>},
+    {"method", "method", "", "time integrator", Role::key, field<&Controlled::method>},
+    {"tolerance", "tolerance", "1", "of the error over the size of the scene", Role::key, field<&Controlled::tolerance>},
+    {"error", "error", "1", "largest RMS distance from the reference at ten times, over the size", Role::error,
+     [](const Controlled& run) { return std::isfinite(run.error) ? Cell(run.error) : Cell(); }},
+    {"ratio", "error/tolerance", "1", "error over tolerance", Role::note,
+     [](const Controlled& run) { return std::isfinite(run.error) ? Cell(run.error / run.tolerance) : Cell(); }},
+    {"uncertainty", "±", "1", "of the reference, in the measure of the error", Role::uncertainty,
+     field<&Controlled::uncertainty>},
+    {"steps", "steps", "1", "accepted steps", Role::counter, field<&Controlled::steps>},
+    {"rejected", "rejected", "1", "steps that were not", Role::counter, field<&Controlled::rejected>},
+    {"pilot_steps", "pilot steps", "1", "steps of the runs that measured the error before", Role::counter,
+     field<&Controlled::pilots>},
+    {"forces", "forces", "1", "evaluations, those of pilot runs among them", Role::counter, field<&Controlled::forces>},
+    {"verdict", "verdict", "", "whether the error is within ten times of the tolerance, to both sides", Role::verdict,
+     field<&Controlled::verdict>},
+    {"outcome", "outcome", "", "how the run ended", Role::verdict, field<&Controlled::outcome>},
+    {"note", "", "", "what the run says of itself", Role::note, field<&Controlled::note>},
+};
 
 results::Table tolerances_on(const Setting& setting, const Methods& methods, ControlledRuns& all, Checkpoint& checkpoint) {
   const model::Scene scene = model::load_scene(setting.scene, setting.overrides);
-  results::TableBuilder table("tolerance-" + setting.name, "Error over tolerance on " + scene.name);
   checkpoint.show("reference of " + scene.name);
   References references(SweepOptions().agreement, {}, 1e-10);
   const Measurement measure(setting, scene, references(scene, model::compile(scene)));
   checkpoint.advance();
+  ControlledRuns runs;
   for (const Method* const chosen : methods) {
     const Method& method = *chosen;
     for (int digits = 2; digits <= setting.digits; ++digits) {
       checkpoint.show(fmt::format("{} on {}, 1e-{}", method.name, scene.name, digits));
       const double tolerance = std::pow(10.0, -digits);
-      all.push_back(checkpoint.once(fmt::format("{} {}", method.name, digits), [&] { return measure(method, tolerance); }));
-      add_row(table, all.back());
+      runs.push_back(checkpoint.once(fmt::format("{} {}", method.name, digits), [&] { return measure(method, tolerance); }));
     }
     checkpoint.advance();
   }
-  return table.finish();
+  all.insert(all.end(), runs.begin(), runs.end());
+  return results::make_table("tolerance-" + setting.name, "Error over tolerance on " + scene.name, controlled_columns, runs);
 }
 
-/// How many cells of a method have become what.
-results::Table summary(const ControlledRuns& all, const Methods& methods) {
-  results::TableBuilder table("tolerance-summary", "Error over tolerance, all scenes and tolerances");
-  for (const Method* const chosen : methods) {
-    const Method& method = *chosen;
-    ControlledRuns runs;
-    std::ranges::copy_if(all, std::back_inserter(runs), [&](const Controlled& run) { return run.method == method.name; });
-    const auto count = [&](std::string_view verdict) {
-      return std::ranges::count_if(runs, [&](const Controlled& run) { return run.verdict.find(verdict) != std::string::npos; });
-    };
-    double lowest = INFINITY, highest = 0;
-    for (const Controlled& run : runs) {
-      if (!std::isfinite(run.error)) continue;
-      lowest = std::min(lowest, run.error / run.tolerance);
-      highest = std::max(highest, run.error / run.tolerance);
-    }
-    table.row();
-    table.text("method", "method", "time integrator", std::string(method.name));
-    table.count("runs", "runs", "scenes times tolerances", std::ssize(runs));
-    table.count("within", "within 10", "error between a tenth of the tolerance and ten times it",
-                count("within 10") - count("NOT"));
-    table.count("over", "over", "a larger error", count("over by"));
-    table.count("under", "under", "a smaller error, whatever the reason", count("under"));
-    table.count("explodes", "cost explodes", "runs that would take too many steps", count("cost explodes"));
-    table.count("fails", "fails", "runs that end early", count("fails"));
-    table.number("lowest", "lowest ratio", "1", "of error to tolerance", lowest);
-    table.number("highest", "highest", "1", "of error to tolerance", highest);
-    table.text("verdict", "verdict", "whether no error is larger than ten tolerances and no run fails",
-               count("over by") + count("fails") == 0 ? "proportional" : "NOT proportional");
+/// How many runs of a method have become what.
+struct MethodSummary {
+  std::string method;
+  std::int64_t runs = 0, within = 0, over = 0, under = 0, explodes = 0, fails = 0;
+  double lowest = INFINITY, highest = 0;  ///< of error to tolerance
+
+  void count(const Controlled& run) {
+    const auto says = [&](std::string_view text) { return run.verdict.find(text) != std::string::npos ? 1 : 0; };
+    ++runs;
+    within += results::standing(run.verdict) == Standing::met ? 1 : 0;
+    over += says("over by");
+    under += says("under");
+    explodes += says("cost explodes");
+    fails += says("fails");
+    if (!std::isfinite(run.error)) return;
+    lowest = std::min(lowest, run.error / run.tolerance);
+    highest = std::max(highest, run.error / run.tolerance);
   }
-  return table.finish();
+
+  std::string verdict() const {
+    return over + fails == 0 ? results::verdict(Standing::met, "proportional")
+                             : results::verdict(Standing::missed, "not proportional");
+  }
+};
+
+constexpr ColumnOf<MethodSummary> method_summary_columns[] = {
+    {"method", "method", "", "time integrator", Role::key, field<&MethodSummary::method>},
+    {"runs", "runs", "1", "scenes times tolerances", Role::quantity, field<&MethodSummary::runs>},
+    {"within", "within 10", "1", "error between a tenth of the tolerance and ten times it", Role::quantity,
+     field<&MethodSummary::within>},
+    {"over", "over", "1", "a larger error", Role::quantity, field<&MethodSummary::over>},
+    {"under", "under", "1", "a smaller error, whatever the reason", Role::quantity, field<&MethodSummary::under>},
+    {"explodes", "cost explodes", "1", "runs that would take too many steps", Role::quantity, field<&MethodSummary::explodes>},
+    {"fails", "fails", "1", "runs that end early", Role::quantity, field<&MethodSummary::fails>},
+    {"lowest", "lowest ratio", "1", "of error to tolerance", Role::quantity, field<&MethodSummary::lowest>},
+    {"highest", "highest", "1", "of error to tolerance", Role::quantity, field<&MethodSummary::highest>},
+    {"verdict", "verdict", "", "whether no error is larger than ten tolerances and no run fails", Role::verdict,
+     [](const MethodSummary& summary) -> Cell { return summary.verdict(); }},
+};
+
+/// Of all scenes and tolerances.
+results::Table tolerance_summary(const ControlledRuns& all, const Methods& methods) {
+  std::vector<MethodSummary> rows;
+  for (const Method* const method : methods) {
+    MethodSummary& row = rows.emplace_back(MethodSummary{std::string(method->name)});
+    for (const Controlled& run : all)
+      if (run.method == method->name) row.count(run);
+  }
+  return results::make_table("tolerance-summary", "Error over tolerance, all scenes and tolerances", method_summary_columns,
+                             rows);
 }
 
 }  // namespace
@@ -207,7 +235,7 @@ std::vector<TableJob> tolerance(bool quick, const Methods& chosen) {
   for (const Setting& setting : settings(quick))
     jobs.push_back({1 + static_cast<int>(methods.size()),
                     [=](Checkpoint& checkpoint) { return tolerances_on(setting, methods, *all, checkpoint); }});
-  jobs.push_back({0, [=](Checkpoint&) { return summary(*all, methods); }});
+  jobs.push_back({0, [=](Checkpoint&) { return tolerance_summary(*all, methods); }});
   return jobs;
 }
 

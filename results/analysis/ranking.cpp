@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "results/table_builder.hpp"
+#include "results/columns.hpp"
 
 namespace drape::results {
 namespace {
@@ -58,22 +58,36 @@ double geometric_mean(const std::vector<double>& numbers) {
   return std::exp(sum / static_cast<double>(numbers.size()));
 }
 
-void add_row(TableBuilder& table, const std::string& method, double error, const std::vector<Quickest>& scenes) {
+/// A method at an error: its ratios to the quickest of ours.
+struct Rank {
+  std::string method;
+  double error;
+  std::size_t scenes, reached;
+  double mean = NAN, least = NAN, largest = NAN;  ///< NaN: it reaches it in none
+};
+
+Rank rank(const std::string& method, double error, const std::vector<Quickest>& scenes) {
   std::vector<double> ratios;
   for (const Quickest& scene : scenes)
     if (const auto found = scene.methods.find(method); found != scene.methods.end())
       ratios.push_back(found->second / scene.ours);
-  table.row();
-  table.text("method", "method", "with automatic stages and linear solvers", method);
-  table.number("error", "error", "1", "at most", error);
-  table.count("scenes", "scenes", "in which any of ours reaches the error", std::ssize(scenes));
-  table.count("reached", "reached", "in which this method does", std::ssize(ratios));
-  const bool none = ratios.empty();
-  table.number("mean", "mean", "1", "geometric mean of the ratios to the quickest of ours",
-               none ? NAN : geometric_mean(ratios));
-  table.number("least", "least", "1", "of the ratios", none ? NAN : std::ranges::min(ratios));
-  table.number("largest", "largest", "1", "of the ratios", none ? NAN : std::ranges::max(ratios));
+  Rank result{method, error, scenes.size(), ratios.size()};
+  if (ratios.empty()) return result;
+  result.mean = geometric_mean(ratios);
+  result.least = std::ranges::min(ratios);
+  result.largest = std::ranges::max(ratios);
+  return result;
 }
+
+constexpr ColumnOf<Rank> rank_columns[] = {
+    {"method", "method", "", "with automatic stages and linear solvers", Role::key, field<&Rank::method>},
+    {"error", "error", "1", "at most", Role::key, field<&Rank::error>},
+    {"scenes", "scenes", "1", "in which any of ours reaches the error", Role::quantity, field<&Rank::scenes>},
+    {"reached", "reached", "1", "in which this method does", Role::time, field<&Rank::reached>},
+    {"mean", "mean", "1", "geometric mean of the ratios to the quickest of ours", Role::time, field<&Rank::mean>},
+    {"least", "least", "1", "of the ratios", Role::time, field<&Rank::least>},
+    {"largest", "largest", "1", "of the ratios", Role::time, field<&Rank::largest>},
+};
 
 }  // namespace
 
@@ -81,16 +95,17 @@ Table ranking(std::span<const Table> tables) {
   std::vector<Table> trials;
   for (const Table& table : tables)
     if (table.name.starts_with("trials: ")) trials.push_back(table);
-  TableBuilder result("ranking", "Times of the methods over the quickest of ours, over all scenes: geometric mean and range");
+  std::vector<Rank> ranks;
   for (const std::string& method : methods_of(trials))
     for (int digit = 1; digit <= digits; ++digit) {
       const double error = std::pow(10.0, -digit);
       std::vector<Quickest> scenes;
       for (const Table& table : trials)
         if (Quickest scene = quickest(table, error); std::isfinite(scene.ours)) scenes.push_back(std::move(scene));
-      if (!scenes.empty()) add_row(result, method, error, scenes);
+      if (!scenes.empty()) ranks.push_back(rank(method, error, scenes));
     }
-  return result.finish();
+  return make_table("ranking", "Times of the methods over the quickest of ours, over all scenes: geometric mean and range",
+                    rank_columns, ranks);
 }
 
 }  // namespace drape::results

@@ -188,6 +188,7 @@ std::vector<std::string> read_texts(const Handle& group, const std::string& name
   const Handle space(H5Dget_space(dataset.id()), name), stored(H5Dget_type(dataset.id()), name), type = text_type();
   if (H5Tis_variable_str(stored.id()) <= 0) throw Error(name + " must be a list of texts");
   std::vector<char*> texts(static_cast<std::size_t>(check(H5Sget_simple_extent_npoints(space.id()), name)));
+  if (texts.empty()) return {};  // H5Dvlen_reclaim() wants memory even of no texts
   check(H5Dread(dataset.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, texts.data()), name);
   std::vector<std::string> values;
   for (char* text : texts) values.emplace_back(text ? text : "");

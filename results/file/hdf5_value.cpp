@@ -56,6 +56,7 @@ std::vector<std::string> read_texts(const Handle& from, std::size_t count, const
   const Handle type = text_type(), space = space_of(from, path), transfer(H5Pcreate(H5P_DATASET_XFER), path);
   check(H5Pset_vlen_mem_manager(transfer.id(), take_memory, &most, free_memory, nullptr), path);
   most += std::min(count, SIZE_MAX - most);  // each has a zero at its end
+  if (count == 0) return {};                 // H5Dvlen_reclaim() wants memory even of no texts
   std::vector<char*> pointers(count);
   read(from, type, pointers.data(), path, transfer.id());
   std::vector<std::string> texts;

@@ -5,7 +5,7 @@
 
 #include "bench/studies/bar.hpp"
 #include "bench/studies/scaling/scaling.hpp"
-#include "results/analysis/runs_table.hpp"
+#include "results/columns.hpp"
 #include "solver/base/statistics.hpp"
 
 namespace drape::bench::scaling_study {
@@ -41,35 +41,52 @@ std::vector<double> force_times(int n) {
   return times;
 }
 
-void add_bar(results::TableBuilder& table, const std::string& what, const Bar& bar, const std::vector<double>& values) {
-  const double value = base::quantile(values, 0.5);
-  table.row();
-  table.text("what", "asked for", "what is compared", what);
-  table.text("bar", "bar", "what it may be", to_string(bar));
-  table.number("value", "value", "1", "median of turns", value);
-  table.number("lowest", "from", "1", "lowest of turns", *std::ranges::min_element(values));
-  table.number("highest", "to", "1", "highest of turns", *std::ranges::max_element(values));
-  table.text("verdict", "verdict", "whether the bar is met", verdict(bar, value));
-}
+/// What was asked for, and what was measured in some turns.
+struct Asked {
+  std::string what;
+  Bar bar;
+  std::vector<double> values;
+
+  double value() const { return base::quantile(values, 0.5); }
+};
+
+using results::Cell;
+using results::ColumnOf;
+using results::Role;
+
+constexpr ColumnOf<Asked> bar_columns[] = {
+    {"what", "asked for", "", "what is compared", Role::key, results::field<&Asked::what>},
+    {"bar", "bar", "", "what it may be", Role::key, [](const Asked& asked) -> Cell { return to_string(asked.bar); }},
+    {"value", "value", "1", "median of turns", Role::time, [](const Asked& asked) -> Cell { return asked.value(); }},
+    {"lowest", "from", "1", "lowest of turns", Role::time,
+     [](const Asked& asked) -> Cell { return std::ranges::min(asked.values); }},
+    {"highest", "to", "1", "highest of turns", Role::time,
+     [](const Asked& asked) -> Cell { return std::ranges::max(asked.values); }},
+    {"verdict", "verdict", "", "whether the bar is met", Role::verdict,
+     [](const Asked& asked) -> Cell { return verdict(asked.bar, asked.value()); }},
+};
 
 }  // namespace
 
 results::Table bars(bool quick, Checkpoint& checkpoint) {
   const int large = sizes(quick).back(), small = quick ? 20 : 100;
-  results::TableBuilder table("scaling-bars", "What was asked for, one thread");
+  std::vector<Asked> rows;
   checkpoint.show("bars: a step");
-  add_bar(table, fmt::format("BDF(2) step: time per particle, {0} x {0} over {1} x {1}", large, small), {3, false},
-          checkpoint.once("step", [&] { return growth(large, small); }));
+  rows.push_back({fmt::format("BDF(2) step: time per particle, {0} x {0} over {1} x {1}", large, small),
+                  {3, false},
+                  checkpoint.once("step", [&] { return growth(large, small); })});
   checkpoint.advance();
   checkpoint.show("bars: conjugate gradients");
-  add_bar(table, fmt::format("fused CG and stencil: bandwidth over the triad's, {0} x {0}", large), {0.6, true},
-          checkpoint.once("iteration", [&] { return bandwidth_of_bare_iterations(large, 31); }));
+  rows.push_back({fmt::format("fused CG and stencil: bandwidth over the triad's, {0} x {0}", large),
+                  {0.6, true},
+                  checkpoint.once("iteration", [&] { return bandwidth_of_bare_iterations(large, 31); })});
   checkpoint.advance();
   checkpoint.show("bars: forces");
-  add_bar(table, fmt::format("forces: ns per particle, {0} x {0}", large), {8, false},
-          checkpoint.once("forces", [&] { return force_times(large); }));
+  rows.push_back({fmt::format("forces: ns per particle, {0} x {0}", large), {8, false}, checkpoint.once("forces", [&] {
+                    return force_times(large);
+                  })});
   checkpoint.advance();
-  return table.finish();
+  return results::make_table("scaling-bars", "What was asked for, one thread", bar_columns, rows);
 }
 
 }  // namespace drape::bench::scaling_study

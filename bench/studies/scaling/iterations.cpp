@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "bench/studies/scaling/scaling.hpp"
-#include "results/analysis/runs_table.hpp"
+#include "results/columns.hpp"
 #include "solver/base/statistics.hpp"
 #include "solver/linear/conjugate_gradients.hpp"
 #include "solver/linear/five_point.hpp"
@@ -123,49 +124,77 @@ Turns turns(int count, Triad& triad, Iterate&& iterate) {
   return all;
 }
 
-void add_iteration(results::TableBuilder& table, int n, int threads, const std::string& name, const Turns& turns) {
+/// What an iteration of conjugate gradients costs.
+struct IterationRow {
+  int n, threads;
+  std::string linear_solver;
+  double nanoseconds, bytes;  ///< a particle
+  double percent;             ///< of the triad's bandwidth
+  double triad;               ///< [GB/s]
+};
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(IterationRow, n, threads, linear_solver, nanoseconds, bytes, percent, triad)
+
+using results::ColumnOf;
+using results::field;
+using results::Role;
+
+constexpr ColumnOf<IterationRow> iteration_columns[] = {
+    {"n", "n", "1", "particles a side", Role::key, field<&IterationRow::n>},
+    {"threads", "threads", "1", "that the linear solver may use; forces use one", Role::key, field<&IterationRow::threads>},
+    {"linear_solver", "linear solver", "", "with which preconditioner, or a substitution", Role::key,
+     field<&IterationRow::linear_solver>},
+    {"iteration", "/particle", "ns", "median time of an iteration over the number of particles", Role::time,
+     field<&IterationRow::nanoseconds>},
+    {"bytes", "/particle", "B", "bytes that an iteration moves at least, over the number of particles", Role::quantity,
+     field<&IterationRow::bytes>},
+    {"bandwidth", "of triad", "%",
+     "bytes over time, over the bandwidth of the triad: median of turns; above 100 where the triad has to load what it "
+     "overwrites, which is not counted",
+     Role::time, field<&IterationRow::percent>},
+    {"triad", "triad", "GB/s", "median bandwidth of the triad in turns with that, with one thread", Role::time,
+     field<&IterationRow::triad>},
+};
+
+IterationRow row_of(int n, int threads, const std::string& name, const Turns& turns) {
   const auto median = [](const std::vector<double>& values) { return base::quantile(values, 0.5); };
   const double particles = static_cast<double>(n) * n;
-  add_size(table, n, threads);
-  table.text("linear_solver", "linear solver", "with which preconditioner, or a substitution", name);
-  table.number("iteration", "/particle", "ns", "median time of an iteration over the number of particles",
-               1e9 * median(turns.seconds) / particles);
-  table.number("bytes", "/particle", "B", "bytes that an iteration moves at least, over the number of particles",
-               turns.bytes / particles);
-  table.number(
-      "bandwidth", "of triad", "%",
-      "bytes over time, over the bandwidth of the triad: median of turns; above 100 where the triad has to load what it "
-      "overwrites, which is not counted",
-      100 * median(turns.ratio));
-  table.number("triad", "triad", "GB/s", "median bandwidth of the triad in turns with that, with one thread",
-               1e-9 * median(turns.triad));
+  return {.n = n,
+          .threads = threads,
+          .linear_solver = name,
+          .nanoseconds = 1e9 * median(turns.seconds) / particles,
+          .bytes = turns.bytes / particles,
+          .percent = 100 * median(turns.ratio),
+          .triad = 1e-9 * median(turns.triad)};
 }
 
 /// All preconditioners on one size.
-void add_iterations(results::TableBuilder& table, int n) {
+std::vector<IterationRow> iterations_on(int n) {
   constexpr int count = 11;
   const model::Cloth cloth = hung_sheet(n);
   const SparseMatrix A = stage_matrix(cloth.ode);
   Triad triad(n * n);
+  std::vector<IterationRow> rows;
   with_threads(n, [&](int threads) {
-    add_iteration(table, n, threads, "none", turns(count, triad, BareIteration(A)));
+    rows.push_back(row_of(n, threads, "none", turns(count, triad, BareIteration(A))));
     for (const char* name : {"ic0", "mic0", "multigrid", "cholesky"})
       if (name != std::string_view("cholesky") || n <= 316)
-        add_iteration(table, n, threads, name, turns(count, triad, Iterations(A, *cloth.ode.work, name)));
+        rows.push_back(row_of(n, threads, name, turns(count, triad, Iterations(A, *cloth.ode.work, name))));
   });
+  return rows;
 }
 
 }  // namespace
 
 results::Table iterations(bool quick, Checkpoint& checkpoint) {
-  results::TableBuilder table("scaling-iterations",
-                              "An iteration of conjugate gradients, by size, in turns with the triad a = b + 3 c");
+  std::vector<IterationRow> rows;
   for (const int n : sizes(quick)) {
     checkpoint.show(fmt::format("{} x {}, conjugate gradients", n, n));
-    checkpoint.rows(table, std::to_string(n), [&](results::TableBuilder& rows) { add_iterations(rows, n); });
+    std::ranges::move(checkpoint.once(std::to_string(n), [&] { return iterations_on(n); }), std::back_inserter(rows));
     checkpoint.advance();
   }
-  return table.finish();
+  return results::make_table("scaling-iterations",
+                             "An iteration of conjugate gradients, by size, in turns with the triad a = b + 3 c",
+                             iteration_columns, rows);
 }
 
 std::vector<double> bandwidth_of_bare_iterations(int n, int count) {

@@ -4,8 +4,10 @@
 #include <sys/resource.h>
 
 #include <cmath>
+#include <optional>
 
 #include "model/scene_file/scene_file.hpp"
+#include "results/columns.hpp"
 #include "solver/base/threads.hpp"
 
 namespace drape::bench {
@@ -19,12 +21,6 @@ std::vector<int> sizes(bool quick) {
 model::Cloth hung_sheet(int n) {
   const model::Override size[] = {{"grid.n", std::to_string(n)}};
   return model::compile(model::load_scene("hung-edge", size));
-}
-
-void add_size(results::TableBuilder& table, int n, int threads) {
-  table.row();
-  table.count("n", "n", "particles a side", n);
-  table.count("threads", "threads", "that the linear solver may use; forces use one", threads);
 }
 
 void with_threads(int n, const std::function<void(int threads)>& f) {
@@ -103,43 +99,77 @@ StepCost time_steps(int n, const std::string& method) {
           .memory = peak_memory_mb()};
 }
 
-void add_steps(results::TableBuilder& table, int n, int threads, const std::string& method, const StepCost& cost) {
-  const double per_particle = 1e9 * cost.seconds / cost.particles;
-  add_size(table, n, threads);
-  table.text("method", "method", "time integrator", method);
-  table.text("linear_solver", "chosen", "the linear solver that auto chose", cost.linear_solver);
-  table.number("step", "step", "ms", "mean wall time of a step", 1e3 * cost.seconds);
-  table.number("per_particle", "/particle", "ns", "the same, over the number of particles", per_particle);
-  table.number("updates", "updates", "1", "linear systems a step", cost.updates);
-  table.number("per_update", "/update", "ns", "time over the number of particles and updates", per_particle / cost.updates);
-  table.number("cg_iterations", "CG", "1", "iterations of conjugate gradients a step", cost.iterations);
-  table.count("escalations", "to Newton", "stages that auto gave to Newton's matrix", cost.escalations);
-  table.number("memory", "memory", "MB", "most memory that the process had until then", cost.memory);
+/// Steps of a method on a size; or, without one, how their time grows with the size.
+struct StepRow {
+  std::string method;
+  std::optional<int> n = {}, threads = {};
+  std::optional<StepCost> cost = {};
+  std::optional<double> exponent = {};
+};
+
+double nanoseconds_per_particle(const StepCost& cost) { return 1e9 * cost.seconds / cost.particles; }
+
+using results::Cell;
+using results::ColumnOf;
+using results::field;
+using results::Role;
+
+constexpr ColumnOf<StepRow> run_columns[] = {
+    {"n", "n", "1", "particles a side", Role::key, field<&StepRow::n>},
+    {"threads", "threads", "1", "that the linear solver may use; forces use one", Role::key, field<&StepRow::threads>},
+    {"method", "method", "", "time integrator", Role::key, field<&StepRow::method>},
+};
+
+constexpr ColumnOf<StepCost> cost_columns[] = {
+    {"linear_solver", "chosen", "", "the linear solver that auto chose", Role::note, field<&StepCost::linear_solver>},
+    {"step", "step", "ms", "mean wall time of a step", Role::time,
+     [](const StepCost& cost) -> Cell { return 1e3 * cost.seconds; }},
+    {"per_particle", "/particle", "ns", "the same, over the number of particles", Role::time,
+     [](const StepCost& cost) -> Cell { return nanoseconds_per_particle(cost); }},
+    {"updates", "updates", "1", "linear systems a step", Role::counter, field<&StepCost::updates>},
+    {"per_update", "/update", "ns", "time over the number of particles and updates", Role::time,
+     [](const StepCost& cost) -> Cell { return nanoseconds_per_particle(cost) / cost.updates; }},
+    {"cg_iterations", "CG", "1", "iterations of conjugate gradients a step", Role::counter, field<&StepCost::iterations>},
+    {"escalations", "to Newton", "1", "stages that auto gave to Newton's matrix", Role::counter, field<&StepCost::escalations>},
+    {"memory", "memory", "MB", "most memory that the process had until then", Role::time, field<&StepCost::memory>},
+};
+
+constexpr ColumnOf<StepRow> exponent_columns[] = {
+    {"exponent", "exponent", "1", "p in time ~ particles^p, one thread", Role::time, field<&StepRow::exponent>},
+};
+
+/// How the time of a method's steps grows, by its rows with one thread.
+StepRow growth_of(const std::vector<StepRow>& rows, const std::string& method) {
+  std::vector<int> sides;
+  std::vector<double> times;
+  for (const StepRow& row : rows)
+    if (row.method == method && row.threads == 1) {
+      sides.push_back(*row.n);
+      times.push_back(row.cost->seconds);
+    }
+  return {.method = method, .exponent = exponent(sides, times)};
 }
 
 }  // namespace
 
 results::Table steps(bool quick, Checkpoint& checkpoint) {
-  results::TableBuilder table("scaling",
-                              fmt::format("A step of {:g} s of the sheet hung by its edge, by size; all solvers: auto", step));
-  std::vector<std::vector<double>> times(methods.size());
+  std::vector<StepRow> rows;
   for (const int n : sizes(quick))
-    for (std::size_t k = 0; k < methods.size(); ++k) {
-      checkpoint.show(fmt::format("{} x {}, {}", n, n, methods[k]));
+    for (const std::string& method : methods) {
+      checkpoint.show(fmt::format("{} x {}, {}", n, n, method));
       with_threads(n, [&](int threads) {
-        const StepCost cost =
-            checkpoint.once(fmt::format("{} {} {}", n, methods[k], threads), [&] { return time_steps(n, methods[k]); });
-        add_steps(table, n, threads, methods[k], cost);
-        if (threads == 1) times[k].push_back(cost.seconds);
+        const std::string id = fmt::format("{} {} {}", n, method, threads);
+        rows.push_back({method, n, threads, checkpoint.once(id, [&] { return time_steps(n, method); })});
       });
       checkpoint.advance();
     }
-  for (std::size_t k = 0; k < methods.size(); ++k) {
-    table.row();
-    table.text("method", "method", "time integrator", methods[k]);
-    table.number("exponent", "exponent", "1", "p in time ~ particles^p, one thread", exponent(sizes(quick), times[k]));
-  }
-  return table.finish();
+  for (const std::string& method : methods) rows.push_back(growth_of(rows, method));
+  results::Table table = results::make_table(
+      "scaling", fmt::format("A step of {:g} s of the sheet hung by its edge, by size; all solvers: auto", step), run_columns,
+      rows);
+  results::add_columns(table, cost_columns, rows, [](const StepRow& row) { return row.cost; });
+  results::add_columns(table, exponent_columns, rows);
+  return table;
 }
 
 }  // namespace scaling_study

@@ -7,7 +7,7 @@
 
 #include "bench/studies/studies.hpp"
 #include "model/cloth.hpp"
-#include "results/table_builder.hpp"
+#include "results/table.hpp"
 #include "solver/integrator.hpp"
 
 /// What the tables of the study `scaling` share.
@@ -20,9 +20,6 @@ std::vector<int> sizes(bool quick);
 
 /// The sheet hung by its edge, n × n.
 model::Cloth hung_sheet(int n);
-
-/// Begins a row.
-void add_size(results::TableBuilder& table, int n, int threads);
 
 /// Calls f(threads) with as many threads as it is told; more than one only where it is worth it.
 void with_threads(int n, const std::function<void(int threads)>& f);

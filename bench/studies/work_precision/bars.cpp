@@ -4,29 +4,44 @@
 
 #include "bench/studies/bar.hpp"
 #include "bench/studies/work_precision/winners.hpp"
-#include "results/table_builder.hpp"
+#include "results/columns.hpp"
+#include "results/verdict.hpp"
 
 namespace drape::bench {
 namespace {
 
-using results::TableBuilder;
+using results::Cell;
+using results::field;
+using results::Role;
+using results::Standing;
 
-void add_bar(TableBuilder& table, const SceneTrials& scene, const std::string& name, const Bar& bar, double error,
-             std::optional<double> value, const std::string& detail) {
-  table.row();
-  table.text("scene", "scene", "its name", scene.problem.name);
-  table.text("bar", "bar", "what is compared", name);
-  table.number("error", "error", "1", "at most", error);
-  table.text("wanted", "wanted", "what is asked for", to_string(bar));
-  table.text("detail", "", "what was compared", detail);
-  if (!value) {
-    table.text("verdict", "verdict", "whether the bar is met",
-               bar.at_least ? "met: they do not reach it in time" : "NOT met: not reached");
-    return;
+/// A bar about a scene, or about all that reaches an error on it.
+struct BarRow {
+  std::string scene, name;
+  Bar bar;
+  std::optional<double> error;
+  std::optional<double> value;  ///< nothing: not reached
+  std::string detail;
+
+  std::string verdict() const {
+    if (value) return bench::verdict(bar, *value);
+    return bar.at_least ? results::verdict(Standing::met, "they do not reach it in time")
+                        : results::verdict(Standing::missed, "not met: not reached");
   }
-  table.number("value", "value", "1", "what was measured", *value);
-  table.text("verdict", "verdict", "whether the bar is met", verdict(bar, *value));
-}
+};
+
+constexpr results::ColumnOf<BarRow> bar_row_columns[] = {
+    {"scene", "scene", "", "its name", Role::key, field<&BarRow::scene>},
+    {"bar", "bar", "", "what is compared", Role::key, field<&BarRow::name>},
+    {"error", "error", "1", "at most", Role::key, field<&BarRow::error>},
+    {"wanted", "wanted", "", "what is asked for", Role::key, [](const BarRow& row) -> Cell { return to_string(row.bar); }},
+    {"detail", "", "", "what was compared", Role::note, field<&BarRow::detail>},
+    {"value", "value", "1", "what was measured", Role::time, field<&BarRow::value>},
+    {"verdict", "verdict", "", "whether the bar is met", Role::verdict,
+     [](const BarRow& row) -> Cell { return row.verdict(); }},
+};
+
+using BarRows = std::vector<BarRow>;
 
 /// Times that our defaults are quicker than SUNDIALS, tuned.
 constexpr double wanted_lead = 1.5;
@@ -38,69 +53,83 @@ bool is_about_peers(const SceneTrials& scene) {
 }
 
 /// Both sides with hindsight, ours only with automatic stages and linear solvers.
-void add_lead(TableBuilder& table, const SceneTrials& scene, const Winners& winners, double error) {
+void add_lead(BarRows& rows, const SceneTrials& scene, const Winners& winners, double error) {
   const Winner peer = winners.of("sundials", error), mine = winners.of("defaults", error);
-  const char* const name = "SUNDIALS tuned / any method, auto";
-  const std::string detail = fmt::format("{} / {}", peer.name(), mine.name());
-  if (peer && !mine)
-    add_bar(table, scene, name, {wanted_lead, true}, error, 0.0, detail);
-  else
-    add_bar(table, scene, name, {wanted_lead, true}, error, peer ? std::optional(peer.time / mine.time) : std::nullopt, detail);
+  std::optional<double> lead;
+  if (peer) lead = mine ? peer.time / mine.time : 0;
+  rows.push_back({scene.problem.name,
+                  "SUNDIALS tuned / any method, auto",
+                  {wanted_lead, true},
+                  error,
+                  lead,
+                  fmt::format("{} / {}", peer.name(), mine.name())});
 }
 
 /// The search must be as thorough on their side as on ours.
-void add_search_bar(TableBuilder& table, const SceneTrials& scene) {
+void add_search_bar(BarRows& rows, const SceneTrials& scene) {
   const int ours = number_of_families(scene, true), theirs = number_of_families(scene, false);
-  add_bar(table, scene, "families of SUNDIALS / of ours", {1, true}, scene.problem.uncertainty, double(theirs) / ours,
-          fmt::format("{} / {}", theirs, ours));
+  rows.push_back({scene.problem.name,
+                  "families of SUNDIALS / of ours",
+                  {1, true},
+                  std::nullopt,
+                  static_cast<double>(theirs) / ours,
+                  fmt::format("{} / {}", theirs, ours)});
 }
 
-void add_bars(TableBuilder& table, const SceneTrials& scene, const std::string& usual) {
+void add_bars(BarRows& rows, const SceneTrials& scene, const std::string& usual) {
   const Winners winners(scene);
   for (const double error : levels(scene.problem)) {
     const Winner best = winners.of("ours", error);
     const auto ratio = [&](const Winner& a) { return a ? std::optional(a.time / best.time) : std::nullopt; };
     const auto names = [&](const Winner& a) { return fmt::format("{} / {}", a.name(), best.name()); };
     if (!best) {
-      add_bar(table, scene, "our best", {1, false}, error, std::nullopt, "none");
+      rows.push_back({scene.problem.name, "our best", {1, false}, error, std::nullopt, "none"});
       continue;
     }
-    if (is_about_peers(scene)) add_lead(table, scene, winners, error);
+    if (is_about_peers(scene)) add_lead(rows, scene, winners, error);
     if (const Winner thesis = winners.of("thesis", error))
-      add_bar(table, scene, "thesis' loop / our best", {3, true}, error, ratio(thesis), names(thesis));
+      rows.push_back({scene.problem.name, "thesis' loop / our best", {3, true}, error, ratio(thesis), names(thesis)});
     for (const std::string contender : {"defaults", usual.c_str()}) {
       const Winner winner = winners.of(contender, error);
-      add_bar(table, scene, (contender == usual ? usual : "any method, auto") + " / our best", {default_bar, false}, error,
-              ratio(winner), names(winner));
+      rows.push_back({scene.problem.name,
+                      (contender == usual ? usual : "any method, auto") + " / our best",
+                      {default_bar, false},
+                      error,
+                      ratio(winner),
+                      names(winner)});
     }
   }
 }
 
 /// On peer-edge times are per simulated second and errors in metres.
-void add_peer_bars(TableBuilder& table, const SceneTrials& scene) {
+void add_peer_bars(BarRows& rows, const SceneTrials& scene) {
   const Winners winners(scene);
   const double end = scene.problem.times.back();
   const auto seconds = [&](const Winner& winner) { return winner ? std::optional(1e-3 * winner.time / end) : std::nullopt; };
   for (const PeerBar& bar : peer_bars) {
     const Winner best = winners.of(bar.contender, bar.error);
-    add_bar(table, scene, fmt::format("{} [s per simulated second]", bar.contender), {bar.seconds, false}, bar.error,
-            seconds(best), best.name());
+    rows.push_back({scene.problem.name,
+                    fmt::format("{} [s per simulated second]", bar.contender),
+                    {bar.seconds, false},
+                    bar.error,
+                    seconds(best),
+                    best.name()});
   }
 }
 
 }  // namespace
 
 results::Table bars_table(const std::vector<SceneTrials>& scenes) {
-  TableBuilder table("bars", "What was asked for");
+  BarRows rows;
   const std::string usual = usual_choice(scenes);
   for (const SceneTrials& scene : scenes) {
-    if (is_about_peers(scene)) add_search_bar(table, scene);
+    if (is_about_peers(scene)) add_search_bar(rows, scene);
     if (!is_peer_edge(scene))
-      add_bars(table, scene, usual);
+      add_bars(rows, scene, usual);
     else if (scene.problem.scene.sheet.grid.nu == 100)
-      add_peer_bars(table, scene);
+      add_peer_bars(rows, scene);
   }
-  return table.finish();
+  return results::make_table("bars", "What was asked for", bar_row_columns, rows);
 }
 
 }  // namespace drape::bench

@@ -31,17 +31,15 @@ std::vector<Quickest> quickest_on(const SceneTrials& scene) {
   return all;
 }
 
-using Row = const Quickest&;
-
 constexpr ColumnOf<Quickest> quickest_columns[] = {
     {"scene", "scene", "", "its name", Role::key, field<&Quickest::scene>},
     {"error", "error <=", "1", "over the size of the scene", Role::key, field<&Quickest::error>},
-    {"ours", "our quickest", "", "with that error", Role::note, [](Row row) -> Cell { return row.ours.name(); }},
-    {"ours_ms", "time", "ms", "its median CPU time", Role::time, [](Row row) -> Cell { return row.ours.time; }},
+    {"ours", "our quickest", "", "with that error", Role::note, [](const Quickest& row) -> Cell { return row.ours.name(); }},
+    {"ours_ms", "time", "ms", "its median CPU time", Role::time, [](const Quickest& row) -> Cell { return row.ours.time; }},
     {"peer", "SUNDIALS, tuned", "", "its quickest with that error", Role::note,
-     [](Row row) { return row.sundials ? Cell(row.sundials.name()) : Cell(); }},
+     [](const Quickest& row) { return row.sundials ? Cell(row.sundials.name()) : Cell(); }},
     {"ratio", "slower by", "1", "time of SUNDIALS over that of our quickest", Role::time,
-     [](Row row) { return row.sundials ? Cell(row.ratio()) : Cell(); }},
+     [](const Quickest& row) { return row.sundials ? Cell(row.ratio()) : Cell(); }},
 };
 
 /// Of the ratios on a scene.

@@ -15,7 +15,7 @@
 #include "reference/reference.hpp"
 #include "reference/sundials/arkode.hpp"
 #include "results/analysis/ranking.hpp"
-#include "results/table_builder.hpp"
+#include "results/columns.hpp"
 #include "solver/base/largest.hpp"
 
 namespace drape::bench {
@@ -168,17 +168,24 @@ results::Table try_scene(const Entry& entry, const Methods& methods, All& all, C
   return trials_table(scene);
 }
 
+/// A method that is not tried on a scene.
+struct Absent {
+  std::string scene, method, reason;
+};
+
+constexpr results::ColumnOf<Absent> absent_columns[] = {
+    {"scene", "scene", "", "its name", results::Role::key, results::field<&Absent::scene>},
+    {"method", "method", "", "time integrator", results::Role::key, results::field<&Absent::method>},
+    {"reason", "reason", "", "why it was not tried", results::Role::note, results::field<&Absent::reason>},
+};
+
 /// Our methods that are not tried, so that nobody takes their absence for a defeat.
 results::Table left_out_table(const std::vector<Entry>& list, const Methods& methods) {
-  results::TableBuilder table("left-out", "Methods that were not tried");
+  std::vector<Absent> rows;
   for (const Entry& entry : list)
-    for (const LeftOut& left : left_out(entry.scene, entry.search, methods)) {
-      table.row();
-      table.text("scene", "scene", "its name", entry.name);
-      table.text("method", "method", "time integrator", std::string(left.method->name));
-      table.text("reason", "reason", "why it was not tried", left.reason);
-    }
-  return table.finish();
+    for (const LeftOut& left : left_out(entry.scene, entry.search, methods))
+      rows.push_back({entry.name, std::string(left.method->name), left.reason});
+  return results::make_table("left-out", "Methods that were not tried", absent_columns, rows);
 }
 
 std::vector<TableJob> jobs(const std::vector<Entry>& list, const Methods& methods, bool with_bars = false) {
@@ -193,7 +200,7 @@ std::vector<TableJob> jobs(const std::vector<Entry>& list, const Methods& method
     jobs.push_back({0, [=](Checkpoint&) { return table(*all); }});
   if (list.size() > 1) jobs.push_back({0, [=](Checkpoint&) { return ranking_table(*all); }});
   if (with_bars) jobs.push_back({0, [=](Checkpoint&) { return bars_table(*all); }});
-  if (const results::Table table = left_out_table(list, methods); !table.columns.empty())
+  if (const results::Table table = left_out_table(list, methods); results::rows(table) > 0)
     jobs.push_back({0, [=](Checkpoint&) { return table; }});
   return jobs;
 }
