@@ -44,7 +44,7 @@ struct ColumnOf {
 
 /// What columns of several groups differ in: it stands for "{}" in their names, titles and descriptions.
 struct ColumnGroup {
-  std::string_view name, title, description;
+  std::string_view name = {}, title = {}, description = {};
 };
 
 namespace detail {

@@ -1,5 +1,7 @@
 #include "solver/methods.hpp"
 
+#include <algorithm>
+
 #include "solver/base/registry.hpp"
 
 namespace drape::solver {
@@ -118,6 +120,11 @@ std::span<const Method> methods() {
        .meets_obstacles = false},
   };
   return table;
+}
+
+std::span<const Method> thesis_methods() {
+  const auto all = methods();
+  return all.first(static_cast<std::size_t>(std::ranges::find(all, false, &Method::in_thesis) - all.begin()));
 }
 
 const Method& method(std::string_view name) { return base::find_named(methods(), "method", name); }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <ranges>
 #include <span>
 #include <string>
 #include <string_view>
@@ -30,7 +29,7 @@ struct Method {
 std::span<const Method> methods();
 
 /// The thesis' methods, and velocity Verlet.
-inline auto thesis_methods() { return methods() | std::views::filter(&Method::in_thesis); }
+std::span<const Method> thesis_methods();
 
 /// The method with this name. Throws std::invalid_argument, naming all that there are.
 const Method& method(std::string_view name);

@@ -11,6 +11,7 @@
 #include "bench/runs/run.hpp"
 #include "bench/runs/table_jobs.hpp"
 #include "bench/studies/method_check.hpp"
+#include "results/verdict.hpp"
 
 namespace drape::bench {
 namespace {
@@ -35,15 +36,16 @@ std::string text(const Table& table, std::string_view column, std::size_t row) {
 }
 
 /// The last row has the order.
-bool has_declared_order(const Table& order) { return text(order, "verdict", rows(order) - 1).ends_with("as declared"); }
+bool has_declared_order(const Table& order) {
+  return results::standing(text(order, "verdict", rows(order) - 1)) == results::Standing::met;
+}
 
-std::string order_lines(const Table& order) {
+std::string order_lines(const Table& order, int declared) {
   const std::size_t last = rows(order) - 1;
   const double fitted = number(order, "fitted_order", last);
   return fmt::format("order      {} (declared {}): {}\n           {};\n           {} steps, {:g} to {:.2g} s\n",
-                     std::isnan(fitted) ? "none" : fmt::format("{:.2f}", fitted), number(order, "declared", last),
-                     text(order, "verdict", last), order.description, rows(order), number(order, "step", 0),
-                     number(order, "step", last));
+                     std::isnan(fitted) ? "none" : fmt::format("{:.2f}", fitted), declared, text(order, "verdict", last),
+                     order.description, rows(order), number(order, "step", 0), number(order, "step", last));
 }
 
 std::string seconds(double value) { return std::isnan(value) ? "none" : fmt::format("{:.3g} s", value); }
@@ -90,8 +92,8 @@ std::string cost_lines(const Table& cost) {
                      "error at most", head, lines);
 }
 
-std::string summary(const std::string& method, const std::vector<Table>& tables) {
-  return fmt::format("{}\n\n{}{}{}{}", method, order_lines(named(tables, "check-order")),
+std::string summary(const std::string& name, const solver::Method& method, const std::vector<Table>& tables) {
+  return fmt::format("{}: {}\n\n{}{}{}{}", name, method.description, order_lines(named(tables, "check-order"), method.order),
                      stability_lines(named(tables, "check-stability")), energy_lines(named(tables, "check-energy")),
                      cost_lines(named(tables, "check-cost")));
 }
@@ -103,7 +105,7 @@ int check(const CheckArguments& a) {
   options.out = out_file(a.output, "check");
   std::vector<Table> tables = compute(check_jobs(a.method), hash_of("check " + a.method), options);
   if (a.output.format == "table")
-    fmt::print("{}", summary(fmt::format("{}: {}", a.method, cell.method->description), tables));
+    fmt::print("{}", summary(a.method, *cell.method, tables));
   else
     print_tables(tables, a.output.format);
   say_where(options.out, a.output.format);

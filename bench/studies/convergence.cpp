@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <memory>
 
@@ -13,7 +15,7 @@
 #include "reference/exact/tension.hpp"
 #include "reference/sundials/kinsol.hpp"
 #include "results/analysis/order_fit.hpp"
-#include "results/table_builder.hpp"
+#include "results/verdict.hpp"
 
 namespace drape::bench {
 namespace {
@@ -152,9 +154,9 @@ void hold_still(std::vector<solver::Pin>& pins, int particles, int coordinate) {
 
 /// Distances [m] of the equilibrium from the exact one.
 struct Errors {
-  double rms = 0, maximum = 0;  ///< the mean weighted with dual cells: the L2 norm
-  double residual = 0;          ///< [N]
-  std::string remark = {};      ///< why there is no number
+  std::optional<double> rms = {}, maximum = {};  ///< the mean weighted with dual cells: the L2 norm
+  std::optional<double> residual = {};           ///< [N]
+  std::optional<std::string> remark = {};        ///< why there is no number
 };
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Errors, rms, maximum, residual, remark)
 
@@ -186,50 +188,76 @@ Errors errors(const Experiment& experiment, int n) {
   }
 }
 
-/// What all rows of a table have in common, in words of a verdict.
+/// The verdict on a curve; empty if nothing is declared and an order is to be seen.
 std::string conclusion(const Experiment& experiment, const std::optional<results::OrderFit>& fit, double finest_error) {
   constexpr double round_off = 1e-10;
-  if (experiment.order == 0) return finest_error <= round_off ? "exact as declared" : "NOT exact";
-  if (std::isnan(experiment.order)) return fit ? "" : "no order to be seen";
-  return results::verdict(fit, experiment.order);
+  if (experiment.order == 0)
+    return finest_error <= round_off ? results::verdict(results::Standing::met, "exact as declared")
+                                     : results::verdict(results::Standing::missed, "not exact");
+  return std::isnan(experiment.order) && fit ? "" : results::order_verdict(fit, experiment.order);
 }
 
+/// An experiment at one resolution.
+struct Equilibrium {
+  std::string experiment, form;
+  int n;
+  Errors errors;
+  std::optional<double> order;
+  double uncertainty;
+  std::optional<results::FittedCurve> curve;  ///< of all resolutions, with the last
+};
+
+template <auto member>
+constexpr auto of_errors = [](const Equilibrium& row) { return results::to_cell(row.errors.*member); };
+
+using results::Role;
+constexpr results::ColumnOf<Equilibrium> equilibrium_columns[] = {
+    {"experiment", "experiment", "", "which, with what differs from the scene of that name", Role::key,
+     results::field<&Equilibrium::experiment>},
+    {"form", "form", "", "of the forces: consistent, or as the algorithms of the thesis print them", Role::key,
+     results::field<&Equilibrium::form>},
+    {"n", "n", "1", "particles in one direction", Role::key, results::field<&Equilibrium::n>},
+    {"rms", "rms error", "m", "root mean square distance of the nodes from the exact equilibrium (L2)", Role::error,
+     of_errors<&Errors::rms>},
+    {"maximum", "maximum", "m", "largest distance", Role::error, of_errors<&Errors::maximum>},
+    {"order", "order", "1", "between this resolution and the one before, of the rms error", Role::note,
+     results::field<&Equilibrium::order>},
+    {"residual", "", "N", "largest force that was left", Role::note, of_errors<&Errors::residual>},
+    {"remark", "remark", "", "why there is no number", Role::note, of_errors<&Errors::remark>},
+    {"uncertainty", "", "m", "of the exact solution", Role::uncertainty, results::field<&Equilibrium::uncertainty>},
+};
+
 /// The curve of one experiment, and its order.
+std::vector<Equilibrium> curve(const Experiment& experiment, const std::vector<int>& resolutions, Checkpoint& checkpoint) {
+  std::vector<Equilibrium> all;
+  std::vector<double> spacings, rms;
+  for (const int n : resolutions) {
+    checkpoint.show(fmt::format("{}, {}, {} × {}", experiment.name, experiment.form, n, n));
+    Equilibrium& row = all.emplace_back(Equilibrium{experiment.name, experiment.form, n, {}, {}, experiment.uncertainty, {}});
+    if (n <= experiment.finest)
+      row.errors =
+          checkpoint.once(fmt::format("{} {} {}", experiment.name, experiment.form, n), [&] { return errors(experiment, n); });
+    if (row.errors.rms) {
+      if (!rms.empty()) row.order = std::log(rms.back() / *row.errors.rms) / std::log(spacings.back() * (n - 1));
+      rms.push_back(*row.errors.rms);
+      spacings.push_back(1.0 / (n - 1));
+    }
+    checkpoint.advance();
+  }
+  const auto fit = results::fit_order(spacings, rms, experiment.uncertainty);
+  all.back().curve = {fit, conclusion(experiment, fit, rms.empty() ? NAN : rms.back())};
+  return all;
+}
+
 results::Table figure(const std::string& name, const std::string& title, const std::vector<Experiment>& experiments,
                       const std::vector<int>& resolutions, Checkpoint& checkpoint) {
-  results::TableBuilder table(name, title);
-  for (const Experiment& experiment : experiments) {
-    std::vector<double> spacings, rms;
-    for (const int n : resolutions) {
-      checkpoint.show(fmt::format("{}, {}, {} × {}", experiment.name, experiment.form, n, n));
-      table.row();
-      table.text("experiment", "experiment", "which, with what differs from the scene of that name", experiment.name);
-      table.text("form", "form", "of the forces: consistent, or as the algorithms of the thesis print them", experiment.form);
-      table.count("n", "n", "particles in one direction", n);
-      if (n <= experiment.finest) {
-        const Errors e = checkpoint.once(fmt::format("{} {} {}", experiment.name, experiment.form, n),
-                                         [&] { return errors(experiment, n); });
-        if (e.remark.empty()) {
-          table.number("rms", "rms error", "m", "root mean square distance of the nodes from the exact equilibrium (L2)",
-                       e.rms);
-          table.number("maximum", "maximum", "m", "largest distance", e.maximum);
-          if (!rms.empty())
-            table.number("order", "order", "1", "between this resolution and the one before, of the rms error",
-                         std::log(rms.back() / e.rms) / std::log(spacings.back() * (n - 1)));
-          table.number("residual", "", "N", "largest force that was left", e.residual);
-          rms.push_back(e.rms);
-          spacings.push_back(1.0 / (n - 1));
-        } else {
-          table.text("remark", "remark", "why there is no number", e.remark);
-        }
-      }
-      table.number("uncertainty", "", "m", "of the exact solution", experiment.uncertainty);
-      checkpoint.advance();
-    }
-    const auto fit = results::fit_order(spacings, rms, experiment.uncertainty);
-    results::add_fit(table, fit, conclusion(experiment, fit, rms.empty() ? NAN : rms.back()));
-  }
-  return table.finish();
+  std::vector<Equilibrium> rows;
+  for (const Experiment& experiment : experiments)
+    std::ranges::move(curve(experiment, resolutions, checkpoint), std::back_inserter(rows));
+  results::Table table = results::make_table(name, title, equilibrium_columns, rows);
+  results::add_columns(table, results::fit_columns, rows, std::mem_fn(&Equilibrium::curve));
+  table.figure = results::Figure::convergence;
+  return table;
 }
 
 }  // namespace

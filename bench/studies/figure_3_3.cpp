@@ -8,7 +8,8 @@
 #include "bench/studies/studies.hpp"
 #include "bench/studies/trial.hpp"
 #include "model/scene_file/scene_file.hpp"
-#include "results/table_builder.hpp"
+#include "results/columns.hpp"
+#include "results/verdict.hpp"
 #include "solver/base/decompositions.hpp"
 
 namespace drape::bench {
@@ -127,15 +128,55 @@ Specimen predicted_sbdf2(Specimen sheet) {
   return sheet;
 }
 
-void add_lags(results::TableBuilder& table, const char* method, double measured, double predicted) {
-  table.number(fmt::format("lag_{}", method).c_str(), method, "s", "by which the centre of mass is behind that of BDF(2)",
-               measured);
-  table.number(fmt::format("predicted_{}", method).c_str(), "predicted", "s",
-               "the same of the true motion with artificial inertia M - h² K (SBDF) or damping d + h k (IMEX Euler)",
-               predicted);
-}
+/// By how much a method is behind, measured and predicted [s].
+struct Lag {
+  double measured, predicted;
 
-void add_row(results::TableBuilder& table, double nu, double ratio) {
+  /// In the lag, and in the way that is left to the end.
+  bool is_as_predicted(double end) const {
+    return std::abs(measured - predicted) <= lag_agreement * std::min(predicted, end - predicted);
+  }
+};
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Lag, measured, predicted)
+
+/// How far the semi-implicit methods lag on one sheet.
+struct Lags {
+  double nu, ratio, inertia, t, sunk;
+  Lag sbdf2, imex_euler;
+};
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Lags, nu, ratio, inertia, t, sunk, sbdf2, imex_euler)
+
+using results::Role;
+constexpr results::ColumnOf<Lags> lags_columns[] = {
+    {"stiffness", "ν_h", "1", "h² k/(ρ l²); the thesis' figure 3.3 has 5000", Role::key, results::field<&Lags::nu>},
+    {"to_damping", "h k/d", "1", "artificial damping of IMEX Euler over the cloth's own", Role::key,
+     results::field<&Lags::ratio>},
+    {"inertia", "inertia", "1", "artificial over true moment of inertia of the swinging sheet, 3 h² k/(ρ L²)", Role::quantity,
+     results::field<&Lags::inertia>},
+    {"t", "t", "s", "when they are compared: BDF(2) has sunk by a quarter of the side, or a second is over", Role::quantity,
+     results::field<&Lags::t>},
+    {"sunk", "sunk", "m", "BDF(2)'s centre of mass until then", Role::quantity, results::field<&Lags::sunk>},
+};
+
+constexpr results::ColumnOf<Lag> lag_columns[] = {
+    {"lag_{}", "{}", "s", "by which the centre of mass is behind that of BDF(2)", Role::quantity,
+     results::field<&Lag::measured>},
+    {"predicted_{}", "predicted", "s",
+     "the same of the true motion with artificial inertia M - h² K (SBDF) or damping d + h k (IMEX Euler)", Role::quantity,
+     results::field<&Lag::predicted>},
+};
+
+constexpr results::ColumnOf<Lags> lags_verdict[] = {
+    {"verdict", "verdict", "", "whether both lags, and what they leave of t, are within a tenth of what is predicted",
+     Role::verdict,
+     [](const Lags& row) -> results::Cell {
+       return row.sbdf2.is_as_predicted(row.t) && row.imex_euler.is_as_predicted(row.t)
+                  ? results::verdict(results::Standing::met, "as predicted")
+                  : results::verdict(results::Standing::missed, "not as predicted");
+     }},
+};
+
+Lags lags(double nu, double ratio) {
   const model::Sheet sheet = model::load_scene("hung-edge").sheet;
   const model::Grid& grid = sheet.grid;
   const double rho = sheet.material.density, l = grid.spacing_v(), L = grid.size_v, h = lag_step;
@@ -144,23 +185,13 @@ void add_row(results::TableBuilder& table, double nu, double ratio) {
   Fall bdf2 = fall(cloth, "bdf2", longest);
   const double end = h * std::ceil(bdf2.time_of(L / 4) / h - 1e-9);
   bdf2.sunk.resize(static_cast<std::size_t>(std::lround(end / h)) + 1);
-  const double sbdf2 = lag(bdf2, fall(cloth, "sbdf2", end)), imex_euler = lag(bdf2, fall(cloth, "imex-euler", end));
-  const double inertia = lag(bdf2, fall(predicted_sbdf2(cloth), "verlet", end, 20));
-  const double damping = lag(bdf2, fall(strip(grid, k, d + h * k), "bdf2", end));
-  table.row();
-  table.number("stiffness", "ν_h", "1", "h² k/(ρ l²); the thesis' figure 3.3 has 5000", nu);
-  table.number("to_damping", "h k/d", "1", "artificial damping of IMEX Euler over the cloth's own", ratio);
-  table.number("inertia", "inertia", "1", "artificial over true moment of inertia of the swinging sheet, 3 h² k/(ρ L²)",
-               3 * h * h * k / (rho * L * L));
-  table.number("t", "t", "s", "when they are compared: BDF(2) has sunk by a quarter of the side, or a second is over", end);
-  table.number("sunk", "sunk", "m", "BDF(2)'s centre of mass until then", bdf2.sunk.back());
-  add_lags(table, "sbdf2", sbdf2, inertia);
-  add_lags(table, "imex-euler", imex_euler, damping);
-  const auto near = [end](double measured, double predicted) {  // in the lag, and in the way that is left
-    return std::abs(measured - predicted) <= lag_agreement * std::min(predicted, end - predicted);
-  };
-  table.text("verdict", "verdict", "whether both lags, and what they leave of t, are within a tenth of what is predicted",
-             near(sbdf2, inertia) && near(imex_euler, damping) ? "as predicted" : "NOT as predicted");
+  return {.nu = nu,
+          .ratio = ratio,
+          .inertia = 3 * h * h * k / (rho * L * L),
+          .t = end,
+          .sunk = bdf2.sunk.back(),
+          .sbdf2 = {lag(bdf2, fall(cloth, "sbdf2", end)), lag(bdf2, fall(predicted_sbdf2(cloth), "verlet", end, 20))},
+          .imex_euler = {lag(bdf2, fall(cloth, "imex-euler", end)), lag(bdf2, fall(strip(grid, k, d + h * k), "bdf2", end))}};
 }
 
 }  // namespace
@@ -169,16 +200,21 @@ std::vector<TableJob> figure_3_3(bool quick) {
   const std::vector<double> stiffnesses = quick ? std::vector{1e2, 1e4} : std::vector{1e2, 1e3, 5e3, 1e4, 1e5};
   const std::vector<double> ratios = quick ? std::vector{1.0, 100.0} : std::vector{1.0, 10.0, 100.0, 1000.0};
   return {{static_cast<int>(stiffnesses.size() * ratios.size()), [=](Checkpoint& checkpoint) {
-             results::TableBuilder table("figure-3.3",
-                                         "Figure 3.3: by what time semi-implicit methods lag behind BDF(2), h = 0.01 s");
+             std::vector<Lags> rows;
              for (const double nu : stiffnesses)
                for (const double ratio : ratios) {
                  checkpoint.show(fmt::format("ν = {}, h k/d = {}", nu, ratio));
-                 checkpoint.rows(table, fmt::format("{} {}", nu, ratio),
-                                 [&](results::TableBuilder& row) { add_row(row, nu, ratio); });
+                 rows.push_back(checkpoint.once(fmt::format("{} {}", nu, ratio), [&] { return lags(nu, ratio); }));
                  checkpoint.advance();
                }
-             return table.finish();
+             results::Table table = results::make_table(
+                 "figure-3.3", "Figure 3.3: by what time semi-implicit methods lag behind BDF(2), h = 0.01 s", lags_columns,
+                 rows);
+             const auto of = [](Lag Lags::*method) { return [method](const Lags& row) { return &(row.*method); }; };
+             results::add_columns(table, lag_columns, rows, of(&Lags::sbdf2), {"sbdf2", "sbdf2"});
+             results::add_columns(table, lag_columns, rows, of(&Lags::imex_euler), {"imex-euler", "imex-euler"});
+             results::add_columns(table, lags_verdict, rows);
+             return table;
            }}};
 }
 

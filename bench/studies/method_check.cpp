@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "bench/runs/certified_reference.hpp"
 #include "bench/runs/record.hpp"
@@ -12,11 +13,13 @@
 #include "bench/studies/work_precision/work_precision.hpp"
 #include "model/scene_file/scene_file.hpp"
 #include "reference/theory/linear_prediction.hpp"
+#include "results/verdict.hpp"
 
 namespace drape::bench {
 namespace {
 
-using results::TableBuilder;
+using results::Role;
+using results::Standing;
 
 /// Methods that everybody knows.
 constexpr const char* neighbours[] = {"bdf2", "midpoint", "implicit-euler", "verlet"};
@@ -29,14 +32,11 @@ results::Table order(const std::string& method, Checkpoint& checkpoint) {
   References references(1e-7, {}, 1e-12);
   const reference::Reference reference = references(scene, cloth);
   checkpoint.show(fmt::format("order of {}", method));
-  TableBuilder table("check-order", fmt::format("Order of {} on a soft sheet, {:g} s", method, scene.end));
-  checkpoint.rows(table, method, [&](TableBuilder& rows) {
-    const RunSpec cell = tight(scene, method);
-    add_refinement(rows, cell, method, cloth, reference, most_work);
-    rows.count("declared", "declared", "order of the method's row", cell.method->order);
-  });
+  const RunSpec cell = tight(scene, method);
+  auto runs = checkpoint.once(method, [&] { return refine(cell, method, cloth, reference, most_work); });
+  fit_curve(runs, cell.method->order);
   checkpoint.advance();
-  return table.finish();
+  return refinement_table("check-order", fmt::format("Order of {} on a soft sheet, {:g} s", method, scene.end), runs);
 }
 
 /// What linear theory says of steps up to the horizon.
@@ -47,30 +47,47 @@ std::string theory_of(const solver::Method& method, double h, double k, double d
   return std::pow(prediction->radius, horizon / h) < 10 ? "stable" : "unstable";
 }
 
+/// Up to what steps a method is stable.
+struct Usable {
+  double damping;
+  LargestSteps largest;
+  std::string theory;
+};
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Usable, damping, largest, theory)
+
+constexpr results::ColumnOf<Usable> damping_columns[] = {
+    {"damping", "d", "N s/m", "damping, linear", Role::key, results::field<&Usable::damping>},
+};
+constexpr results::ColumnOf<Usable> usable_columns[] = {
+    {"theory", "in theory", "", "linear theory of the largest of all steps", Role::note, results::field<&Usable::theory>},
+    {"verdict", "verdict", "", "up to what steps it is stable", Role::verdict,
+     [](const Usable& row) -> results::Cell {
+       if (row.largest.stable == 0) return results::verdict(Standing::missed, "not stable");
+       return row.largest.stable == horizon ? "no limit seen" : "limited";
+     }},
+};
+
 results::Table stability_of(const std::string& method, Checkpoint& checkpoint) {
   constexpr double k = 1e4;
   RunSpec cell{smooth_scene(), "", nullptr, 0, {}};
   choose_method(cell, method);
-  TableBuilder table("check-stability",
-                     fmt::format("Largest usable steps of {} on 10 x 10 particles hung by two corners, k = {:g}", method, k));
+  std::vector<Usable> rows;
   for (const double d : {50.0, 0.5}) {
     checkpoint.show(fmt::format("largest steps of {}, d = {:g}", method, d));
-    checkpoint.rows(table, fmt::format("{:g}", d), [&](TableBuilder& rows) {
+    rows.push_back(checkpoint.once(fmt::format("{:g}", d), [&] {
       const Specimen specimen = hung_by_corners(10, k, d);
-      rows.row();
-      rows.number("damping", "d", "N s/m", "damping, linear", d);
-      const LargestSteps largest =
-          largest_steps(specimen, CrossCheckedReference(specimen, horizon), *cell.method, cell.options);
-      add_largest(rows, largest);
-      rows.text("theory", "in theory", "linear theory of the largest of all steps", theory_of(*cell.method, horizon, k, d));
-      rows.text("verdict", "verdict", "up to what steps it is stable",
-                largest.stable == horizon ? "no limit seen"
-                : largest.stable > 0      ? "limited"
-                                          : "NOT stable");
-    });
+      return Usable{d, largest_steps(specimen, CrossCheckedReference(specimen, horizon), *cell.method, cell.options),
+                    theory_of(*cell.method, horizon, k, d)};
+    }));
     checkpoint.advance();
   }
-  return table.finish();
+  results::Table table = results::make_table(
+      "check-stability",
+      fmt::format("Largest usable steps of {} on 10 x 10 particles hung by two corners, k = {:g}", method, k), damping_columns,
+      rows);
+  results::add_columns(table, largest_columns, rows, [](const Usable& row) { return &row.largest; });
+  results::add_columns(table, usable_columns, rows);
+  return table;
 }
 
 /// Energies along a run over the largest kinetic one, less that at the start.
@@ -83,34 +100,53 @@ std::vector<double> energy_changes(const results::RunRecord& run, const model::C
   return changes;
 }
 
-results::Table energy(const std::string& method, Checkpoint& checkpoint) {
+/// What a run makes of the energy.
+struct EnergyChange {
+  double step;
+  solver::Outcome outcome;
+  std::optional<double> change, gain;
+};
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(EnergyChange, step, outcome, change, gain)
+
+std::string energy_verdict(const EnergyChange& row) {
   constexpr double small = 1e-2;  // part of the kinetic energy
+  if (!row.change) return results::verdict(Standing::missed, "not finished");
+  if (*row.gain > small) return "gains energy";
+  return *row.change < -small ? "loses energy" : "keeps energy";
+}
+
+constexpr results::ColumnOf<EnergyChange> energy_columns[] = {
+    {"step", "h", "s", "step", Role::key, results::field<&EnergyChange::step>},
+    {"outcome", "outcome", "", "how the run ended", Role::note, results::field<&EnergyChange::outcome>},
+    {"change", "change", "1", "of the energy up to the end, over the largest kinetic energy", Role::quantity,
+     results::field<&EnergyChange::change>},
+    {"gain", "gain", "1", "the most that it was above that of the start", Role::quantity, results::field<&EnergyChange::gain>},
+    {"verdict", "verdict", "", "what becomes of the energy", Role::verdict,
+     [](const EnergyChange& row) { return results::to_cell(energy_verdict(row)); }},
+};
+
+results::Table energy(const std::string& method, Checkpoint& checkpoint) {
   const model::Scene scene = model::load_scene(
       "hung-corners", std::vector<model::Override>{{"grid.n", "10"}, {"material.damping", "0"}, {"end.time", "1"}});
   const model::Cloth cloth = model::compile(scene);
-  TableBuilder table("check-energy", fmt::format("Energy of an undamped sheet by {}, {:g} s", method, scene.end));
+  std::vector<EnergyChange> rows;
   for (const double h : {0.01, 0.0025}) {
     checkpoint.show(fmt::format("energy of {}, h = {:g}", method, h));
-    checkpoint.rows(table, fmt::format("{:g}", h), [&](TableBuilder& rows) {
+    rows.push_back(checkpoint.once(fmt::format("{:g}", h), [&] {
       RunSpec cell{scene, "", nullptr, h, {}};
       choose_method(cell, method);
       const results::RunRecord run = record(cell);
-      rows.row();
-      rows.number("step", "h", "s", "step", h);
-      rows.text("outcome", "outcome", "how the run ended", std::string(to_string(run.outcome)));
-      if (run.outcome != solver::Outcome::success) return rows.text("verdict", "verdict", "what", "NOT finished");
+      EnergyChange row{h, run.outcome, {}, {}};
+      if (run.outcome != solver::Outcome::success) return row;
       const std::vector<double> changes = energy_changes(run, cloth);
-      const double gain = std::ranges::max(changes), end = changes.back();
-      rows.number("change", "change", "1", "of the energy up to the end, over the largest kinetic energy", end);
-      rows.number("gain", "gain", "1", "the most that it was above that of the start", gain);
-      rows.text("verdict", "verdict", "what becomes of the energy",
-                gain > small   ? "gains energy"
-                : end < -small ? "loses energy"
-                               : "keeps energy");
-    });
+      row.gain = std::ranges::max(changes);
+      row.change = changes.back();
+      return row;
+    }));
     checkpoint.advance();
   }
-  return table.finish();
+  return results::make_table("check-energy", fmt::format("Energy of an undamped sheet by {}, {:g} s", method, scene.end),
+                             energy_columns, rows);
 }
 
 /// Trials of all that are compared, timed near their fronts.
@@ -143,6 +179,34 @@ const Trial* quickest_of(const Contender& contender, const std::vector<Trial>& t
   return best ? &trials[contender.members[*best]] : nullptr;
 }
 
+/// What an error costs at least.
+struct Cost {
+  std::string method;
+  double wanted;
+  const Trial* best;  ///< null if the method does not reach the error
+
+  double quartile(double results::Quartiles::*which) const { return results::quartiles(best->measured.times).*which; }
+};
+
+constexpr results::ColumnOf<Cost> cost_columns[] = {
+    {"method", "method", "", "time integrator", Role::key, results::field<&Cost::method>},
+    {"wanted", "error", "1", "at most, over the scene's size", Role::key, results::field<&Cost::wanted>},
+};
+
+/// Of those that reach it. Who is the quickest depends on times, and so does all that is said of him.
+constexpr results::ColumnOf<Cost> best_columns[] = {
+    {"control", "h", "s", "step, or fraction of the stability limit, that is the quickest", Role::time,
+     [](const Cost& row) { return results::to_cell(row.best->configuration().value); }},
+    {"error", "", "1", "its error", Role::time, [](const Cost& row) { return results::to_cell(row.best->measured.error); }},
+    {"time", "time", "ms", "median wall time", Role::time,
+     [](const Cost& row) { return results::to_cell(row.quartile(&results::Quartiles::median)); }},
+    {"lower", "", "ms", "lower quartile", Role::time,
+     [](const Cost& row) { return results::to_cell(row.quartile(&results::Quartiles::lower)); }},
+    {"upper", "", "ms", "upper quartile", Role::time,
+     [](const Cost& row) { return results::to_cell(row.quartile(&results::Quartiles::upper)); }},
+    {"forces", "forces", "1", "evaluations", Role::time, [](const Cost& row) { return results::to_cell(row.best->forces); }},
+};
+
 results::Table cost(const std::string& method, Checkpoint& checkpoint) {
   const model::Scene scene = model::load_scene(
       "hung-corners", std::vector<model::Override>{{"grid.n", "10"}, {"material.damping", "5"}, {"end.time", "0.3"}});
@@ -151,26 +215,16 @@ results::Table cost(const std::string& method, Checkpoint& checkpoint) {
   all.problem.asked = {1e-2, 1e-3, 1e-4};
   all.problem.enough = 5e-5;
   compare(all, method, checkpoint);
-  TableBuilder table(
-      "check-cost",
-      fmt::format("Cost of {} beside others on 10 x 10 particles hung by two corners, d = 5, {:g} s", method, scene.end));
+  std::vector<Cost> rows;
   for (const Contender& contender : all.contenders)
-    for (const double error : all.problem.asked) {
-      table.row();
-      table.text("method", "method", "time integrator", contender.name);
-      table.number("wanted", "error", "1", "at most, over the scene's size", error);
-      const Trial* best = quickest_of(contender, all.trials, error);
-      if (best == nullptr) continue;
-      const auto q = results::quartiles(best->measured.times);
-      table.number("control", "h", "s", "step, or fraction of the stability limit, that is the quickest",
-                   best->configuration().value);
-      table.number("error", "", "1", "its error", best->measured.error);
-      table.number("time", "time", "ms", "median wall time", q.median);
-      table.number("lower", "", "ms", "lower quartile", q.lower);
-      table.number("upper", "", "ms", "upper quartile", q.upper);
-      table.count("forces", "forces", "evaluations", best->forces);
-    }
-  return table.finish();
+    for (const double error : all.problem.asked)
+      rows.push_back({contender.name, error, quickest_of(contender, all.trials, error)});
+  results::Table table = results::make_table(
+      "check-cost",
+      fmt::format("Cost of {} beside others on 10 x 10 particles hung by two corners, d = 5, {:g} s", method, scene.end),
+      cost_columns, rows);
+  results::add_columns(table, best_columns, rows, [](const Cost& row) { return row.best == nullptr ? nullptr : &row; });
+  return table;
 }
 
 }  // namespace

@@ -1,12 +1,15 @@
 #include <fmt/format.h>
 
-#include <array>
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
+#include <optional>
 
 #include "bench/studies/studies.hpp"
 #include "reference/theory/amplification.hpp"
-#include "results/table_builder.hpp"
+#include "results/columns.hpp"
+#include "results/verdict.hpp"
 
 namespace drape::bench {
 namespace {
@@ -53,135 +56,179 @@ std::vector<double> stiffnesses(bool quick) {
   return {1e-2, 1e-1, 1, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6};
 }
 
-void add_method(results::TableBuilder& table, const Method& method) {
-  table.text("method", "method", "time integrator", std::string(method.name));
+using results::Role;
+using results::Standing;
+
+std::string as_theory(bool equal, const char* agreement) {
+  return equal ? results::verdict(Standing::met, agreement)
+               : results::verdict(Standing::missed, fmt::format("not {}", agreement));
 }
 
-void add_mode(results::TableBuilder& table, const std::string& name, const Mode& mode) {
-  table.text("mode", "mode", "what moves", name);
-  table.number("nu", "ν", "1", "h² κ: numerical stiffness of the mode, the part that the split treats implicitly", mode.nu);
-  table.number("W", "W", "1", "h² ω²", mode.W);
-  table.number("s", "h c", "1", "h times the damping rate c", mode.s);
-}
-
-void add_verdict(results::TableBuilder& table, const std::string& verdict) {
-  table.text("verdict", "verdict", "whether the running code does what theory says", verdict);
-}
-
-constexpr const char* no_theory = "no theory known";
+const std::string no_theory = results::verdict(Standing::open, "no theory known");
 
 /// What a step of the method makes of a mode, which some may fail at: then the row says why.
-template <class Measure>
-void measure(results::TableBuilder& table, const Measure& fill) {
+template <class Row, class Measure>
+Row measured(Row row, const Measure& measure) {
   try {
-    fill();
+    measure(row);
   } catch (const std::exception& error) {
-    add_verdict(table, error.what());
+    row.verdict = error.what();
   }
+  return row;
 }
 
-/// The running step against its characteristic polynomial, mode by mode.
-void amplification(results::TableBuilder& table, const Method& method, bool quick) {
+/// The running step against its characteristic polynomial.
+struct Amplified {
+  std::string method, mode;
+  double nu, W, s;
+  std::optional<double> radius, distance;
+  std::string verdict;
+};
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Amplified, method, mode, nu, W, s, radius, distance, verdict)
+
+constexpr results::ColumnOf<Amplified> amplified_columns[] = {
+    {"method", "method", "", "time integrator", Role::key, results::field<&Amplified::method>},
+    {"mode", "mode", "", "what moves", Role::key, results::field<&Amplified::mode>},
+    {"nu", "ν", "1", "h² κ: numerical stiffness of the mode, the part that the split treats implicitly", Role::key,
+     results::field<&Amplified::nu>},
+    {"W", "W", "1", "h² ω²", Role::quantity, results::field<&Amplified::W>},
+    {"s", "h c", "1", "h times the damping rate c", Role::quantity, results::field<&Amplified::s>},
+    {"radius", "|z|", "1", "largest modulus of the amplification factors", Role::quantity, results::field<&Amplified::radius>},
+    {"distance", "from theory", "1",
+     "largest difference of coefficients of the characteristic polynomial, over the largest coefficient", Role::error,
+     results::field<&Amplified::distance>},
+    {"verdict", "verdict", "", "whether the running code does what theory says", Role::verdict,
+     results::field<&Amplified::verdict>},
+};
+
+std::vector<Amplified> amplification(const Method& method, bool quick) {
   constexpr double agreement = 1e-10, far_outside = 1e3;
+  std::vector<Amplified> rows;
   for (const NamedMode& named : modes_of_the_sheet())
     for (const double nu : stiffnesses(quick)) {
       const Mode mode = at_step(named.mode, std::sqrt(nu / named.mode.kappa));
       if (method.sub_steps && std::max(mode.W, mode.s) > far_outside) continue;  // of a single sub-step
-      table.row();
-      add_method(table, method);
-      add_mode(table, named.name, mode);
-      measure(table, [&] {
-        table.number("radius", "|z|", "1", "largest modulus of the amplification factors", spectral_radius(method, mode));
-        if (!reference::has_theory(method.name)) return add_verdict(table, no_theory);
-        const double distance = distance_from_theory(method, mode, mode);
-        table.number("distance", "from theory", "1",
-                     "largest difference of coefficients of the characteristic polynomial, over the largest coefficient",
-                     distance);
-        add_verdict(table, distance <= agreement ? "as in theory" : "NOT as in theory");
-      });
+      rows.push_back(measured(Amplified{std::string(method.name), named.name, mode.nu, mode.W, mode.s, {}, {}, no_theory},
+                              [&](Amplified& row) {
+                                row.radius = spectral_radius(method, mode);
+                                if (!reference::has_theory(method.name)) return;
+                                row.distance = distance_from_theory(method, mode, mode);
+                                row.verdict = as_theory(*row.distance <= agreement, "as in theory");
+                              }));
     }
+  return rows;
 }
 
-/// Where methods become unstable: bisection on the spectral radius of the running step.
-void stability(results::TableBuilder& table, const Method& method, bool) {
-  for (const double share : {2.5, 1.5, 1.0, 0.1, 1e-3}) {
-    table.row();
-    add_method(table, method);
-    table.number("share", "ω²/κ", "1", "1 in plane, much less transversally, more than 1 with stiff explicit forces", share);
-    measure(table, [&] {
+/// Where a method becomes unstable: bisection on the spectral radius of the running step.
+struct Limit {
+  std::string method;
+  double share;
+  std::optional<double> limit, bound;
+  std::string verdict;
+};
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Limit, method, share, limit, bound, verdict)
+
+constexpr results::ColumnOf<Limit> limit_columns[] = {
+    {"method", "method", "", "time integrator", Role::key, results::field<&Limit::method>},
+    {"share", "ω²/κ", "1", "1 in plane, much less transversally, more than 1 with stiff explicit forces", Role::key,
+     results::field<&Limit::share>},
+    {"limit", "W at the limit", "1", "largest stable h² ω²; 0: none, infinite: no limit up to h ω = 1600", Role::quantity,
+     results::field<&Limit::limit>},
+    {"bound", "in theory", "1", "the same in closed form, at the ν of the limit", Role::quantity,
+     results::field<&Limit::bound>},
+    {"verdict", "verdict", "", "whether the running code does what theory says", Role::verdict,
+     results::field<&Limit::verdict>},
+};
+
+std::vector<Limit> stability(const Method& method, bool) {
+  std::vector<Limit> rows;
+  for (const double share : {2.5, 1.5, 1.0, 0.1, 1e-3})
+    rows.push_back(measured(Limit{std::string(method.name), share, {}, {}, no_theory}, [&](Limit& row) {
       const double h = reference::stability_limit(method, {1 / share, 1, 0}), W = h * h;
-      table.number("limit", "W at the limit", "1", "largest stable h² ω²; 0: none, infinite: no limit up to h ω = 1600", W);
-      if (!reference::has_theory(method.name)) return add_verdict(table, no_theory);
+      row.limit = W;
+      if (!reference::has_theory(method.name)) return;
       const double bound = reference::stability_bound(method.name, W / share, 0);
-      table.number("bound", "in theory", "1", "the same in closed form, at the ν of the limit", bound);
+      row.bound = bound;
       const bool equal = std::isinf(W) ? bound > 1e6 : std::abs(W - bound) <= 1e-6 * bound || (W == 0 && bound == 0);
-      add_verdict(table, equal ? "as in theory" : "NOT as in theory");
-    });
-  }
+      row.verdict = as_theory(equal, "as in theory");
+    }));
+  return rows;
 }
 
 /// How transverse motion lags and is damped: figure 3.3 as numbers.
-void artificial(results::TableBuilder& table, const Method& method, bool quick) {
+struct Artificial {
+  std::string method;
+  double nu;
+  std::optional<double> frequency, predicted_frequency, damping, predicted_damping, inertia;
+  std::string verdict;
+};
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Artificial, method, nu, frequency, predicted_frequency, damping, predicted_damping, inertia,
+                                   verdict)
+
+constexpr results::ColumnOf<Artificial> artificial_columns[] = {
+    {"method", "method", "", "time integrator", Role::key, results::field<&Artificial::method>},
+    {"nu", "ν", "1", "h² κ", Role::key, results::field<&Artificial::nu>},
+    {"frequency", "frequency", "1", "measured, over the true one", Role::quantity, results::field<&Artificial::frequency>},
+    {"predicted_frequency", "predicted", "1", "the same by the artificial inertia and damping", Role::quantity,
+     results::field<&Artificial::predicted_frequency>},
+    {"damping", "damping", "1", "decay of the amplitude in one true period", Role::quantity,
+     results::field<&Artificial::damping>},
+    {"predicted_damping", "predicted", "1", "the same by the artificial inertia and damping", Role::quantity,
+     results::field<&Artificial::predicted_damping>},
+    {"inertia", "inertia added", "1", "over the true one", Role::quantity, results::field<&Artificial::inertia>},
+    {"verdict", "verdict", "", "whether the running code does what theory says", Role::verdict,
+     results::field<&Artificial::verdict>},
+};
+
+std::vector<Artificial> artificial(const Method& method, bool quick) {
   constexpr double W = 1e-4, tolerance = 1e-3;
+  std::vector<Artificial> rows;
   for (const double nu : stiffnesses(quick)) {
     if (nu < W) continue;
     const Mode mode{nu, W, 0};
-    table.row();
-    add_method(table, method);
-    table.number("nu", "ν", "1", "h² κ", nu);
-    measure(table, [&] {
-      const auto measured = measured_behaviour(method, mode), exact = exact_behaviour(mode);
-      const bool known = reference::has_theory(method.name);
-      const auto predicted = known ? predicted_behaviour(method.name, mode) : reference::ModeBehaviour();
+    rows.push_back(measured(Artificial{std::string(method.name), nu, {}, {}, {}, {}, {}, no_theory}, [&](Artificial& row) {
+      const auto seen = measured_behaviour(method, mode), exact = exact_behaviour(mode);
       const double period = 2 * std::numbers::pi / exact.frequency;
-      table.number("frequency", "frequency", "1", "measured, over the true one", measured.frequency / exact.frequency);
-      if (known)
-        table.number("predicted_frequency", "predicted", "1", "the same by the artificial inertia and damping",
-                     predicted.frequency / exact.frequency);
-      table.number("damping", "damping", "1", "decay of the amplitude in one true period", measured.decay * period);
-      if (!known) return add_verdict(table, no_theory);
-      table.number("predicted_damping", "predicted", "1", "the same by the artificial inertia and damping",
-                   predicted.decay * period);
-      table.number("inertia", "inertia added", "1", "over the true one", reference::artificial(method.name, mode).inertia);
-      const double scale = std::hypot(predicted.frequency, predicted.decay);
-      const double distance = std::hypot(measured.frequency - predicted.frequency, measured.decay - predicted.decay);
-      add_verdict(table, distance <= tolerance * scale ? "as predicted" : "NOT as predicted");
-    });
+      row.frequency = seen.frequency / exact.frequency;
+      row.damping = seen.decay * period;
+      if (!reference::has_theory(method.name)) return;
+      const auto predicted = predicted_behaviour(method.name, mode);
+      row.predicted_frequency = predicted.frequency / exact.frequency;
+      row.predicted_damping = predicted.decay * period;
+      row.inertia = reference::artificial(method.name, mode).inertia;
+      const double distance = std::hypot(seen.frequency - predicted.frequency, seen.decay - predicted.decay);
+      row.verdict = as_theory(distance <= tolerance * std::hypot(predicted.frequency, predicted.decay), "as predicted");
+    }));
   }
+  return rows;
 }
 
 /// A table with some rows for each method.
-struct MethodTable {
-  const char* name;
-  const char* description;
-  void (*add_rows)(results::TableBuilder& table, const Method& method, bool quick);
-};
-
-constexpr MethodTable method_tables[] = {
-    {"amplification", "Amplification by the running code against the characteristic polynomials", amplification},
-    {"stability", "Largest stable W = h² ω² by bisection, for shares ω²/κ of the implicit part", stability},
-    {"artificial", "Artificial inertia and damping of a transverse mode, h ω = 0.01, undamped", artificial}};
-
-results::Table compute(const MethodTable& what, bool quick, const Methods& methods, Checkpoint& checkpoint) {
-  results::TableBuilder table(what.name, what.description);
-  for (const Method* method : methods) {
-    checkpoint.show(fmt::format("{} of {}", what.name, method->name));
-    checkpoint.rows(table, std::string(method->name),
-                    [&](results::TableBuilder& rows) { what.add_rows(rows, *method, quick); });
-    checkpoint.advance();
-  }
-  return table.finish();
+template <class Row, std::size_t count>
+TableJob job(const char* name, const char* description, const results::ColumnOf<Row> (&columns)[count],
+             std::vector<Row> (*rows_of)(const Method&, bool quick), bool quick, const Methods& methods) {
+  return {static_cast<int>(methods.size()), [=, &columns](Checkpoint& checkpoint) {
+            std::vector<Row> rows;
+            for (const Method* method : methods) {
+              checkpoint.show(fmt::format("{} of {}", name, method->name));
+              std::ranges::move(checkpoint.once(std::string(method->name), [&] { return rows_of(*method, quick); }),
+                                std::back_inserter(rows));
+              checkpoint.advance();
+            }
+            return results::make_table(name, description, columns, rows);
+          }};
 }
 
 }  // namespace
 
 std::vector<TableJob> modes(bool quick, const Methods& methods) {
   const Methods chosen = all_or(methods);
-  std::vector<TableJob> jobs;
-  for (const MethodTable& table : method_tables)
-    jobs.push_back(
-        {static_cast<int>(chosen.size()), [=](Checkpoint& checkpoint) { return compute(table, quick, chosen, checkpoint); }});
-  return jobs;
+  return {job("amplification", "Amplification by the running code against the characteristic polynomials", amplified_columns,
+              amplification, quick, chosen),
+          job("stability", "Largest stable W = h² ω² by bisection, for shares ω²/κ of the implicit part", limit_columns,
+              stability, quick, chosen),
+          job("artificial", "Artificial inertia and damping of a transverse mode, h ω = 0.01, undamped", artificial_columns,
+              artificial, quick, chosen)};
 }
 
 }  // namespace drape::bench

@@ -1,5 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
+
 #include "bench/runs/certified_reference.hpp"
 #include "bench/runs/sweep.hpp"
 #include "bench/studies/refinement.hpp"
@@ -28,17 +31,19 @@ results::Table orders_on(const model::Scene& scene, bool quick, const Methods& m
   References references(SweepOptions().agreement, {.say = say}, 1e-12);  // the more of a curve is resolved
   const reference::Reference reference = references(scene, cloth);
   checkpoint.advance();
-  results::TableBuilder table("orders-" + scene.name, fmt::format("Order in time on {}, {:g} s; reference {} + {}", scene.name,
-                                                                  scene.end, reference.name, reference.witness));
+  std::vector<RefinedRun> runs;
   for (const solver::Method* method : methods) {
     checkpoint.show(fmt::format("{} on {}", method->name, scene.name));
-    checkpoint.rows(table, std::string(method->name), [&](results::TableBuilder& rows) {
-      const std::string name(method->name);
-      add_refinement(rows, tight(scene, name), name, cloth, reference, quick ? 1e6 : 4e7);
-    });
+    const std::string name(method->name);
+    auto curve = checkpoint.once(name, [&] { return refine(tight(scene, name), name, cloth, reference, quick ? 1e6 : 4e7); });
+    fit_curve(curve, method->order);
+    std::ranges::move(curve, std::back_inserter(runs));
     checkpoint.advance();
   }
-  return table.finish();
+  return refinement_table(
+      "orders-" + scene.name,
+      fmt::format("Order in time on {}, {:g} s; reference {} + {}", scene.name, scene.end, reference.name, reference.witness),
+      runs);
 }
 
 }  // namespace

@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
+#include <utility>
 
 #include "bench/runs/certified_reference.hpp"
 #include "bench/runs/record.hpp"
 #include "model/scene_file/scene_file.hpp"
-#include "results/analysis/order_fit.hpp"
 
 namespace drape::bench {
 namespace {
@@ -18,17 +19,17 @@ class Refinement {
   Refinement(const RunSpec& cell, const std::string& name, const model::Cloth& cloth, const reference::Reference& reference)
       : cell_(cell), name_(name), cloth_(cloth), reference_(reference) {}
 
-  void add_rows(results::TableBuilder& table, double most_work) {
+  std::vector<RefinedRun> runs(double most_work) {
     constexpr std::int64_t coarsest = 5, most = std::int64_t(1) << 22;
     const auto first = static_cast<double>(cell_.method->sub_steps ? std::max(coarsest, substeps(coarsest)) : coarsest);
+    std::vector<RefinedRun> all;
     for (int k = 0;; ++k) {
       const std::int64_t n = std::llround(first * std::pow(refinement(), k));
       if (n > most) break;
       const results::RunRecord run = run_of(n);
-      if (!add_row(table, run) || work(run) > most_work) break;
+      if (!add(all, run) || work(run) > most_work) break;
     }
-    const auto fit = results::fit_order(steps_, errors_, uncertainty_);
-    results::add_fit(table, fit, results::verdict(fit, cell_.method->order));
+    return all;
   }
 
  private:
@@ -52,25 +53,19 @@ class Refinement {
   }
 
   /// False where it makes no sense to go on.
-  bool add_row(results::TableBuilder& table, const results::RunRecord& run) {
-    table.row();
-    table.text("scene", "scene", "its name", cell_.scene.name);
-    table.text("method", "method", "time integrator", name_);
-    table.number("step", "h", "s", "step", run.step);
+  bool add(std::vector<RefinedRun>& runs, const results::RunRecord& run) {
+    RefinedRun& refined = runs.emplace_back(RefinedRun{cell_.scene.name, name_, run.step, {}, {}, {}, {}, {}});
     if (run.outcome != solver::Outcome::success) {
-      table.text("outcome", "outcome", "how the run failed", std::string(to_string(run.outcome)));
-      if (run.outcome == solver::Outcome::failed) table.text("reason", "reason", "what was thrown", run.message);
+      refined.outcome = to_string(run.outcome);
+      if (run.outcome == solver::Outcome::failed) refined.reason = run.message;
       return true;
     }
     const results::ErrorRecord error = distance(run, reference_, cell_.scene, cloth_);
-    uncertainty_ = error.reference_error;
-    table.number("error", "rms error", "1", "distance from the reference at the end, over the size of the scene", error.rms);
-    table.number("uncertainty", "", "1", "of the reference", error.reference_error);
-    if (!errors_.empty())
-      table.number("order", "order", "1", "between this step and the one before",
-                   std::log(errors_.back() / error.rms) / std::log(steps_.back() / run.step));
-    steps_.push_back(run.step);
-    errors_.push_back(error.rms);
+    refined.error = error.rms;
+    refined.uncertainty = error.reference_error;
+    if (last_error_) refined.order = std::log(*last_error_ / error.rms) / std::log(last_step_ / run.step);
+    last_error_ = error.rms;
+    last_step_ = run.step;
     return resolved(error);
   }
 
@@ -78,8 +73,20 @@ class Refinement {
   const std::string& name_;
   const model::Cloth& cloth_;
   const reference::Reference& reference_;
-  std::vector<double> steps_, errors_;
-  double uncertainty_ = 0;
+  std::optional<double> last_error_;
+  double last_step_ = 0;
+};
+
+constexpr results::ColumnOf<RefinedRun> refined_columns[] = {
+    {"scene", "scene", "", "its name", results::Role::key, results::field<&RefinedRun::scene>},
+    {"method", "method", "", "time integrator", results::Role::key, results::field<&RefinedRun::method>},
+    {"step", "h", "s", "step", results::Role::key, results::field<&RefinedRun::step>},
+    {"error", "rms error", "1", "distance from the reference at the end, over the size of the scene", results::Role::error,
+     results::field<&RefinedRun::error>},
+    {"uncertainty", "", "1", "of the reference", results::Role::uncertainty, results::field<&RefinedRun::uncertainty>},
+    {"order", "order", "1", "between this step and the one before", results::Role::note, results::field<&RefinedRun::order>},
+    {"outcome", "outcome", "", "how the run failed", results::Role::note, results::field<&RefinedRun::outcome>},
+    {"reason", "reason", "", "what was thrown", results::Role::note, results::field<&RefinedRun::reason>},
 };
 
 }  // namespace
@@ -103,9 +110,29 @@ RunSpec tight(const model::Scene& scene, const std::string& name) {
   return cell;
 }
 
-void add_refinement(results::TableBuilder& table, const RunSpec& cell, const std::string& name, const model::Cloth& cloth,
-                    const reference::Reference& reference, double most_work) {
-  Refinement(cell, name, cloth, reference).add_rows(table, most_work);
+std::vector<RefinedRun> refine(const RunSpec& cell, const std::string& name, const model::Cloth& cloth,
+                               const reference::Reference& reference, double most_work) {
+  return Refinement(cell, name, cloth, reference).runs(most_work);
+}
+
+void fit_curve(std::vector<RefinedRun>& runs, int declared_order) {
+  std::vector<double> steps, errors;
+  double uncertainty = 0;
+  for (const RefinedRun& run : runs)
+    if (run.error) {
+      steps.push_back(run.step);
+      errors.push_back(*run.error);
+      uncertainty = *run.uncertainty;
+    }
+  const auto fit = results::fit_order(steps, errors, uncertainty);
+  runs.back().curve = {fit, results::order_verdict(fit, declared_order)};
+}
+
+results::Table refinement_table(std::string name, std::string description, const std::vector<RefinedRun>& runs) {
+  results::Table table = results::make_table(std::move(name), std::move(description), refined_columns, runs);
+  results::add_columns(table, results::fit_columns, runs, std::mem_fn(&RefinedRun::curve));
+  table.figure = results::Figure::convergence;
+  return table;
 }
 
 }  // namespace drape::bench

@@ -1,8 +1,13 @@
 #pragma once
 
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/runs/checkpoint_json.hpp"
 #include "bench/runs/run.hpp"
 #include "reference/reference.hpp"
-#include "results/table_builder.hpp"
+#include "results/analysis/order_fit.hpp"
 
 namespace drape::bench {
 
@@ -14,10 +19,25 @@ model::Scene smooth_scene();
 /// linear solvers or without. Throws std::invalid_argument as choose_method() does.
 RunSpec tight(const model::Scene& scene, const std::string& name);
 
+/// A run of one method with one step.
+struct RefinedRun {
+  std::string scene, method;
+  double step;                                 ///< [s]
+  std::optional<std::string> outcome, reason;  ///< how it failed, and what was thrown
+  std::optional<double> error, uncertainty, order;
+  std::optional<results::FittedCurve> curve = {};  ///< of all steps, with the last
+};
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RefinedRun, scene, method, step, outcome, reason, error, uncertainty, order)
+
 /// Runs a cell with ever smaller steps, until its error is as small as the reference's, or a run takes too much work:
-/// evaluations of forces times particles, counted, so that the curve ends at the same step on every machine. Adds a row for
-/// each run, and to the last the order with its verdict.
-void add_refinement(results::TableBuilder& table, const RunSpec& cell, const std::string& name, const model::Cloth& cloth,
-                    const reference::Reference& reference, double most_work);
+/// evaluations of forces times particles, counted, so that the curve ends at the same step on every machine.
+std::vector<RefinedRun> refine(const RunSpec& cell, const std::string& name, const model::Cloth& cloth,
+                               const reference::Reference& reference, double most_work);
+
+/// Gives the last run its curve.
+void fit_curve(std::vector<RefinedRun>& runs, int declared_order);
+
+/// A table of such curves.
+results::Table refinement_table(std::string name, std::string description, const std::vector<RefinedRun>& runs);
 
 }  // namespace drape::bench

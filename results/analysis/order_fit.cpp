@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "results/run_record.hpp"
+#include "results/verdict.hpp"
 
 namespace drape::results {
 namespace {
@@ -46,18 +47,12 @@ std::optional<OrderFit> fit_order(std::span<const double> h, std::span<const dou
   return best;
 }
 
-std::string verdict(const std::optional<OrderFit>& fit, double declared) {
-  if (!fit) return "no order to be seen";
-  if (std::abs(fit->order - declared) <= tolerance) return fmt::format("{:g} as declared", declared);
-  return fmt::format("NOT {:g}", declared);
+std::string order_verdict(const std::optional<OrderFit>& fit, double declared) {
+  if (!fit) return verdict(Standing::open, "no order to be seen");
+  if (std::abs(fit->order - declared) <= tolerance) return verdict(Standing::met, fmt::format("{:g} as declared", declared));
+  return verdict(Standing::missed, fmt::format("not {:g}", declared));
 }
 
-void add_fit(TableBuilder& table, const std::optional<OrderFit>& fit, const std::string& verdict) {
-  table.text("verdict", "verdict", "whether the order is the declared one", verdict);
-  if (!fit) return;
-  table.number("fitted_order", "fitted", "1", "order by least squares over the window that the program found", fit->order);
-  table.text("spread", "between", "lowest and highest order between neighbours in the window",
-             fmt::format("{:.3f} … {:.3f}", fit->lowest, fit->highest));
-}
+std::string spread(const OrderFit& fit) { return fmt::format("{:.3f} … {:.3f}", fit.lowest, fit.highest); }
 
 }  // namespace drape::results

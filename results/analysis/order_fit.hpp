@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "results/table_builder.hpp"
+#include "results/columns.hpp"
 
 namespace drape::results {
 
@@ -15,16 +15,30 @@ struct OrderFit {
   int first, last;         ///< the window: places in the series
 };
 
+/// "1.987 … 2.013"
+std::string spread(const OrderFit& fit);
+
 /// Finds the order where it is to be seen. Errors below ten times their uncertainty are left out; among the rest the longest
 /// window of at least four neighbours (three refinements) is taken in which the order between neighbours varies by at most
 /// 0.1, the finest of equally long ones: so it avoids the pre-asymptotic and the round-off end by itself, and it does not know
 /// what order is hoped for. Nothing if there is no such window. `h` falls; errors that are not finite are left out.
 std::optional<OrderFit> fit_order(std::span<const double> h, std::span<const double> errors, double uncertainty);
 
-/// "2 as declared", or how it is not: within ±0.1.
-std::string verdict(const std::optional<OrderFit>& fit, double declared);
+/// "met: 2 as declared", or how it is not: within ±0.1.
+std::string order_verdict(const std::optional<OrderFit>& fit, double declared);
 
-/// The columns of a fit and its verdict, in the current row.
-void add_fit(TableBuilder& table, const std::optional<OrderFit>& fit, const std::string& verdict);
+/// What a curve comes to: the last row of it has this.
+struct FittedCurve {
+  std::optional<OrderFit> fit;
+  std::string verdict;
+};
+
+inline constexpr ColumnOf<FittedCurve> fit_columns[] = {
+    {"verdict", "verdict", "", "whether the order is the declared one", Role::verdict, field<&FittedCurve::verdict>},
+    {"fitted_order", "fitted", "1", "order by least squares over the window that the program found", Role::order,
+     [](const FittedCurve& curve) { return curve.fit ? Cell(curve.fit->order) : Cell(); }},
+    {"spread", "between", "", "lowest and highest order between neighbours in the window", Role::note,
+     [](const FittedCurve& curve) { return curve.fit ? Cell(spread(*curve.fit)) : Cell(); }},
+};
 
 }  // namespace drape::results

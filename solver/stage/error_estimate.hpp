@@ -1,5 +1,7 @@
 #pragma once
 
+#include <limits>
+
 #include "solver/split_ode.hpp"
 
 namespace drape::solver {

@@ -3,14 +3,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <memory>
 #include <optional>
 #include <tuple>
+#include <utility>
 
 #include "bench/studies/stability/stability.hpp"
 #include "reference/theory/linear_prediction.hpp"
+#include "results/verdict.hpp"
 
 namespace drape::bench {
 namespace {
@@ -109,7 +113,7 @@ struct Atlas {
 
 class Predictions {
  public:
-  std::optional<Expected> operator()(const Row& row, const Sheet& sheet, double stiffness, double ratio) {
+  std::optional<Expected> of(const Row& row, const Sheet& sheet, double stiffness, double ratio) {
     const auto key = std::tuple(row.method, stiffness, ratio);
     auto known = known_.find(key);
     if (known == known_.end()) known = known_.emplace(key, reference::predict(*row.method, stiffness, ratio)).first;
@@ -132,21 +136,30 @@ std::string_view describe(const std::optional<Expected>& expected) {
   return expected->converges ? "stable" : "loop too slow";
 }
 
-void add_cell(results::TableBuilder& table, const AtlasCell& cell, bool shown) {
-  const auto title = [shown](const char* text) { return shown ? text : ""; };
-  table.row();
-  table.count("n", title("n"), "particles a side", cell.sheet->n);
-  table.number("step", title("h"), "s", "time step", cell.sheet->step);
-  table.text("method", title("method"), "time integrator, with its stage solver if that is not auto", cell.row->name);
-  table.number("nu", title("ν_h"), "1", "numerical stiffness h² k/(ρ l²)", cell.stiffness);
-  table.number("to_damping", title("h k/d"), "1", "infinite without damping", cell.ratio);
-  table.text("predicted", title("predicted"), "by the amplification of linear modes and the contraction of the thesis' loop",
-             std::string(describe(cell.expected)));
-  if (cell.expected) {
-    table.number("growth", "", "1", "of the fastest growing linear mode in the run", cell.expected->growth);
-    table.number("loop", "", "1", "contraction of the thesis' loop, 0 if there is none", cell.expected->loop);
-  }
-  add_verdict(table, cell.judged, shown);
+using results::Role;
+using results::to_cell;
+
+constexpr results::ColumnOf<AtlasCell> cell_columns[] = {
+    {"n", "n", "1", "particles a side", Role::key, [](const AtlasCell& cell) { return to_cell(cell.sheet->n); }},
+    {"step", "h", "s", "time step", Role::key, [](const AtlasCell& cell) { return to_cell(cell.sheet->step); }},
+    {"method", "method", "", "time integrator, with its stage solver if that is not auto", Role::key,
+     [](const AtlasCell& cell) { return to_cell(cell.row->name); }},
+    {"nu", "ν_h", "1", "numerical stiffness h² k/(ρ l²)", Role::key, results::field<&AtlasCell::stiffness>},
+    {"to_damping", "h k/d", "1", "infinite without damping", Role::key, results::field<&AtlasCell::ratio>},
+    {"predicted", "predicted", "", "by the amplification of linear modes and the contraction of the thesis' loop", Role::note,
+     [](const AtlasCell& cell) { return to_cell(describe(cell.expected)); }},
+};
+
+constexpr results::ColumnOf<Expected> expected_columns[] = {
+    {"growth", "", "1", "of the fastest growing linear mode in the run", Role::quantity, results::field<&Expected::growth>},
+    {"loop", "", "1", "contraction of the thesis' loop, 0 if there is none", Role::quantity, results::field<&Expected::loop>},
+};
+
+results::Table cells_table(std::string name, std::string description, const std::vector<AtlasCell>& cells) {
+  results::Table table = results::make_table(std::move(name), std::move(description), cell_columns, cells);
+  results::add_columns(table, expected_columns, cells, std::mem_fn(&AtlasCell::expected));
+  results::add_columns(table, judged_columns, cells, [](const AtlasCell& cell) { return &cell.judged; });
+  return table;
 }
 
 /// All methods that are tried on a sheet of one stiffness and one damping.
@@ -163,10 +176,9 @@ std::vector<Judged> try_rows(const std::vector<Row>& rows, const Sheet& sheet, d
   return runs;
 }
 
-/// All runs: for the file.
+/// All runs: for the file, so without titles.
 results::Table explore(Atlas& atlas, Checkpoint& checkpoint) {
-  results::TableBuilder table("stability-atlas", "Every run of the atlas");
-  Predictions predict;
+  Predictions predictions;
   for (const Sheet& sheet : atlas.sheets)
     for (const double nu : sheet.stiffnesses)
       for (const double ratio : sheet.ratios) {
@@ -176,80 +188,115 @@ results::Table explore(Atlas& atlas, Checkpoint& checkpoint) {
         for (std::size_t k = 0, run = 0; k < atlas.rows.size(); ++k) {
           const Row& row = atlas.rows[k];
           if (!tries(sheet, row)) continue;
-          atlas.cells.push_back({&sheet, &row, nu, ratio, predict(row, sheet, nu, ratio), runs[run++]});
-          add_cell(table, atlas.cells.back(), false);
+          atlas.cells.push_back({&sheet, &row, nu, ratio, predictions.of(row, sheet, nu, ratio), runs[run++]});
         }
         checkpoint.advance();
       }
-  return table.finish();
+  results::Table table = cells_table("stability-atlas", "Every run of the atlas", atlas.cells);
+  for (results::Column& column : table.columns) column.title.clear();
+  table.figure = results::Figure::stability;
+  return table;
 }
 
+/// How many runs of a method on a sheet end how.
+struct Endings {
+  const Sheet* sheet;
+  const Row* row;
+  std::array<int, verdicts> counts;
+  int total;
+  std::optional<int> as_predicted;
+};
+
+template <Verdict verdict>
+constexpr results::ColumnOf<Endings> count_column(const char* name) {
+  return {name,          to_string(verdict).data(),
+          "1",           "runs",
+          Role::counter, [](const Endings& row) { return to_cell(row.counts[static_cast<std::size_t>(verdict)]); }};
+}
+
+constexpr results::ColumnOf<Endings> endings_columns[] = {
+    {"n", "n", "1", "particles a side", Role::key, [](const Endings& row) { return to_cell(row.sheet->n); }},
+    {"step", "h", "s", "time step", Role::key, [](const Endings& row) { return to_cell(row.sheet->step); }},
+    {"method", "method", "", "time integrator, with its stage solver if that is not auto", Role::key,
+     [](const Endings& row) { return to_cell(row.row->name); }},
+    count_column<Verdict::accurate>("accurate"),
+    count_column<Verdict::wrong>("wrong"),
+    count_column<Verdict::bounded>("bounded"),
+    count_column<Verdict::unstable>("unstable"),
+    count_column<Verdict::not_converged>("not_converged"),
+    count_column<Verdict::not_finished>("not_finished"),
+    {"total", "of", "1", "runs", Role::quantity, results::field<&Endings::total>},
+    {"as_predicted", "as predicted", "1", "runs that are stable and converge just where linear theory says so", Role::quantity,
+     results::field<&Endings::as_predicted>},
+};
+
 results::Table count_verdicts(const Atlas& atlas) {
-  static constexpr const char* columns[verdicts] = {"accurate", "wrong",         "bounded",
-                                                    "unstable", "not_converged", "not_finished"};
-  results::TableBuilder table("stability-verdicts", "How many runs of the atlas end how, method by method");
+  std::vector<Endings> all;
   for (const Sheet& sheet : atlas.sheets)
     for (const Row& row : atlas.rows) {
       if (!tries(sheet, row)) continue;
-      std::array<int, verdicts> counts{};
-      int total = 0, predicted = 0, as_predicted = 0;
+      Endings endings{&sheet, &row, {}, 0, {}};
       for (const AtlasCell& cell : atlas.cells) {
         if (cell.sheet != &sheet || cell.row != &row) continue;
-        ++total;
-        ++counts[static_cast<std::size_t>(cell.judged.verdict)];
-        predicted += cell.expected.has_value();
-        as_predicted += cell.is_as_predicted();
+        ++endings.total;
+        ++endings.counts[static_cast<std::size_t>(cell.judged.verdict)];
+        if (cell.expected) endings.as_predicted = endings.as_predicted.value_or(0) + (cell.is_as_predicted() ? 1 : 0);
       }
-      table.row();
-      table.count("n", "n", "particles a side", sheet.n);
-      table.number("step", "h", "s", "time step", sheet.step);
-      table.text("method", "method", "time integrator, with its stage solver if that is not auto", row.name);
-      for (int k = 0; k < verdicts; ++k) {
-        const std::string title(to_string(static_cast<Verdict>(k)));
-        table.count(columns[k], title.c_str(), "runs", counts[static_cast<std::size_t>(k)]);
-      }
-      table.count("total", "of", "runs", total);
-      if (predicted > 0)
-        table.count("as_predicted", "as predicted", "runs that are stable and converge just where linear theory says so",
-                    as_predicted);
+      all.push_back(endings);
     }
-  return table.finish();
+  return results::make_table("stability-verdicts", "How many runs of the atlas end how, method by method", endings_columns,
+                             all);
 }
+
+/// Runs of a method that are predicted stable.
+struct Converging {
+  std::string method;
+  int stable = 0, converge = 0, rise = 0;
+};
+
+constexpr results::ColumnOf<Converging> converging_columns[] = {
+    {"method", "method", "", "time integrator", Role::key, results::field<&Converging::method>},
+    {"stable", "predicted stable", "1", "runs", Role::quantity, results::field<&Converging::stable>},
+    {"converge", "converge", "1", "of these: the equations of every step were solved", Role::quantity,
+     results::field<&Converging::converge>},
+    {"rise", "energy rises", "1", "of these: the solution of the method's equations gains energy", Role::quantity,
+     results::field<&Converging::rise>},
+    {"verdict", "verdict", "", "whether all of them do", Role::verdict,
+     [](const Converging& row) -> results::Cell {
+       return row.converge == row.stable ? results::verdict(results::Standing::met, "all converge")
+                                         : results::verdict(results::Standing::missed, "not all converge");
+     }},
+};
 
 /// The bar: what is predicted stable converges with the default solvers. A run that ends since its energy rose has converged in
 /// every step: the midpoint rule doubles what an edge turns by, so that a chord that turns by φ in half a step is stretched
 /// by φ², and linear theory knows nothing of turning.
 results::Table check_bar(const Atlas& atlas) {
-  results::TableBuilder table("stability-bar", "Runs that are predicted stable and do converge, with the default solvers");
+  std::vector<Converging> all;
   for (const Row& row : atlas.rows) {
     if (!is_bar_method(row.name)) continue;
-    int stable = 0, converge = 0, rise = 0;
+    Converging& counts = all.emplace_back(Converging{row.name});
     for (const AtlasCell& cell : atlas.cells) {
       if (cell.row != &row || !cell.expected->good()) continue;
-      ++stable;
-      const RunEnd& trial = cell.judged.trial;
-      const bool rises = trial.result.outcome == solver::Outcome::unstable;
-      if (rises) ++rise;
-      if (rises || trial.succeeded()) ++converge;
+      ++counts.stable;
+      const bool rises = cell.judged.trial.result.outcome == solver::Outcome::unstable;
+      if (rises) ++counts.rise;
+      if (rises || cell.judged.trial.succeeded()) ++counts.converge;
     }
-    table.row();
-    table.text("method", "method", "time integrator", row.name);
-    table.count("stable", "predicted stable", "runs", stable);
-    table.count("converge", "converge", "of these: the equations of every step were solved", converge);
-    table.count("rise", "energy rises", "of these: the solution of the method's equations gains energy", rise);
-    table.text("verdict", "verdict", "whether all of them do", converge == stable ? "all converge" : "NOT all converge");
   }
-  return table.finish();
+  return results::make_table("stability-bar", "Runs that are predicted stable and do converge, with the default solvers",
+                             converging_columns, all);
 }
 
 /// Runs that are not what linear theory says.
 results::Table list_surprises(const Atlas& atlas) {
-  results::TableBuilder table("stability-surprises",
-                              "Runs of the atlas that are stable and converge where linear theory does not expect it, or not "
-                              "where it does");
-  for (const AtlasCell& cell : atlas.cells)
-    if (cell.expected && !cell.is_as_predicted()) add_cell(table, cell, true);
-  return table.finish();
+  std::vector<AtlasCell> surprises;
+  std::ranges::copy_if(atlas.cells, std::back_inserter(surprises),
+                       [](const AtlasCell& cell) { return cell.expected && !cell.is_as_predicted(); });
+  return cells_table("stability-surprises",
+                     "Runs of the atlas that are stable and converge where linear theory does not expect it, or not where it "
+                     "does",
+                     surprises);
 }
 
 }  // namespace

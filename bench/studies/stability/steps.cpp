@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
-#include <limits>
+#include <algorithm>
+#include <iterator>
 #include <map>
 #include <utility>
 
@@ -57,20 +58,34 @@ class FewestSteps {
 /// A step that the solver had to cut is not the one that was asked for.
 bool uncut(const Judged& run) { return run.trial.result.rejected_steps == 0; }
 
-/// All methods on one sheet.
-void add_largest_steps(results::TableBuilder& table, int n, const Softness& softness, const Methods& methods) {
+/// What a method does on one sheet.
+struct StepLimits {
+  double k, d;
+  std::string method;
+  LargestSteps largest;
+  double uncertainty;
+};
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(StepLimits, k, d, method, largest, uncertainty)
+
+using results::Role;
+constexpr results::ColumnOf<StepLimits> limits_columns[] = {
+    {"tension", "k", "N/m", "tension modulus", Role::key, results::field<&StepLimits::k>},
+    {"damping", "d", "N s/m", "damping, linear", Role::key, results::field<&StepLimits::d>},
+    {"method", "method", "", "time integrator", Role::key, results::field<&StepLimits::method>},
+};
+constexpr results::ColumnOf<StepLimits> limits_uncertainty[] = {
+    {"uncertainty", "±", "1", "how far the two reference methods differ", Role::uncertainty,
+     results::field<&StepLimits::uncertainty>},
+};
+
+std::vector<StepLimits> step_limits(int n, const Softness& softness, const Methods& methods) {
   const auto [k, d] = softness;
   const Specimen specimen = hung_by_corners(n, k, d);
   const CrossCheckedReference reference(specimen, horizon);
-  for (const solver::Method* method : methods) {
-    const LargestSteps largest = largest_steps(specimen, reference, *method, {});
-    table.row();
-    table.number("tension", "k", "N/m", "tension modulus", k);
-    table.number("damping", "d", "N s/m", "damping, linear", d);
-    table.text("method", "method", "time integrator", std::string(method->name));
-    add_largest(table, largest);
-    table.number("uncertainty", "±", "1", "how far the two reference methods differ", reference.uncertainty());
-  }
+  std::vector<StepLimits> rows;
+  for (const solver::Method* method : methods)
+    rows.push_back({k, d, std::string(method->name), largest_steps(specimen, reference, *method, {}), reference.uncertainty()});
+  return rows;
 }
 
 }  // namespace
@@ -83,27 +98,26 @@ LargestSteps largest_steps(const Specimen& specimen, const CrossCheckedReference
   return {step(accurate), step(search.fewest([](const Judged& run) { return uncut(run) && run.stable(); }))};
 }
 
-void add_largest(results::TableBuilder& table, const LargestSteps& largest) {
-  if (largest.accurate > 0) table.number("accurate", "accurate", "s", "largest step that is accurate", largest.accurate);
-  if (largest.stable > 0) table.number("stable", "stable", "s", "largest step that is stable, right or wrong", largest.stable);
-}
-
 TableJob largest_steps(bool quick, const Methods& methods) {
   const std::vector<Softness> sheets =
       quick ? std::vector<Softness>{{1e4, 50}} : std::vector<Softness>{{1e4, 50}, {1e4, 5}, {1e4, 0.5}, {1e6, 5}};
   return {static_cast<int>(sheets.size()), [=](Checkpoint& checkpoint) {
-            results::TableBuilder table(
-                "stability-steps",
-                fmt::format("The largest usable step of every method by bisection, at least {:.2g} s, to {} s",
-                            horizon / most_parts, horizon));
+            std::vector<StepLimits> rows;
             for (const Softness& sheet : sheets) {
               checkpoint.show(fmt::format("largest steps, k = {}, d = {}", sheet.k, sheet.d));
-              checkpoint.rows(table, fmt::format("{} {}", sheet.k, sheet.d), [&](results::TableBuilder& rows) {
-                add_largest_steps(rows, quick ? 6 : particles, sheet, all_or(methods));
-              });
+              std::ranges::move(checkpoint.once(fmt::format("{} {}", sheet.k, sheet.d),
+                                                [&] { return step_limits(quick ? 6 : particles, sheet, all_or(methods)); }),
+                                std::back_inserter(rows));
               checkpoint.advance();
             }
-            return table.finish();
+            results::Table table = results::make_table(
+                "stability-steps",
+                fmt::format("The largest usable step of every method by bisection, at least {:.2g} s, to {} s",
+                            horizon / most_parts, horizon),
+                limits_columns, rows);
+            results::add_columns(table, largest_columns, rows, [](const StepLimits& row) { return &row.largest; });
+            results::add_columns(table, limits_uncertainty, rows);
+            return table;
           }};
 }
 

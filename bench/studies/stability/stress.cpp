@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 
 #include "bench/studies/stability/stability.hpp"
@@ -95,15 +97,26 @@ RunEnd endure(const Stress& stress, int n, Conditions conditions) {
   return attempt(specimen, conditions);
 }
 
-void add_stress(results::TableBuilder& table, const Stress& stress, int n, const Methods& methods) {
+/// A method under one stress.
+struct Endured {
+  std::string stress, method;
+  Judged run;
+};
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Endured, stress, method, run)
+
+constexpr results::ColumnOf<Endured> endured_columns[] = {
+    {"case", "case", "", "what is done to the sheet", results::Role::key, results::field<&Endured::stress>},
+    {"method", "method", "", "time integrator", results::Role::key, results::field<&Endured::method>},
+};
+
+std::vector<Endured> endured(const Stress& stress, int n, const Methods& methods) {
   const auto run = [&](const Conditions& conditions) { return endure(stress, n, conditions); };
   const CrossCheckedReference reference(stress.make(n), horizon, run);
-  for (const solver::Method* method : methods) {
-    table.row();
-    table.text("case", "case", "what is done to the sheet", stress.name);
-    table.text("method", "method", "time integrator", std::string(method->name));
-    add_verdict(table, judged(run({method, {}, stress_step, horizon, method->sub_steps ? 100'000 : 4'000}), reference), true);
-  }
+  std::vector<Endured> rows;
+  for (const solver::Method* method : methods)
+    rows.push_back({stress.name, std::string(method->name),
+                    judged(run({method, {}, stress_step, horizon, method->sub_steps ? 100'000 : 4'000}), reference)});
+  return rows;
 }
 
 }  // namespace
@@ -113,14 +126,19 @@ TableJob stress_cases(bool quick, const Methods& methods) {
   const bool few = quick && methods.empty();
   const Methods chosen = few ? Methods{&solver::method("bdf2"), &solver::method("verlet")} : all_or(methods);
   return {static_cast<int>(std::size(stresses)), [=](Checkpoint& checkpoint) {
-            results::TableBuilder table("stability-stress", fmt::format("What no scene should do to a solver, h = 0.01 s{}",
-                                                                        few ? "; --quick: bdf2 and verlet only" : ""));
+            std::vector<Endured> rows;
             for (const Stress& stress : stresses) {
               checkpoint.show(stress.name);
-              checkpoint.rows(table, stress.name, [&](results::TableBuilder& rows) { add_stress(rows, stress, n, chosen); });
+              std::ranges::move(checkpoint.once(stress.name, [&] { return endured(stress, n, chosen); }),
+                                std::back_inserter(rows));
               checkpoint.advance();
             }
-            return table.finish();
+            results::Table table = results::make_table(
+                "stability-stress",
+                fmt::format("What no scene should do to a solver, h = 0.01 s{}", few ? "; --quick: bdf2 and verlet only" : ""),
+                endured_columns, rows);
+            results::add_columns(table, judged_columns, rows, [](const Endured& row) { return &row.run; });
+            return table;
           }};
 }
 
