@@ -3,80 +3,238 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
+#include <optional>
 
 #include "bench/studies/work_precision/peers.hpp"
 #include "bench/studies/work_precision/winners.hpp"
 #include "reference/sundials/sundials_build.hpp"
-#include "results/table_builder.hpp"
+#include "results/columns.hpp"
 
 namespace drape::bench {
 namespace {
 
-using results::TableBuilder;
+using results::Cell;
+using results::ColumnOf;
+using results::field;
+using results::Role;
+using results::to_cell;
 
-/// CPU times of a over those of b, with the interval of its uncertainty.
-void add_ratio(TableBuilder& table, const std::string& key, const std::string& description, const Winner& a, const Winner& b) {
-  const auto interval = results::ratio_of_medians(a.trial->measured, b.trial->measured);
-  table.number(key.c_str(), "ratio", "1", description.c_str(), a.time / b.time);
-  table.number((key + "_lower").c_str(), "", "1", "its 95 % interval, by bootstrap", interval.lower);
-  table.number((key + "_upper").c_str(), "", "1", "its 95 % interval, by bootstrap", interval.upper);
-}
+// --- Trials --------------------------------------------------------------------------------------------------------------
 
-void add_winner(TableBuilder& table, const std::string& key, const std::string& title, const Winner& winner,
-                const Winner& best) {
-  const auto column = [&](const char* suffix) { return key + suffix; };
-  if (!winner) return;
-  const auto q = results::quartiles(winner.trial->measured.times);
-  table.text(column("").c_str(), "", "the quickest", winner.name());
-  table.number(column("_ms").c_str(), title.c_str(), "ms", "its median CPU time", q.median);
-  table.number(column("_lower").c_str(), "", "ms", "lower quartile of its times", q.lower);
-  table.number(column("_upper").c_str(), "", "ms", "upper quartile of its times", q.upper);
-  if (!best) return;
-  add_ratio(table, key + "_ratio", "over our best", winner, best);
-  if (tie(winner, best)) table.text(column("_tie").c_str(), "", "whether the gap is below the noise", "tie");
-}
+struct TrialRow {
+  const Trial& trial;
+  double uncertainty;  ///< of the reference
+};
+
+constexpr ColumnOf<TrialRow> tried_columns[] = {
+    {"code", "", "", "whose it is", Role::key, [](const TrialRow& row) -> Cell { return row.trial.family->code; }},
+    {"family", "", "", "ways that differ in one number", Role::key,
+     [](const TrialRow& row) -> Cell { return row.trial.family->name; }},
+    {"method", "", "", "ours with the program's defaults: the method", Role::key,
+     [](const TrialRow& row) -> Cell { return row.trial.family->method; }},
+    {"build", "", "", "how the program and SUNDIALS were built", Role::note,
+     [](const TrialRow&) -> Cell { return reference::sundials_build(); }},
+    {"control", "", "", "the number: step [s], tolerance, or fraction of the stability limit", Role::key,
+     [](const TrialRow& row) -> Cell { return row.trial.family->control; }},
+    {"value", "", "1", "its value", Role::key, [](const TrialRow& row) -> Cell { return row.trial.configuration().value; }},
+    {"outcome", "", "", "success, or why there is none", Role::verdict,
+     [](const TrialRow& row) -> Cell { return row.trial.outcome; }},
+    {"uncertainty", "", "1", "of the reference, as the error", Role::uncertainty, field<&TrialRow::uncertainty>},
+    {"steps", "", "1", "steps", Role::counter, [](const TrialRow& row) -> Cell { return row.trial.steps; }},
+    {"forces", "", "1", "evaluations of forces", Role::counter, [](const TrialRow& row) -> Cell { return row.trial.forces; }},
+    {"factorisations", "", "1", "matrices factored", Role::counter,
+     [](const TrialRow& row) -> Cell { return row.trial.factorisations; }},
+};
+
+using Times = const results::Measured&;
+
+constexpr ColumnOf<results::Measured> times_columns[] = {
+    {"error", "", "1", "largest distance from the reference at all tenths of the end, over the scene's size", Role::error,
+     field<&results::Measured::error>},
+    {"time", "", "ms", "median CPU time", Role::time, [](Times m) -> Cell { return results::quartiles(m.times).median; }},
+    {"lower", "", "ms", "lower quartile", Role::time, [](Times m) -> Cell { return results::quartiles(m.times).lower; }},
+    {"upper", "", "ms", "upper quartile", Role::time, [](Times m) -> Cell { return results::quartiles(m.times).upper; }},
+    {"repetitions", "", "1", "times it was run for this", Role::time, [](Times m) { return to_cell(m.times.size()); }},
+};
+
+// --- What winners have in common -----------------------------------------------------------------------------------------
+
+/// Where winners are sought.
+struct Level {
+  const SceneTrials* scene;
+  double error;
+};
+
+constexpr ColumnOf<Level> level_columns[] = {
+    {"scene", "scene", "", "its name", Role::key, [](const Level& level) -> Cell { return level.scene->problem.name; }},
+    {"error", "error", "1", "at most, over the scene's size", Role::key, field<&Level::error>},
+};
 
 /// The size of the search on each side, and what part of the motion an error is.
-void add_search(TableBuilder& table, const SceneTrials& scene) {
-  table.count("our_families", "", "families of ours that were tried", number_of_families(scene, true));
-  table.count("sundials_families", "", "families of SUNDIALS that were tried", number_of_families(scene, false));
-  if (scene.problem.motion > 0)
-    table.number("motion", "", "1", "largest distance from the start, over the scene's size", scene.problem.motion);
+constexpr ColumnOf<SceneTrials> search_columns[] = {
+    {"our_families", "", "1", "families of ours that were tried", Role::quantity,
+     [](const SceneTrials& scene) { return to_cell(number_of_families(scene, true)); }},
+    {"sundials_families", "", "1", "families of SUNDIALS that were tried", Role::quantity,
+     [](const SceneTrials& scene) { return to_cell(number_of_families(scene, false)); }},
+    {"motion", "", "1", "largest distance from the start, over the scene's size", Role::quantity,
+     [](const SceneTrials& scene) { return scene.problem.motion > 0 ? Cell(scene.problem.motion) : Cell(); }},
+};
+
+/// CPU times of one over those of another, with the interval of its uncertainty.
+struct TimeRatio {
+  double value;
+  results::Interval interval;
+};
+
+/// Nothing unless there are both.
+std::optional<TimeRatio> ratio_of(const Winner& a, const Winner& b) {
+  if (!a || !b) return std::nullopt;
+  return TimeRatio{a.time / b.time, results::ratio_of_medians(a.trial->measured, b.trial->measured)};
 }
+
+constexpr ColumnOf<TimeRatio> time_ratio_columns[] = {
+    {"{}", "ratio", "1", "{}", Role::time, field<&TimeRatio::value>},
+    {"{}_lower", "", "1", "its 95 % interval, by bootstrap", Role::time,
+     [](const TimeRatio& ratio) -> Cell { return ratio.interval.lower; }},
+    {"{}_upper", "", "1", "its 95 % interval, by bootstrap", Role::time,
+     [](const TimeRatio& ratio) -> Cell { return ratio.interval.upper; }},
+};
+
+// --- Winners -------------------------------------------------------------------------------------------------------------
+
+/// The quickest of a contender beside our best; no ratio unless there are both.
+struct Beside {
+  Winner winner;
+  std::optional<TimeRatio> ratio = {};
+  bool tied = false;
+};
+
+Beside beside(const Winner& winner, const Winner& best) {
+  const auto ratio = ratio_of(winner, best);
+  return {winner, ratio, ratio && tie(winner, best)};
+}
+
+results::Quartiles times_of(const Beside& one) { return results::quartiles(one.winner.trial->measured.times); }
+
+constexpr ColumnOf<Beside> winner_columns[] = {
+    {"{}", "", "", "the quickest", Role::note, [](const Beside& one) -> Cell { return one.winner.name(); }},
+    {"{}_ms", "{}", "ms", "its median CPU time", Role::time, [](const Beside& one) -> Cell { return times_of(one).median; }},
+    {"{}_lower", "", "ms", "lower quartile of its times", Role::time,
+     [](const Beside& one) -> Cell { return times_of(one).lower; }},
+    {"{}_upper", "", "ms", "upper quartile of its times", Role::time,
+     [](const Beside& one) -> Cell { return times_of(one).upper; }},
+};
+
+constexpr ColumnOf<Beside> tie_columns[] = {
+    {"{}_tie", "", "", "whether the gap is below the noise", Role::note,
+     [](const Beside& one) { return one.tied ? Cell("tie") : Cell(); }},
+};
+
+/// A contender of the table of winners.
+struct WinnerGroup {
+  std::string name, title, contender;
+};
+
+std::vector<WinnerGroup> winner_groups(const std::string& usual) {
+  std::vector<WinnerGroup> groups{{"defaults", "auto", "defaults"},
+                                  {"usual", "usual", usual},
+                                  {"explicit", "explicit", "explicit"},
+                                  {"thesis", "thesis", "thesis"},
+                                  {"sundials", "SUNDIALS", "sundials"}};
+  for (const std::string& package : packages()) groups.push_back({package, package, package});
+  return groups;
+}
+
+struct WinnersRow {
+  Level level;
+  Beside ours;
+  std::vector<Beside> others;  ///< one for each group
+};
+
+constexpr ColumnOf<WinnersRow> best_columns[] = {
+    {"best", "our best", "", "the quickest of all that the program offers", Role::note,
+     [](const WinnersRow& row) { return row.ours.winner ? Cell(row.ours.winner.name()) : Cell(); }},
+};
+
+std::vector<WinnersRow> winners_rows(const std::vector<SceneTrials>& scenes, const std::vector<WinnerGroup>& groups) {
+  std::vector<WinnersRow> rows;
+  for (const SceneTrials& scene : scenes) {
+    const Winners winners(scene);
+    for (const double error : levels(scene.problem)) {
+      WinnersRow& row = rows.emplace_back(WinnersRow{{&scene, error}, {winners.of("ours", error)}, {}});
+      for (const WinnerGroup& group : groups) row.others.push_back(beside(winners.of(group.contender, error), row.ours.winner));
+    }
+  }
+  return rows;
+}
+
+/// Null where nothing reaches the error.
+const Beside* if_won(const Beside& one) { return one.winner ? &one : nullptr; }
+
+// --- One choice of each side ---------------------------------------------------------------------------------------------
 
 constexpr const char* sides[] = {"ours", "defaults", "sundials"};
 
-void add_side(TableBuilder& table, const std::string& key, const std::string& title, const Winner& winner) {
-  table.text(key.c_str(), title.c_str(), "the family with the value that is the quickest", winner.name());
-  if (winner) table.number((key + "_ms").c_str(), "CPU", "ms", "its median CPU time", winner.time);
-}
-
-/// `chosen`: the winner of a side.
-template <class Chosen>
-void add_sides(TableBuilder& table, const Chosen& chosen) {
-  const Winner theirs = chosen("sundials");
-  add_side(table, "sundials", "SUNDIALS", theirs);
-  for (const std::string side : {"ours", "defaults"}) {
-    const Winner mine = chosen(side.c_str());
-    add_side(table, side, side == "ours" ? "ours" : "auto", mine);
-    if (mine && theirs) add_ratio(table, side + "_ratio", "CPU time of SUNDIALS over it", theirs, mine);
-  }
-}
-
-/// What other codes reach on peer-edge with 100 x 100 particles [m, s per simulated second].
-struct Figure {
-  const char* code;
-  double error, seconds;
+/// Who is chosen at an error, and the ratios of SUNDIALS to ours.
+struct Sides {
+  Level level;
+  Winner sundials, ours, defaults = {};
+  std::optional<TimeRatio> ours_ratio = ratio_of(sundials, ours), defaults_ratio = ratio_of(sundials, defaults);
 };
-constexpr Figure figures[] = {{"Bullet, softbody", 0.53, 0.76},
-                              {"Bullet, deformable cloth, implicit", 0.053, 21.7},
-                              {"Bullet, deformable cloth, explicit", 2e-4, 29},
-                              {"XPBD, 20 sub-steps", 0.049, 2.1},
-                              {"XPBD, 100 sub-steps", 4e-3, 10.4},
-                              {"projective dynamics, 10 iterations", 0.098, 2.9},
-                              {"STARK (Newton, implicit Euler)", 0.051, 18.3},
-                              {"ARCSim", 0.072, 29},
-                              {"a plain vectorised leapfrog", 1.2e-4, 0.59}};
+
+constexpr ColumnOf<Winner> side_columns[] = {
+    {"{}", "{}", "", "the family with the value that is the quickest", Role::note,
+     [](const Winner& winner) -> Cell { return winner.name(); }},
+    {"{}_ms", "CPU", "ms", "its median CPU time", Role::time,
+     [](const Winner& winner) { return winner ? Cell(winner.time) : Cell(); }},
+};
+
+constexpr ColumnOf<Sides> held_out_columns[] = {
+    {"scene", "scene", "", "where it is judged", Role::key,
+     [](const Sides& row) -> Cell { return row.level.scene->problem.name; }},
+    {"training", "chosen on", "", "where the families were chosen", Role::key,
+     [](const Sides& row) -> Cell { return row.level.scene->training->problem.name; }},
+    {"error", "error", "1", "at most, over the scene's size", Role::key,
+     [](const Sides& row) -> Cell { return row.level.error; }},
+};
+
+/// What was chosen on the scene's training, judged on it.
+std::vector<Sides> held_out(const SceneTrials& scene) {
+  const Winners winners(scene), training(*scene.training);
+  std::vector<Sides> rows;
+  for (const double error : levels(scene.problem)) {
+    const auto chosen = [&](const char* side) {
+      const Winner winner = training.of(side, error);
+      return winner ? winners.of(winner.trial->family->name, error) : Winner{};
+    };
+    rows.push_back({{&scene, error}, chosen("sundials"), chosen("ours"), chosen("defaults")});
+  }
+  return rows;
+}
+
+void add_side(results::Table& table, const std::vector<Sides>& rows, Winner Sides::*side, std::string_view name,
+              std::string_view title) {
+  results::add_columns(table, side_columns, rows, [=](const Sides& row) { return &(row.*side); }, {name, title, {}});
+}
+
+void add_ratio(results::Table& table, const std::vector<Sides>& rows, std::optional<TimeRatio> Sides::*ratio,
+               std::string_view name, std::string_view description) {
+  results::add_columns(table, time_ratio_columns, rows, [=](const Sides& row) { return row.*ratio; }, {name, {}, description});
+}
+
+// --- Defaults ------------------------------------------------------------------------------------------------------------
+
+constexpr ColumnOf<Score> score_columns[] = {
+    {"choice", "choice", "", "a method and what controls its accuracy", Role::key,
+     [](const Score& score) -> Cell { return score.contender.substr(std::string_view("default ").size()); }},
+    {"cells", "cells", "1", "scenes and errors", Role::quantity, field<&Score::cells>},
+    {"missed", "missed", "1", "of these not reached", Role::time, field<&Score::missed>},
+    {"within", "within 1.5", "1", "of these at most 1.5 times our best, or tied with it", Role::time, field<&Score::within>},
+    {"mean", "mean", "1", "geometric mean of the ratios to our best, those not reached as 10", Role::time,
+     [](const Score& score) -> Cell { return score.mean(); }},
+    {"worst", "worst", "1", "the largest", Role::time, field<&Score::worst>},
+};
 
 }  // namespace
 
@@ -86,57 +244,40 @@ int number_of_families(const SceneTrials& scene, bool ours) {
 }
 
 results::Table trials_table(const SceneTrials& scene) {
-  TableBuilder table("trials: " + scene.problem.name, "All that was tried on " + scene.problem.name);
-  for (const Trial& trial : scene.trials) {
-    table.row();
-    table.text("code", "", "whose it is", trial.family->code);
-    table.text("family", "", "ways that differ in one number", trial.family->name);
-    table.text("method", "", "ours with the program's defaults: the method", trial.family->method);
-    table.text("build", "", "how the program and SUNDIALS were built", reference::sundials_build());
-    table.text("control", "", "the number: step [s], tolerance, or fraction of the stability limit", trial.family->control);
-    table.number("value", "", "1", "its value", trial.configuration().value);
-    table.text("outcome", "", "success, or why there is none", trial.outcome);
-    table.number("uncertainty", "", "1", "of the reference, as the error", scene.problem.uncertainty);
-    table.count("steps", "", "steps", trial.steps);
-    table.count("forces", "", "evaluations of forces", trial.forces);
-    table.count("factorisations", "", "matrices factored", trial.factorisations);
-    if (trial.measured.times.empty()) continue;
-    const auto q = results::quartiles(trial.measured.times);
-    table.number("error", "", "1", "largest distance from the reference at all tenths of the end, over the scene's size",
-                 trial.measured.error);
-    table.number("time", "", "ms", "median CPU time", q.median);
-    table.number("lower", "", "ms", "lower quartile", q.lower);
-    table.number("upper", "", "ms", "upper quartile", q.upper);
-    table.count("repetitions", "", "times it was run for this", std::ssize(trial.measured.times));
-  }
-  return table.finish();
+  std::vector<TrialRow> rows;
+  for (const Trial& trial : scene.trials) rows.push_back({trial, scene.problem.uncertainty});
+  results::Table table =
+      results::make_table("trials: " + scene.problem.name, "All that was tried on " + scene.problem.name, tried_columns, rows);
+  results::add_columns(table, times_columns, rows,
+                       [](const TrialRow& row) { return row.trial.measured.times.empty() ? nullptr : &row.trial.measured; });
+  table.figure = results::Figure::work_precision;
+  return table;
 }
 
 results::Table winners_table(const std::vector<SceneTrials>& scenes) {
   const std::string usual = usual_choice(scenes);
-  TableBuilder table(
-      "winners", fmt::format("With hindsight: the quickest with an error of at most so much, and ratios to our best; usual: "
-                             "{}; auto: the best method with automatic stages and linear solvers; {}",
-                             usual, reference::sundials_build()));
-  for (const SceneTrials& scene : scenes) {
-    const Winners winners(scene);
-    for (const double error : levels(scene.problem)) {
-      const Winner best = winners.of("ours", error);
-      table.row();
-      table.text("scene", "scene", "its name", scene.problem.name);
-      table.number("error", "error", "1", "at most, over the scene's size", error);
-      add_search(table, scene);
-      if (best) table.text("best", "our best", "the quickest of all that the program offers", best.name());
-      add_winner(table, "ours", "ours", best, {});
-      add_winner(table, "defaults", "auto", winners.of("defaults", error), best);
-      add_winner(table, "usual", "usual", winners.of(usual, error), best);
-      add_winner(table, "explicit", "explicit", winners.of("explicit", error), best);
-      add_winner(table, "thesis", "thesis", winners.of("thesis", error), best);
-      add_winner(table, "sundials", "SUNDIALS", winners.of("sundials", error), best);
-      for (const std::string& package : packages()) add_winner(table, package, package, winners.of(package, error), best);
-    }
+  const std::vector<WinnerGroup> groups = winner_groups(usual);
+  const std::vector<WinnersRow> rows = winners_rows(scenes, groups);
+  results::Table table{"winners",
+                       fmt::format("With hindsight: the quickest with an error of at most so much, and ratios to our best; "
+                                   "usual: {}; auto: the best method with automatic stages and linear solvers; {}",
+                                   usual, reference::sundials_build()),
+                       {}};
+  results::add_columns(table, level_columns, rows, [](const WinnersRow& row) { return &row.level; });
+  results::add_columns(table, search_columns, rows, [](const WinnersRow& row) { return row.level.scene; });
+  results::add_columns(table, best_columns, rows);
+  results::add_columns(table, winner_columns, rows, [](const WinnersRow& row) { return if_won(row.ours); },
+                       {"ours", "ours", {}});
+  for (std::size_t k = 0; k < groups.size(); ++k) {
+    const auto& [name, title, contender] = groups[k];
+    const auto won = [k](const WinnersRow& row) { return if_won(row.others[k]); };
+    results::add_columns(table, winner_columns, rows, won, {name, title, {}});
+    const std::string ratio = name + "_ratio";
+    results::add_columns(table, time_ratio_columns, rows, [k](const WinnersRow& row) { return row.others[k].ratio; },
+                         {ratio, {}, "over our best"});
+    results::add_columns(table, tie_columns, rows, won, {name, {}, {}});
   }
-  return table.finish();
+  return table;
 }
 
 std::set<std::string> named_families(const SceneTrials& scene) {
@@ -150,95 +291,45 @@ std::set<std::string> named_families(const SceneTrials& scene) {
 }
 
 results::Table held_out_table(const std::vector<SceneTrials>& scenes) {
-  TableBuilder table("held-out", fmt::format("Families that were the quickest on another scene, judged on this one; {}",
-                                             reference::sundials_build()));
-  for (const SceneTrials& scene : scenes) {
-    if (scene.training == nullptr) continue;
-    const Winners winners(scene), training(*scene.training);
-    for (const double error : levels(scene.problem)) {
-      const auto chosen = [&](const char* side) {
-        const Winner winner = training.of(side, error);
-        return winner ? winners.of(winner.trial->family->name, error) : Winner{};
-      };
-      table.row();
-      table.text("scene", "scene", "where it is judged", scene.problem.name);
-      table.text("training", "chosen on", "where the families were chosen", scene.training->problem.name);
-      table.number("error", "error", "1", "at most, over the scene's size", error);
-      add_search(table, scene);
-      add_sides(table, chosen);
-    }
-  }
-  return table.finish();
+  std::vector<Sides> rows;
+  for (const SceneTrials& scene : scenes)
+    if (scene.training != nullptr) std::ranges::move(held_out(scene), std::back_inserter(rows));
+  results::Table table = results::make_table(
+      "held-out",
+      fmt::format("Families that were the quickest on another scene, judged on this one; {}", reference::sundials_build()),
+      held_out_columns, rows);
+  results::add_columns(table, search_columns, rows, [](const Sides& row) { return row.level.scene; });
+  add_side(table, rows, &Sides::sundials, "sundials", "SUNDIALS");
+  add_side(table, rows, &Sides::ours, "ours", "ours");
+  add_ratio(table, rows, &Sides::ours_ratio, "ours_ratio", "CPU time of SUNDIALS over it");
+  add_side(table, rows, &Sides::defaults, "defaults", "auto");
+  add_ratio(table, rows, &Sides::defaults_ratio, "defaults_ratio", "CPU time of SUNDIALS over it");
+  return table;
 }
 
 results::Table recommended_table(const std::vector<SceneTrials>& scenes) {
-  TableBuilder table("recommended", fmt::format("One setting of each side for all: {} and {}; {}", advised_ours, advised_peer(),
-                                                reference::sundials_build()));
+  std::vector<Sides> rows;
   for (const SceneTrials& scene : scenes) {
     if (is_peer_edge(scene)) continue;
     const Winners winners(scene);
-    for (const double error : levels(scene.problem)) {
-      const Winner ours = winners.of(advised_ours, error), theirs = winners.of(advised_peer(), error);
-      table.row();
-      table.text("scene", "scene", "its name", scene.problem.name);
-      table.number("error", "error", "1", "at most, over the scene's size", error);
-      add_side(table, "ours", "ours", ours);
-      add_side(table, "sundials", "SUNDIALS", theirs);
-      if (ours && theirs) add_ratio(table, "ratio", "CPU time of SUNDIALS over ours", theirs, ours);
-    }
+    for (const double error : levels(scene.problem))
+      rows.push_back({{&scene, error}, winners.of(advised_peer(), error), winners.of(advised_ours, error)});
   }
-  return table.finish();
+  results::Table table{
+      "recommended",
+      fmt::format("One setting of each side for all: {} and {}; {}", advised_ours, advised_peer(), reference::sundials_build()),
+      {}};
+  results::add_columns(table, level_columns, rows, [](const Sides& row) { return &row.level; });
+  add_side(table, rows, &Sides::ours, "ours", "ours");
+  add_side(table, rows, &Sides::sundials, "sundials", "SUNDIALS");
+  add_ratio(table, rows, &Sides::ours_ratio, "ratio", "CPU time of SUNDIALS over ours");
+  return table;
 }
 
 results::Table defaults_table(const std::vector<SceneTrials>& scenes) {
-  TableBuilder table("defaults",
-                     "Methods with automatic stages and linear solvers against our best choice, over all scenes and errors");
-  for (const Score& score : scores(scenes)) {
-    table.row();
-    table.text("choice", "choice", "a method and what controls its accuracy", score.contender.substr(8));
-    table.count("cells", "cells", "scenes and errors", score.cells);
-    table.count("missed", "missed", "of these not reached", score.missed);
-    table.count("within", "within 1.5", "of these at most 1.5 times our best, or tied with it", score.within);
-    table.number("mean", "mean", "1", "geometric mean of the ratios to our best, those not reached as 10", score.mean());
-    table.number("worst", "worst", "1", "the largest", score.worst);
-  }
-  return table.finish();
-}
-
-std::vector<double> peer_errors() {
-  std::vector<double> errors;
-  for (const PeerBar& bar : peer_bars) errors.push_back(bar.error);
-  for (const Figure& figure : figures) errors.push_back(figure.error);
-  return errors;
-}
-
-results::Table peers_table(const std::vector<SceneTrials>& scenes) {
-  TableBuilder table(
-      "peer-edge", "Other codes on their own machine, and what is the quickest of ours with errors at most theirs on this one");
-  for (const SceneTrials& scene : scenes) {
-    if (!is_peer_edge(scene)) continue;
-    const Winners winners(scene);
-    const int n = scene.problem.scene.sheet.grid.nu;
-    for (const Figure& figure : figures) {
-      table.row();
-      table.count("n", "n", "particles a side", n);
-      table.text("code", "other code, 100 x 100", "measured elsewhere", figure.code);
-      table.number("their_error", "error", "m", "RMS at 0.5 s", figure.error);
-      if (n == 100) table.number("their_seconds", "time", "s/s", "CPU seconds per simulated second", figure.seconds);
-      const auto show = [&](const char* contender, const char* title, const char* description) {
-        const Winner winner = winners.of(contender, figure.error);
-        if (!winner) return;
-        const double time = 1e-3 * winner.time / scene.problem.times.back();
-        table.text(contender, title, description, winner.name());
-        table.number(fmt::format("{}_error", contender).c_str(), "error", "m", "RMS, the largest at all tenths of the end",
-                     winner.trial->measured.error);
-        table.number(fmt::format("{}_seconds", contender).c_str(), "time", "s/s", "CPU seconds per simulated second", time);
-      };
-      show("ours", "ours", "the quickest at most as far off");
-      show("implicit", "implicit", "the quickest implicit method at most as far off");
-    }
-  }
-  return table.finish();
+  return results::make_table(
+      "defaults", "Methods with automatic stages and linear solvers against our best choice, over all scenes and errors",
+      score_columns, scores(scenes));
 }
 
 }  // namespace drape::bench
