@@ -57,6 +57,7 @@ std::vector<TableJob> stability(bool quick, const Methods& methods);
 std::vector<TableJob> tolerance(bool quick, const Methods& methods);
 std::vector<TableJob> work_precision(bool quick, const Methods& methods);
 std::vector<TableJob> bars(bool quick);
+std::vector<TableJob> choice(bool quick);
 std::vector<TableJob> work_precision_of(const model::Scene& scene, bool quick, const Methods& methods);
 
 }  // namespace drape::bench

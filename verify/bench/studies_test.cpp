@@ -253,6 +253,25 @@ TEST_F(ProgramStudies, OrdersAreAsDeclared) {
   EXPECT_THAT(std::vector(found.begin() + known, found.end()), Each(HasSubstr("as declared"))) << "what was added";
 }
 
+TEST_F(ProgramStudies, TheChoiceIsTheQuickestWithItsError) {
+  const auto all = tables("choice");  // in the order of their names
+  ASSERT_THAT(all, SizeIs(3));
+  const Table &choice = all[0], &trials = all[1];
+  ASSERT_EQ(rows(choice), 6u);
+  ASSERT_EQ(trials.name, "trials: hung-corners d=0.5 n=5");
+  for (std::size_t row = 0; row < rows(choice); ++row) {
+    const double error = number_in(find_column(choice, "error"), row), time = number_in(find_column(choice, "ms"), row);
+    EXPECT_FALSE(number_in(find_column(choice, "ratio"), row) < 1) << row;
+    EXPECT_LE(number_in(find_column(choice, "lower"), row), time) << row;
+    EXPECT_GE(number_in(find_column(choice, "upper"), row), time) << row;
+    if (number_in(find_column(choice, "damping"), row) != 0.5) continue;
+    bool found = false;
+    for (std::size_t k = 0; k < rows(trials); ++k)
+      found |= number_in(find_column(trials, "time"), k) == time && number_in(find_column(trials, "error"), k) <= error;
+    EXPECT_TRUE(found) << "at " << error;
+  }
+}
+
 TEST_F(ProgramStudies, ErrorsAreNearTheirTolerances) {
   const auto all = tables("tolerance");
   ASSERT_THAT(all, SizeIs(3));

@@ -1,0 +1,154 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+
+#include "bench/studies/studies.hpp"
+#include "bench/studies/work_precision/winners.hpp"
+#include "bench/studies/work_precision/work_precision.hpp"
+#include "model/scene_file/scene_file.hpp"
+#include "results/columns.hpp"
+
+/// Which method should one use? Of ours, with automatic stages and linear solvers, the quickest at some errors, over damping
+/// and size of one sheet.
+namespace drape::bench {
+namespace {
+
+using results::Cell;
+using results::field;
+using results::Role;
+
+constexpr double choice_errors[] = {1e-2, 1e-4, 1e-6};
+
+/// A sheet hung by two corners.
+struct HungSheet {
+  double damping;  ///< [N s/m]: 50 strong, 5 weak, 0.5 little
+  int n;           ///< particles a side
+  bool quick;
+
+  Search search() const { return quick ? Search::quick : Search::usual; }
+  Effort effort() const { return quick ? Effort{.cap = 0.1, .repetitions = 3} : Effort{}; }
+};
+
+std::string name_of_sheet(const HungSheet& sheet) { return fmt::format("hung-corners d={:g} n={}", sheet.damping, sheet.n); }
+
+std::vector<HungSheet> hung_sheets_to_choose_on(bool quick) {
+  if (quick) return {{50, 5, true}, {0.5, 5, true}};
+  std::vector<HungSheet> all;
+  for (const double damping : {50.0, 5.0, 0.5})
+    for (const int n : {10, 30}) all.push_back({damping, n, false});
+  return all;
+}
+
+model::Scene hung_scene(const HungSheet& sheet) {
+  std::vector<model::Override> overrides{{"material.damping", fmt::format("{}", sheet.damping)},
+                                         {"grid.n", fmt::format("{}", sheet.n)}};
+  if (sheet.quick) overrides.push_back({"end.time", "0.1"});
+  return model::load_scene("hung-corners", overrides);
+}
+
+/// Our methods with automatic stages and linear solvers.
+std::vector<Family> default_families(const HungSheet& sheet) {
+  std::vector<Family> all = families(hung_scene(sheet), sheet.search(), {});
+  std::erase_if(all, [](const Family& family) { return family.method.empty(); });
+  return all;
+}
+
+/// A sheet with all that was tried on it.
+struct TriedSheet {
+  HungSheet sheet;
+  SceneTrials scene;
+};
+
+void try_defaults(TriedSheet& tried, Checkpoint& checkpoint) {
+  SceneTrials& scene = tried.scene;
+  const std::string name = name_of_sheet(tried.sheet);
+  checkpoint.show("reference of " + name);
+  scene.problem = certified_problem(name, hung_scene(tried.sheet), checkpoint);
+  scene.problem.enough = std::ranges::min(choice_errors);
+  scene.families = default_families(tried.sheet);
+  scene.trials = try_all(scene.problem, scene.families, tried.sheet.effort(), checkpoint);
+  checkpoint.show("timing " + name);
+  time_fronts(scene.problem, scene.trials, tried.sheet.effort(), {}, checkpoint);
+}
+
+/// The quickest at an error, and the quickest of the other methods.
+struct Choice {
+  HungSheet sheet;
+  double error;
+  Winner best, runner_up;
+
+  std::optional<results::Quartiles> times() const {
+    return best ? std::optional(results::quartiles(best.trial->measured.times)) : std::nullopt;
+  }
+  std::optional<results::Interval> ratio_interval() const {
+    if (!runner_up) return std::nullopt;
+    return results::ratio_of_medians(runner_up.trial->measured, best.trial->measured);
+  }
+};
+
+Choice choose(const TriedSheet& tried, double error) {
+  const Winners winners(tried.scene);
+  Choice choice{tried.sheet, error, winners.of("defaults", error), {}};
+  if (!choice.best) return choice;
+  for (const Contender& contender : contenders(tried.scene.trials)) {
+    if (!contender.name.starts_with("default ")) continue;
+    const Winner other = winners.of(contender.name, error);
+    if (!other || other.trial->family->method == choice.best.trial->family->method) continue;
+    if (!choice.runner_up || other.time < choice.runner_up.time) choice.runner_up = other;
+  }
+  return choice;
+}
+
+using ChoiceRow = const Choice&;
+
+constexpr results::ColumnOf<Choice> choice_columns[] = {
+    {"damping", "d", "N s/m", "linear damping", Role::key, [](ChoiceRow row) -> Cell { return row.sheet.damping; }},
+    {"n", "n", "1", "particles a side", Role::key, [](ChoiceRow row) { return results::to_cell(row.sheet.n); }},
+    {"error", "error <=", "1", "the largest at all tenths of the end, over the size of the scene", Role::key,
+     field<&Choice::error>},
+    {"best", "quickest", "", "a method, what controls its accuracy, and the value of that; none if no method is so accurate",
+     Role::note, [](ChoiceRow row) -> Cell { return row.best.name(); }},
+    {"ms", "time", "ms", "its median CPU time", Role::time,
+     [](ChoiceRow row) { return row.best ? Cell(row.best.time) : Cell(); }},
+    {"lower", "from", "ms", "lower quartile of its times", Role::time,
+     [](ChoiceRow row) { return row.best ? Cell(row.times()->lower) : Cell(); }},
+    {"upper", "to", "ms", "upper quartile of its times", Role::time,
+     [](ChoiceRow row) { return row.best ? Cell(row.times()->upper) : Cell(); }},
+    {"runner_up", "runner-up", "", "the quickest of the other methods", Role::note,
+     [](ChoiceRow row) { return row.runner_up ? Cell(row.runner_up.name()) : Cell(); }},
+    {"ratio", "slower by", "1", "time of the runner-up over that of the quickest", Role::time,
+     [](ChoiceRow row) { return row.runner_up ? Cell(row.runner_up.time / row.best.time) : Cell(); }},
+    {"ratio_lower", "", "1", "its 95 % interval, by bootstrap", Role::time,
+     [](ChoiceRow row) { return row.runner_up ? Cell(row.ratio_interval()->lower) : Cell(); }},
+    {"ratio_upper", "", "1", "its 95 % interval, by bootstrap", Role::time,
+     [](ChoiceRow row) { return row.runner_up ? Cell(row.ratio_interval()->upper) : Cell(); }},
+};
+
+results::Table choice_table(const std::vector<TriedSheet>& all) {
+  std::vector<Choice> rows;
+  for (const TriedSheet& tried : all)
+    for (const double error : choice_errors) rows.push_back(choose(tried, error));
+  return results::make_table("choice", "The quickest of our methods with automatic stages and linear solvers", choice_columns,
+                             rows);
+}
+
+}  // namespace
+
+std::vector<TableJob> choice(bool quick) {
+  const auto all = std::make_shared<std::vector<TriedSheet>>();
+  const std::vector<HungSheet> list = hung_sheets_to_choose_on(quick);
+  all->reserve(list.size());  // trials point into what is in it
+  std::vector<TableJob> jobs;
+  for (const HungSheet& sheet : list)
+    jobs.push_back({static_cast<int>(default_families(sheet).size()), [=](Checkpoint& checkpoint) {
+                      TriedSheet& tried = all->emplace_back(TriedSheet{sheet, {}});
+                      try_defaults(tried, checkpoint);
+                      return trials_table(tried.scene);
+                    }});
+  jobs.push_back({0, [=](Checkpoint&) { return choice_table(*all); }});
+  return jobs;
+}
+
+}  // namespace drape::bench
