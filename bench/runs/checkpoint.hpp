@@ -7,7 +7,6 @@
 #include "bench/runs/interruption.hpp"
 #include "bench/runs/progress.hpp"
 #include "results/file/journal.hpp"
-#include "results/table_builder.hpp"
 
 namespace drape::bench {
 
@@ -37,16 +36,6 @@ class Checkpoint {
     check_interruption();
     journal_.add(prefix_ + id, nlohmann::json::to_cbor(nlohmann::json(result)));
     return result;
-  }
-
-  /// Adds the rows that fill(table) adds to an empty table.
-  template <class Fill>
-  void rows(results::TableBuilder& table, const std::string& id, const Fill& fill) {
-    table.append(once(id, [&] {
-      results::TableBuilder part("", "");
-      fill(part);
-      return part.finish();
-    }));
   }
 
  private:

@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <variant>
 
 #include "results/file/run_file.hpp"
 
@@ -50,25 +49,4 @@ struct adl_serializer<drape::results::RunRecord> {
   }
 };
 
-template <>
-struct adl_serializer<drape::results::Cell> {
-  static void to_json(json& j, const drape::results::Cell& cell) {
-    if (const auto* text = std::get_if<std::string>(&cell)) j = *text;
-    if (const auto* number = std::get_if<double>(&cell)) j = *number;
-    if (const auto* count = std::get_if<std::int64_t>(&cell)) j = *count;
-  }
-  static void from_json(const json& j, drape::results::Cell& cell) {
-    if (j.is_string()) cell = j.get<std::string>();
-    if (j.is_number_float()) cell = j.get<double>();
-    if (j.is_number_integer()) cell = j.get<std::int64_t>();
-  }
-};
-
 }  // namespace nlohmann
-
-namespace drape::results {
-
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Column, name, title, unit, description, role, cells, shown)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Table, name, description, columns, headline, figure)
-
-}  // namespace drape::results

@@ -102,13 +102,10 @@ TEST(Resume, AStudyKilledAtAnyMomentEndsAsIfItHadNotBeen) {
 TEST(Resume, TakesWhatTheJournalHasAndComputesTheRest) {
   const BenchIntegrators program;
   program.output(small_study + Words{"--out", "whole.h5"});
-  const auto json = nlohmann::json{
-      {"name", ""},
-      {"description", ""},
-      {"columns",
-       {{{"name", "limit"}, {"title", ""}, {"unit", "1"}, {"description", "planted"}, {"cells", {42.5}}, {"shown", Words{}}}}}};
+  const auto none = nlohmann::json::array();
+  const nlohmann::json row{{"method", "bdf2"}, {"share", 1.0}, {"limit", {42.5}}, {"bound", none}, {"verdict", "planted"}};
   results::Journal(program.folder() / "a.h5", results::read_provenance(program.folder() / "whole.h5"), results::Start::fresh)
-      .add("table 1: bdf2", nlohmann::json::to_cbor(json));
+      .add("job 1: bdf2", nlohmann::json::to_cbor(nlohmann::json::array({row})));
   const std::string out = program.output(small_study + Words{"--out", "a.h5", "--resume", "--format", "csv"});
   EXPECT_THAT(lines(out), Contains(HasSubstr("42.5")).Times(1));
   const auto rows = [&](const char* file) {
