@@ -35,16 +35,14 @@ std::string text(const Table& table, std::string_view column, std::size_t row) {
   return text_in(find_column(table, column), row);
 }
 
-/// The last row has the order.
-bool has_declared_order(const Table& order) {
-  return results::standing(text(order, "verdict", rows(order) - 1)) == results::Standing::met;
-}
+/// The first row has the order.
+bool has_declared_order(const Table& order) { return results::standing(text(order, "verdict", 0)) == results::Standing::met; }
 
 std::string order_lines(const Table& order, int declared) {
   const std::size_t last = rows(order) - 1;
-  const double fitted = number(order, "fitted_order", last);
+  const double fitted = number(order, "fitted_order", 0);
   return fmt::format("order      {} (declared {}): {}\n           {};\n           {} steps, {:g} to {:.2g} s\n",
-                     std::isnan(fitted) ? "none" : fmt::format("{:.2f}", fitted), declared, text(order, "verdict", last),
+                     std::isnan(fitted) ? "none" : fmt::format("{:.2f}", fitted), declared, text(order, "verdict", 0),
                      order.description, rows(order), number(order, "step", 0), number(order, "step", last));
 }
 

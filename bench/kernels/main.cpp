@@ -1,15 +1,18 @@
 // Costs of the pieces, for what a person asks before choosing a solver: ns per particle of the product with the constant
-// matrix beside the triad of the machine, of every force, and of a whole CG iteration.
+// matrix beside the triad of the machine, of every force, and of a whole CG iteration; and of what Eigen and CHOLMOD offer for
+// the same, so that the reason for kernels of our own stays measured.
 
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
+#include <Eigen/IterativeLinearSolvers>
 #include <limits>
 #include <string>
 #include <vector>
 
 #include "model/cloth.hpp"
 #include "model/scene_file/scene_file.hpp"
+#include "solver/linear/cholmod_view.hpp"
 #include "solver/linear/conjugate_gradients.hpp"
 #include "solver/linear/kernels.hpp"
 
@@ -84,6 +87,43 @@ void cg_iteration(benchmark::State& state, const solver::LinearSolver& linear_so
   per_particle(state, A.rows() * (cloth.ode.work->count("preconditioner_applications") / state.iterations()));
 }
 
+/// Eigen's own iteration, which takes the three columns one after the other.
+template <class Preconditioner>
+void eigen_cg_iteration(benchmark::State& state) {
+  constexpr int iterations = 10;
+  const model::Cloth cloth = compile(sheet(static_cast<int>(state.range(0)), {}));
+  const SparseMatrix A = stage_matrix(cloth.ode, 0.01);
+  Eigen::ConjugateGradient<SparseMatrix, Eigen::Lower | Eigen::Upper, Preconditioner> cg(A);
+  cg.setMaxIterations(iterations);
+  cg.setTolerance(0);
+  const Eigen::MatrixX3d b = perturbed(cloth.start.x, 1);
+  Eigen::MatrixX3d d = b;
+  for (auto _ : state) {
+    d = cg.solve(b);
+    benchmark::ClobberMemory();
+  }
+  per_particle(state, A.rows() * iterations);
+}
+
+/// CHOLMOD's own solve of three columns, in memory that is kept.
+void cholmod_solve(benchmark::State& state) {
+  const model::Cloth cloth = compile(sheet(static_cast<int>(state.range(0)), {}));
+  const SparseMatrix A = stage_matrix(cloth.ode, 0.01);
+  cholmod_common common;
+  cholmod_start(&common);
+  cholmod_sparse view = solver::cholmod_view(A);
+  cholmod_factor* factor = cholmod_analyze(&view, &common);
+  cholmod_factorize(&view, factor, &common);
+  const auto n = static_cast<std::size_t>(A.rows());
+  cholmod_dense* b = cholmod_ones(n, 3, CHOLMOD_REAL, &common);
+  cholmod_dense *x = nullptr, *y = nullptr, *e = nullptr;
+  for (auto _ : state) benchmark::DoNotOptimize(cholmod_solve2(CHOLMOD_A, factor, b, nullptr, &x, nullptr, &y, &e, &common));
+  per_particle(state, A.rows());
+  for (cholmod_dense** field : {&b, &x, &y, &e}) cholmod_free_dense(field, &common);
+  cholmod_free_factor(&factor, &common);
+  cholmod_finish(&common);
+}
+
 void force(benchmark::State& state, const std::vector<model::Override>& changes) {
   const model::Scene scene = sheet(static_cast<int>(state.range(0)), changes);
   const model::Cloth cloth = compile(scene);
@@ -120,6 +160,9 @@ void register_all() {
         [&](benchmark::State& state) { cg_iteration(state, linear_solver); },
         complete ? std::vector<std::int64_t>{20, 100} : sizes);
   }
+  add("library/eigen-cg-iteration", eigen_cg_iteration<Eigen::IdentityPreconditioner>, sizes);
+  add("library/eigen-cg-iteration-ic", eigen_cg_iteration<Eigen::IncompleteCholesky<double>>, sizes);
+  add("library/cholmod-solve", cholmod_solve, {20, 100});
   const std::vector<std::pair<std::string, std::vector<model::Override>>> forces{
       {"none", only({})},
       {"tension", only({{"material.tension", "1e4"}})},

@@ -204,7 +204,7 @@ struct Equilibrium {
   Errors errors;
   std::optional<double> order;
   double uncertainty;
-  std::optional<results::FittedCurve> curve;  ///< of all resolutions, with the last
+  std::optional<results::FittedCurve> curve;  ///< of all resolutions, with the first
 };
 
 template <auto member>
@@ -245,7 +245,7 @@ std::vector<Equilibrium> curve(const Experiment& experiment, const std::vector<i
     checkpoint.advance();
   }
   const auto fit = results::fit_order(spacings, rms, experiment.uncertainty);
-  all.back().curve = {fit, conclusion(experiment, fit, rms.empty() ? NAN : rms.back())};
+  all.front().curve = {fit, conclusion(experiment, fit, rms.empty() ? NAN : rms.back())};
   return all;
 }
 

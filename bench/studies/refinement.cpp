@@ -125,7 +125,7 @@ void fit_curve(std::vector<RefinedRun>& runs, int declared_order) {
       uncertainty = *run.uncertainty;
     }
   const auto fit = results::fit_order(steps, errors, uncertainty);
-  runs.back().curve = {fit, results::order_verdict(fit, declared_order)};
+  runs.front().curve = {fit, results::order_verdict(fit, declared_order)};
 }
 
 results::Table refinement_table(std::string name, std::string description, const std::vector<RefinedRun>& runs) {

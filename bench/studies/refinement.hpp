@@ -25,7 +25,7 @@ struct RefinedRun {
   double step;                                 ///< [s]
   std::optional<std::string> outcome, reason;  ///< how it failed, and what was thrown
   std::optional<double> error, uncertainty, order;
-  std::optional<results::FittedCurve> curve = {};  ///< of all steps, with the last
+  std::optional<results::FittedCurve> curve = {};  ///< of all steps, with the first, which is the same everywhere
 };
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RefinedRun, scene, method, step, outcome, reason, error, uncertainty, order)
 
@@ -34,7 +34,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RefinedRun, scene, method, step, outcome, rea
 std::vector<RefinedRun> refine(const RunSpec& cell, const std::string& name, const model::Cloth& cloth,
                                const reference::Reference& reference, double most_work);
 
-/// Gives the last run its curve.
+/// Gives the first run its curve.
 void fit_curve(std::vector<RefinedRun>& runs, int declared_order);
 
 /// A table of such curves.

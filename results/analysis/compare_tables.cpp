@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "results/analysis/findings.hpp"
@@ -50,11 +52,27 @@ std::string row_name(const std::string& table, const std::vector<Matched>& colum
   return name;
 }
 
-bool same_rows(const Table& a, const Table& b, const std::vector<Matched>& columns) {
-  if (rows(a) != rows(b)) return false;
-  for (std::size_t row = 0; row < rows(a); ++row)
-    if (row_name(a.name, columns, &Matched::a, row) != row_name(b.name, columns, &Matched::b, row)) return false;
-  return true;
+/// Rows of both tables with the same keys; those that only one of them has.
+struct MatchedRows {
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;
+  std::vector<std::size_t> only_a, only_b;
+};
+
+MatchedRows matched_rows(const Table& a, const Table& b, const std::vector<Matched>& columns) {
+  std::multimap<std::string, std::size_t> rows_of_b;
+  for (std::size_t row = 0; row < rows(b); ++row) rows_of_b.emplace(row_name(b.name, columns, &Matched::b, row), row);
+  MatchedRows matched;
+  for (std::size_t row = 0; row < rows(a); ++row) {
+    const auto found = rows_of_b.find(row_name(a.name, columns, &Matched::a, row));  // the first of equal ones
+    if (found == rows_of_b.end()) {
+      matched.only_a.push_back(row);
+    } else {
+      matched.pairs.emplace_back(row, found->second);
+      rows_of_b.erase(found);
+    }
+  }
+  for (const auto& [name, row] : rows_of_b) matched.only_b.push_back(row);
+  return matched;
 }
 
 constexpr double round_off = 1e-12;  ///< of numbers in tables
@@ -86,9 +104,9 @@ struct Judge {
   const CompareOptions& options;
   Findings &accuracy, &work;
 
-  /// `noise`: of errors in this row.
-  void cell(const std::string& name, const Matched& column, std::size_t row, double noise) const {
-    const double a = number_in(column.a, row), b = number_in(column.b, row);
+  /// `row` of a and `other` of b; `noise`: of errors in them.
+  void cell(const std::string& name, const Matched& column, std::size_t row, std::size_t other, double noise) const {
+    const double a = number_in(column.a, row), b = number_in(column.b, other);
     const auto numbers = [&](Findings& findings, Judgement judgement, double change) {
       note(findings, judgement, name, *column.a, shown(a), shown(b), change);
     };
@@ -98,7 +116,7 @@ struct Judge {
       case Role::time:
       case Role::note: return;
       case Role::verdict: {
-        const std::string before = text_in(column.a, row), after = text_in(column.b, row);
+        const std::string before = text_in(column.a, row), after = text_in(column.b, other);
         return note(accuracy, judge_verdict(before, after), name, *column.a, before, after, 0);
       }
       case Role::counter: return numbers(work, judge_counter(a, b), std::log((b + 0.5) / (a + 0.5)));
@@ -120,12 +138,26 @@ double uncertainty(const Table& table, std::size_t row) {
   return std::isnan(value) ? 0 : value;
 }
 
-void compare_rows(const Table& a, const Table& b, const std::vector<Matched>& columns, const Judge& judge) {
-  for (std::size_t row = 0; row < rows(a); ++row) {
+double largest_uncertainty(const Table& table) {
+  double largest = 0;
+  for (std::size_t row = 0; row < rows(table); ++row) largest = std::max(largest, uncertainty(table, row));
+  return largest;
+}
+
+/// Rows whose error a reference that is this uncertain resolves. Where a curve ends depends on its reference's round-off.
+std::size_t resolved_rows(const Table& table, const std::vector<std::size_t>& some, double uncertainty) {
+  const Column* errors = find_column(table, Role::error);
+  return static_cast<std::size_t>(
+      std::ranges::count_if(some, [&](std::size_t row) { return !(number_in(errors, row) < resolution * uncertainty); }));
+}
+
+void compare_rows(const Table& a, const Table& b, const MatchedRows& matched, const std::vector<Matched>& columns,
+                  const Judge& judge) {
+  for (const auto& [row, other] : matched.pairs) {
     ++judge.accuracy.cells;
     judge.work.cells += has(columns, Role::counter);
-    const double noise = uncertainty(a, row) + uncertainty(b, row);
-    for (const Matched& column : columns) judge.cell(row_name(a.name, columns, &Matched::a, row), column, row, noise);
+    const double noise = uncertainty(a, row) + uncertainty(b, other);
+    for (const Matched& column : columns) judge.cell(row_name(a.name, columns, &Matched::a, row), column, row, other, noise);
   }
 }
 
@@ -133,18 +165,23 @@ void compare_rows(const Table& a, const Table& b, const std::vector<Matched>& co
 
 void compare_tables(const std::vector<Table>& a, const std::vector<Table>& b, const CompareOptions& options, Findings& accuracy,
                     Findings& work) {
+  const auto not_comparable = [&](const Table& table, const std::string& in_a, const std::string& in_b) {
+    accuracy.add({table.name, "table", in_a, in_b, 0, Judgement::not_comparable});
+  };
   for (const Table& table : a) {
     const auto other = std::ranges::find(b, table.name, &Table::name);
     if (other == b.end()) {
-      accuracy.add({table.name, "table", fmt::format("{} rows", rows(table)), "no such table", 0, Judgement::not_comparable});
+      not_comparable(table, fmt::format("{} rows", rows(table)), "no such table");
       continue;
     }
     const std::vector<Matched> columns = matched(table, *other);
-    if (same_rows(table, *other, columns))
-      compare_rows(table, *other, columns, {options, accuracy, work});
-    else if (!has(columns, Role::time))  // rows of a search for the quickest depend on times
-      accuracy.add({table.name, "table", fmt::format("{} rows", rows(table)),
-                    fmt::format("{} rows, not the same", rows(*other)), 0, Judgement::not_comparable});
+    const MatchedRows found = matched_rows(table, *other, columns);
+    compare_rows(table, *other, found, columns, {options, accuracy, work});
+    if (has(columns, Role::time)) continue;  // rows of a search for the quickest depend on times
+    const double noise = std::max(largest_uncertainty(table), largest_uncertainty(*other));
+    const std::size_t lost = resolved_rows(table, found.only_a, noise), gained = resolved_rows(*other, found.only_b, noise);
+    if (lost + gained > 0)
+      not_comparable(table, fmt::format("{} rows that b has not", lost), fmt::format("{} rows that a has not", gained));
   }
 }
 

@@ -45,8 +45,8 @@ Judged summary(const Findings& findings, const std::string& name) {
   judged.reason =
       fmt::format("{} cells: {} worse, {} better, {} not comparable", findings.cells, regressions, improvements, unknown);
   std::string description = fmt::format("the worst of {} differences in {}", sorted.size(), name);
-  judged.worst =
-      make_table(name, std::move(description), finding_columns, std::span(sorted).first(std::min(most, sorted.size())));
+  judged.worst = make_table(name, std::move(description), finding_columns,
+                            std::span(sorted).first(std::min<std::size_t>(most, sorted.size())));
   return judged;
 }
 

@@ -27,7 +27,7 @@ std::optional<OrderFit> fit_order(std::span<const double> h, std::span<const dou
 /// "met: 2 as declared", or how it is not: within ±0.1.
 std::string order_verdict(const std::optional<OrderFit>& fit, double declared);
 
-/// What a curve comes to: the last row of it has this.
+/// What a curve comes to: the first row of it has this.
 struct FittedCurve {
   std::optional<OrderFit> fit;
   std::string verdict;

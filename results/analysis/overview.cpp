@@ -16,13 +16,15 @@
 namespace drape::results {
 namespace {
 
-/// The keys of a row that people see.
-std::string row_title(const Table& table, std::size_t row) {
+/// The keys of a row that people see; of a curve those that are texts, for all of its rows.
+std::string row_title(const Table& table, std::size_t row, bool of_curve = false) {
   std::string title;
   for (const Column& column : table.columns) {
     if (column.role != Role::key || column.title.empty()) continue;
     const double number = number_in(&column, row);
-    const std::string text = std::isnan(number) ? text_in(&column, row) : fmt::format("{} {:g}", column.title, number);
+    const std::string text = std::isnan(number) ? text_in(&column, row)
+                             : of_curve         ? ""
+                                                : fmt::format("{} {:g}", column.title, number);
     if (!text.empty()) title.append(title.empty() ? "" : " ").append(text);
   }
   return title;
@@ -46,7 +48,7 @@ OrderRow order_row(const Table& table, const OrderCount& count) {
   for (std::size_t row = 0; row < rows(table); ++row) {
     const std::string verdict = text_in(verdicts, row);
     if (verdict.empty() || standing(verdict) == Standing::met) continue;
-    others += fmt::format("{}{}: {}{}", others.empty() ? "" : "; ", row_title(table, row), verdict,
+    others += fmt::format("{}{}: {}{}", others.empty() ? "" : "; ", row_title(table, row, true), verdict,
                           std::isfinite(number_in(fitted, row)) ? fmt::format(" but {:.2f}", number_in(fitted, row)) : "");
   }
   return {table.name, fmt::format("{} of {}", count.as_declared, count.curves), others};
@@ -54,11 +56,11 @@ OrderRow order_row(const Table& table, const OrderCount& count) {
 
 // --- Runs ----------------------------------------------------------------------------------------------------------------
 
-constexpr int digits = 7;  ///< of the smallest error
+constexpr int decades = 7;  ///< of errors, from 1e-1 on
 
 struct QuickestRuns {
   std::string scene;
-  std::array<std::string, digits> runs;  ///< at 1e-1, 1e-2, …
+  std::array<std::string, decades> runs;  ///< at 1e-1, 1e-2, …
 };
 
 template <std::size_t digit>
@@ -84,7 +86,7 @@ std::optional<QuickestRuns> quickest_runs(const std::string& scene, const std::v
   for (const RunRecord* run : runs) candidates.push_back(measured(*run));
   if (std::ranges::all_of(candidates, [](const Measured& one) { return std::isnan(one.error); })) return std::nullopt;
   QuickestRuns row{scene, {}};
-  for (int digit = 1; digit <= digits; ++digit)
+  for (int digit = 1; digit <= decades; ++digit)
     if (const auto best = quickest(candidates, std::pow(10, -digit)))
       row.runs[digit - 1] = fmt::format("{} {:g}", runs[*best]->method, runs[*best]->step);
   return row;

@@ -44,7 +44,7 @@ std::string usual_verdict(const std::string& text) {
   }
   for (const std::string_view good : {"as declared", "as in theory", "as predicted", "below", "falls with d", "swings less"})
     if (text.ends_with(good)) return verdict(Standing::met, text);
-  if (one_of(text, {"agrees", "as wanted", "proportional", "within 10"})) return verdict(Standing::met, text);
+  if (one_of(text, {"agrees", "all converge", "as wanted", "proportional", "within 10"})) return verdict(Standing::met, text);
   return text.starts_with("no ") ? verdict(Standing::open, text) : text;
 }
 

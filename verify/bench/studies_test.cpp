@@ -23,7 +23,7 @@ using results::Column;
 using results::fit_order;
 using results::Role;
 using results::Table;
-using results::verdict;
+using results::order_verdict;
 using testing::AllOf;
 using testing::AnyOf;
 using testing::Contains;
@@ -87,12 +87,12 @@ TEST(OrderFit, KnowsUnequalRefinements) {
 }
 
 TEST(Verdict, IsWithinATenthToBothSides) {
-  const auto of = [](double order) { return verdict(results::OrderFit{order, order, order, 0, 3}, 2); };
+  const auto of = [](double order) { return order_verdict(results::OrderFit{order, order, order, 0, 3}, 2); };
   EXPECT_EQ(of(2.09), "met: 2 as declared");
   EXPECT_EQ(of(1.91), "met: 2 as declared");
   EXPECT_EQ(of(2.11), "missed: not 2");
   EXPECT_EQ(of(1.89), "missed: not 2");
-  EXPECT_EQ(verdict(std::nullopt, 2), "open: no order to be seen");
+  EXPECT_EQ(order_verdict(std::nullopt, 2), "open: no order to be seen");
 }
 
 // --- Tables ------------------------------------------------------------------------------------------------------------------
@@ -357,7 +357,7 @@ TEST_F(ProgramStudies, EveryCellOfTheAtlasEndsInAVerdict) {
   const auto all = tables("stability");  // in the order of their names
   ASSERT_THAT(all, SizeIs(6));
   const auto table = [&](const std::string& name) { return *std::ranges::find(all, "stability-" + name, &Table::name); };
-  EXPECT_THAT(verdicts(table("bar")), AllOf(SizeIs(3), Each("all converge")));
+  EXPECT_THAT(verdicts(table("bar")), AllOf(SizeIs(3), Each("met: all converge")));
   const auto all_cells = verdicts(table("atlas"));
   EXPECT_THAT(all_cells, SizeIs(4 * (solver::methods().size() + 3)));
   const auto known =

@@ -306,5 +306,24 @@ TEST(CompareTables, JudgeNoNoise) {
   for (const Role untold : {Role::note, Role::time}) EXPECT_EQ(judgement(untold, 1e-8, 2e-8, 0), Judgement::same);
 }
 
+/// Errors with ever smaller steps.
+Table curve(std::vector<Cell> steps, std::vector<Cell> errors) {
+  const std::vector<Cell> uncertainties(steps.size(), 1e-9);
+  return {"curve",
+          "",
+          {column("step", "s", Role::key, std::move(steps)), column("error", "1", Role::error, std::move(errors)),
+           column("uncertainty", "1", Role::uncertainty, uncertainties)}};
+}
+
+TEST(CompareTables, MatchRowsByTheirKeys) {
+  const auto judged = [](const Table& a, const Table& b) { return compare({{}, {}, {a}}, {{}, {}, {b}}).accuracy; };
+  const Table whole = curve({0.1, 0.05, 0.025}, {1e-3, 1e-4, 5e-9});
+  EXPECT_EQ(judged(whole, curve({0.025, 0.05, 0.1}, {5e-9, 1e-4, 1e-3})).judgement, Judgement::same) << "in another order";
+  EXPECT_EQ(judged(whole, curve({0.1, 0.05}, {1e-3, 1e-4})).judgement, Judgement::same) << "the error is not resolved";
+  EXPECT_EQ(judged(whole, curve({0.1, 0.025}, {1e-3, 5e-9})).judgement, Judgement::not_comparable);
+  EXPECT_EQ(judged(curve({0.1}, {1e-3}), curve({0.1, 0.05}, {1e-3, 1e-4})).judgement, Judgement::not_comparable);
+  EXPECT_EQ(judged(whole, curve({0.1, 0.05}, {1e-3, 2e-4})).judgement, Judgement::regression);
+}
+
 }  // namespace
 }  // namespace drape::verify::compare_test

@@ -106,7 +106,7 @@ TEST(Overview, ShowsTenOfWhatIsNotAsItWasWanted) {
   const Table not_met = results::overview({&all, 1}).at(0);
   EXPECT_EQ(rows(not_met), 10);
   EXPECT_THAT(not_met.description, HasSubstr("2 more"));
-  EXPECT_EQ(text_in(find_column(not_met, "row"), 9), "faster at 0.1");
+  EXPECT_EQ(text_in(find_column(not_met, "row"), 9), "faster error 0.1");
 }
 
 TEST(Conclusion, SaysOfRunsWhoIsQuickWhoIsWrongAndWhoFails) {
