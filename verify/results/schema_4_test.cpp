@@ -1,0 +1,58 @@
+// A file that an earlier program wrote reads as if this one had: schema-4.h5 is `study orders --quick` of November 2026.
+
+#include "results/file/schema_4.hpp"
+
+#include <gmock/gmock.h>
+
+#include <filesystem>
+
+#include "results/analysis/compare.hpp"
+#include "results/file/validate.hpp"
+#include "results/verdict.hpp"
+
+namespace drape::verify::schema_4_test {
+namespace {
+
+using namespace results;
+
+const std::filesystem::path old_file = std::filesystem::path(DRAPE_SOURCE_DIR) / "verify/results/schema-4.h5";
+
+TEST(SchemaFour, ReadsWithRolesVerdictsAndFigures) {
+  const std::vector<Table> tables = read_tables(old_file);
+  ASSERT_EQ(tables.size(), 1U);
+  const Table& table = tables[0];
+  EXPECT_EQ(table.figure, Figure::convergence);
+  const auto role = [&](const char* name) { return find_column(table, name)->role; };
+  EXPECT_EQ(role("method"), Role::key);
+  EXPECT_EQ(role("step"), Role::key);
+  EXPECT_EQ(role("error"), Role::error);
+  EXPECT_EQ(role("uncertainty"), Role::uncertainty);
+  EXPECT_EQ(role("order"), Role::note);
+  EXPECT_EQ(role("fitted_order"), Role::order);
+  EXPECT_EQ(role("spread"), Role::note);
+  int met = 0, missed = 0;
+  for (std::size_t row = 0; row < rows(table); ++row) {
+    const Standing verdict = standing(text_in(find_column(table, Role::verdict), row));
+    met += verdict == Standing::met ? 1 : 0;
+    missed += verdict == Standing::missed ? 1 : 0;
+  }
+  EXPECT_EQ(met, 13);
+  EXPECT_EQ(missed, 0);
+}
+
+TEST(SchemaFour, IsValidAndComparesWithItself) {
+  EXPECT_THAT(validate(old_file), testing::IsEmpty());
+  const Recording recording = read_recording(old_file);
+  EXPECT_EQ(exit_code(compare(recording, recording, {.times = false})), 0);
+}
+
+TEST(SchemaFour, SaysWhatIsNotAsItWasWanted) {
+  EXPECT_EQ(usual_verdict("NOT 4"), "missed: not 4");
+  EXPECT_EQ(usual_verdict("BDF(2) is NOT nearer"), "missed: BDF(2) is not nearer");
+  EXPECT_EQ(usual_verdict("as in theory"), "met: as in theory");
+  EXPECT_EQ(usual_verdict("no theory known"), "open: no theory known");
+  EXPECT_EQ(usual_verdict("stable but wrong"), "stable but wrong");
+}
+
+}  // namespace
+}  // namespace drape::verify::schema_4_test
