@@ -23,7 +23,7 @@ constexpr double too_exact = 1;
 /// hardly more time: it may be the quickest at smaller errors, if it is not yet slower by far, or so coarse that nothing
 /// follows.
 constexpr double hopeless = 2, by_far = 8;
-constexpr double hardly_more = 1.3, coarse = 1e-2;
+constexpr double hardly_more = 1.3, coarse_error = 1e-2;
 
 /// Steps may be so coarse that nothing converges in time: this many are left out then, as long as no finer one has succeeded.
 constexpr std::size_t leap = 4;
@@ -102,7 +102,7 @@ std::vector<Trial> try_family(const Problem& problem, const Family& family, cons
     const bool too_long = taken > 0.7 * effort.cap;
     succeeded |= trial.outcome == "success";
     const bool slower = taken > hardly_more * before;
-    const bool lost = !family.advised && (slower || trial.measured.error <= coarse) &&
+    const bool lost = !family.advised && (slower || trial.measured.error <= coarse_error) &&
                       outdone(trial.measured, rivals, slower ? hopeless : by_far);
     times_outdone = lost ? times_outdone + 1 : 0;
     before = taken;
