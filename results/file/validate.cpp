@@ -22,9 +22,9 @@ using hdf5::Item;
 using Shape = std::vector<std::uint64_t>;
 
 /// Versions of libraries may stand beside them.
-constexpr const char* facts[] = {"version",      "git_commit",   "compiler", "build_type", "compile_flags", "native",
-                                 "sanitizers",   "program_hash", "cpu",      "cores",      "host_os",       "started",
-                                 "command_line", "sweep",        "resumed",  "finished"};
+constexpr const char* known_facts[] = {"version",      "git_commit",   "compiler", "build_type", "compile_flags", "native",
+                                       "sanitizers",   "program_hash", "cpu",      "cores",      "host_os",       "started",
+                                       "command_line", "sweep",        "resumed",  "finished"};
 
 /// A file that is checked piece by piece against what must be there; what is left in the end is too much.
 class Check {
@@ -237,7 +237,7 @@ void check_table(Check& check, const Handle& file, const std::string& group, boo
 
 /// Texts with a description that are no facts we ask for: versions of libraries.
 void check_facts(Check& check, const Handle& file) {
-  std::set<std::string> names(std::begin(facts), std::end(facts));
+  std::set<std::string> names(std::begin(known_facts), std::end(known_facts));
   for (const std::string& name : hdf5::described_texts(file)) names.insert(name);
   for (const std::string& name : names) check.described_text("", name);
   check.attribute("", "description", "text");
