@@ -36,7 +36,7 @@ TEST(Provenance, KnowsAndExplainsAllItLists) {
 
 TEST(Provenance, AgreesWithTheCompiler) {
   EXPECT_THAT(facts().at("compiler"), HasSubstr(fmt::format("{}.{}.{}", __GNUC__, __GNUC_MINOR__, __GNUC_PATCHLEVEL__)));
-  EXPECT_THAT(facts().at("compile_flags"), MatchesRegex("-std=.* -O[0-3].* -fno-math-errno.*"));
+  EXPECT_THAT(facts().at("compile_flags"), MatchesRegex("-std=.* -O[0-3g].* -fno-math-errno.*"));
 #ifdef DRAPE_SANITIZE
   EXPECT_EQ(facts().at("sanitizers"), "address,undefined");
   EXPECT_THAT(facts().at("compile_flags"), HasSubstr("-fsanitize=address,undefined"));
