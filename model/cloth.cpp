@@ -35,7 +35,7 @@ class Forces {
   /// Sets f and counts.
   void force(double t, const Vectors& x, const Vectors& v, Vectors& f, bool whole);
 
-  /// For the energy guard, whose evaluations are no work of a method: sets f, uncounted.
+  /// For the energy guard, whose evaluations do not count as work of a method: sets f, uncounted.
   void whole(double t, const Vectors& x, const Vectors& v, Vectors& f) { add_up(whole_part, {t, x, v, normals_of(x)}, f); }
   void active(double t, const Vectors& x, const Vectors& v, Vectors& f) { add_up(active_part, {t, x, v, normals_of(x)}, f); }
   bool has_active() const;

@@ -27,15 +27,15 @@ struct Cloth {
   std::shared_ptr<Contacts> contacts;  ///< null without obstacles
 
   /// The force [N] whose work along the motion is what the sheet is given beside its energies and by damping: of forces that
-  /// are no gradient and not only take, of reaction constraints, and minus the whole force where pins move. Absent if there is
-  /// nothing of it.
+  /// are neither a gradient nor purely dissipative, of reaction constraints, and minus the whole force where pins move. Absent
+  /// if there is nothing of it.
   solver::SplitOde::Force given;
 };
 
 /// Compiles a scene: only forces with nonzero coefficients are built, and normals only if one of these asks for them.
 Cloth compile(const Scene& scene);
 
-/// The plan in one line, for people.
+/// The plan in one line, for users.
 std::string to_string(const Plan& plan);
 
 }  // namespace drape::model

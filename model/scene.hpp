@@ -36,7 +36,7 @@ struct Start {
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< [m/s]
 };
 
-/// A scene as people describe it. A value: copy it, change it, compile it.
+/// A scene as users describe it. A value: copy it, change it, compile it.
 struct Scene {
   std::string name;
   std::string description;

@@ -16,7 +16,7 @@ std::filesystem::path default_cache_folder();
 ///
 /// To the caller's key text is added all that he cannot know: the source code of solver/, model/ and reference/, the
 /// compiler and its flags, and the versions of the libraries. A file holds the complete text, compared on reading, and a
-/// checksum; a file that fails either test, or the caller's own, counts as absent. Files are never removed, but for what killed
+/// checksum; a file that fails either test, or the caller's own, counts as absent. Files are never removed, except what killed
 /// processes left unfinished: the folder may be deleted at any time. Nothing about the disk stops a run: what cannot be read is
 /// computed, what cannot be written is not kept.
 class Cache {

@@ -77,8 +77,8 @@ double largest(const std::vector<Vectors>& positions) {
   return result;
 }
 
-/// At most so many rounds of the power method, as long as they gain more than a tenth. Returns the growth as it was seen last:
-/// of the direction, or, where the rounds came to their end, of the one before.
+/// At most this number of rounds of the power method, as long as they gain more than a tenth. Returns the growth as it was seen
+/// last: of the direction, or, where the rounds came to their end, of the one before.
 double improve(State& direction, LinearMotion& motion, const Counted& counted, int rounds) {
   const double duration = counted.times.back() - counted.t0;
   double growth = 0;
@@ -116,7 +116,7 @@ State fastest_growing(const SplitOde& ode, const State& y0, double t0, std::span
       motion = std::move(finer);
     }
   } catch (const LinearMotion::NotSolved&) {
-    // what was found so far is measured, too
+    // what was found so far is measured as well
   }
   return direction;
 }

@@ -34,12 +34,12 @@ constexpr auto field = [](const auto& row) -> Cell { return to_cell(row.*member)
 template <class Row>
 struct ColumnOf {
   const char* name;         ///< in files, CSV and JSON
-  const char* title;        ///< for people; empty if not shown to them
+  const char* title;        ///< for users; empty if not shown to them
   const char* unit;         ///< "1" for numbers without dimension, empty for text
   const char* description;  ///< what the numbers are
   Role role;
   Cell (*value)(const Row& row);
-  std::string (*shown)(const Row& row) = nullptr;  ///< if people see something else
+  std::string (*shown)(const Row& row) = nullptr;  ///< if users see something else
 };
 
 /// What columns of several groups differ in: it stands for "{}" in their names, titles and descriptions.

@@ -98,7 +98,7 @@ inline bool comparable(const ErrorRecord& error) {
   return error.growth <= comparable_growth && error.reference_error <= comparable_error;
 }
 
-/// An error below so many times its reference's own is no number to rely on.
+/// An error below this multiple of its reference's uncertainty is not a number to rely on.
 inline constexpr double resolution = 10;
 inline bool resolved(const ErrorRecord& error) { return error.rms >= resolution * error.reference_error; }
 
@@ -108,7 +108,7 @@ struct RunRecord {
   std::string scene;
   std::string scene_toml;  ///< the complete scene, defaults and overrides included
   std::string overrides;   ///< what was set differently from the scene, for example "material.damping=0.5"
-  std::string plan;        ///< what the scene compiled to, for people
+  std::string plan;        ///< what the scene compiled to, for users
   std::string method;      ///< as on the command line, for example "bdf2/cholesky"
   std::string stage_solver;
   std::string linear_solver;

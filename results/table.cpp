@@ -27,7 +27,7 @@ std::optional<Value> named(const auto& names, std::string_view name) {
   return static_cast<Value>(found - names.begin());
 }
 
-constexpr std::size_t widest = 500;  ///< characters of a cell for people; CSV and JSON have all of it
+constexpr std::size_t widest = 500;  ///< characters of a cell for users; CSV and JSON have all of it
 
 /// Calls the function for the alternative that a cell holds.
 template <class... Functions>

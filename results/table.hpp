@@ -23,7 +23,7 @@ enum class Role {
   counter,      ///< work, the same on every machine
   time,         ///< what depends on the machine and the hour
   verdict,      ///< what the row comes to: see verdict.hpp
-  note,         ///< for people only
+  note,         ///< for users only
 };
 
 /// The role as files name it, for example "key".
@@ -35,12 +35,12 @@ std::optional<Role> role_named(std::string_view name);
 /// A column of a table.
 struct Column {
   std::string name;         ///< in files, CSV and JSON
-  std::string title;        ///< for people; empty if not shown to them
+  std::string title;        ///< for users; empty if not shown to them
   std::string unit;         ///< "1" for numbers without dimension, empty for text
   std::string description;  ///< what the numbers are
   Role role;
   std::vector<Cell> cells;
-  std::vector<std::string> shown;  ///< what people see in place of the cells; empty: the cells, numbers with four digits
+  std::vector<std::string> shown;  ///< what users see in place of the cells; empty: the cells, numbers with four digits
 };
 
 /// What the report draws of a table besides the table itself.
@@ -52,7 +52,7 @@ std::string_view to_string(Figure figure);
 /// Nothing if no figure has this name.
 std::optional<Figure> figure_named(std::string_view name);
 
-/// A result that is no single run: rows of equally long columns. Plain data.
+/// A result that is not a single run: rows of equally long columns. Plain data.
 struct Table {
   std::string name;         ///< unique in a file
   std::string description;  ///< one sentence
@@ -74,7 +74,7 @@ const Column* find_column(const Table& table, Role role);
 std::string text_in(const Column* column, std::size_t row);
 double number_in(const Column* column, std::size_t row);
 
-/// One line per row, aligned for people; "no rows" without any. Columns without any value or title are left out.
+/// One line per row, aligned for users; "no rows" without any. Columns without any value or title are left out.
 std::string to_text(const Table& table);
 
 /// All columns with a header (RFC 4180, but lines end with a line feed). Numbers read back as the same numbers; a cell is

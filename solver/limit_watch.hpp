@@ -38,7 +38,7 @@ class LimitWatch {
   void rest() { place_ = -(rest_ *= 2); }
 
  private:
-  static constexpr int period = 8;        ///< three of so many accelerations are looked at
+  static constexpr int period = 8;        ///< number of accelerations of which three are examined
   static constexpr double nearly = 0.95;  ///< of 4: other modes make it less
 
   Vectors differences_;

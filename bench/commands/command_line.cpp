@@ -34,7 +34,7 @@ constexpr int bad_input = 2;
 /// Without a standard stream the next file that is opened would have its number, and what is printed would go there.
 void open_standard_streams() {
   for (const int fd : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
-    if (fcntl(fd, F_GETFD) < 0 && open("/dev/null", O_RDWR) < 0)  // NOLINT(android-cloexec-open): children have them, too
+    if (fcntl(fd, F_GETFD) < 0 && open("/dev/null", O_RDWR) < 0)  // NOLINT(android-cloexec-open): children have them as well
       throw std::system_error(errno, std::generic_category(), "/dev/null");
 }
 

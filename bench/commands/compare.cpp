@@ -42,7 +42,7 @@ void add_compare(CLI::App& app, int& exit_code) {
   command.add_flag_callback(
       "--no-times", [=] { a->options.times = false; }, "compare accuracy and work only");
   command.add_flag("--quiet-machine", a->options.quiet,
-                   "judge what all cells' times share, too: the machine was as quick for B as for A");
+                   "judge what all cells' times share as well: the machine was as quick for B as for A");
   command.footer(
       help_text("Cells are matched by scene, method, parameters, step and end; tables by name. Exit code: 0 the same or "
                 "better, 1 a regression, 2 not comparable."));

@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
-/// Help as people read it: as wide as the terminal.
+/// Help as users read it: as wide as the terminal.
 namespace drape::bench {
 
 /// A paragraph of help, broken into lines that the terminal holds.

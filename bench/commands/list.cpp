@@ -15,7 +15,7 @@ struct Kind {
 };
 constexpr Kind kinds[] = {{"scenes", scene_choices}, {"methods", method_choices}, {"studies", study_choices}};
 
-/// The names of one kind for programs, or all kinds for people.
+/// The names of one kind for programs, or all kinds for users.
 void list(const std::string& kind) {
   if (kind.empty()) {
     std::string_view separator;

@@ -56,7 +56,7 @@ void add_agreement(CLI::App& command, double& agreement) {
 void add_record_options(CLI::App& command, Output& output) {
   command
       .add_option("--out", output.sweep.out,
-                  "HDF5 file to record in; must not exist, but for --resume [results/runs/<time>-<job>-<process>.h5]")
+                  "HDF5 file to record in; must not exist, except with --resume [results/runs/<time>-<job>-<process>.h5]")
       ->type_name("FILE.h5")
       ->check(output_name());
   command

@@ -22,10 +22,10 @@ void add_agreement(CLI::App& command, double& agreement);
 /// The options --out, --resume and --format.
 void add_record_options(CLI::App& command, Output& output);
 
-/// Of what is made of tables only.
+/// Options of commands that write tables.
 void add_table_options(CLI::App& command, Output& output);
 
-/// Of runs, too.
+/// Options of commands that run scenes: those of tables, and limits.
 void add_output_options(CLI::App& command, Output& output);
 
 /// The file asked for, or one named after the job.
@@ -39,7 +39,7 @@ void print_table(const results::Table& table, const std::string& format);
 /// Tables under their descriptions; as CSV under their names; as JSON in one object.
 void print_tables(const std::vector<results::Table>& tables, const std::string& format);
 
-/// Only among tables for people.
+/// Only among tables for users.
 void say_where(const std::filesystem::path& out, const std::string& format);
 
 }  // namespace drape::bench

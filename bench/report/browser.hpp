@@ -15,9 +15,9 @@ struct Browsed {
 /// How long a page may take before Chromium is ended [s]: three times what one of 42 figures took on a machine with other work.
 inline constexpr double browsing_time = 300;
 
-/// Loads an HTML file in a window of so many pixels and runs a script in it once its figures are drawn (async code; it calls
-/// see(text) at most once). Chromium is Debian's, found on PATH. Throws std::system_error: no such file (there is no Chromium),
-/// timed out after browsing_time, interrupted.
+/// Loads an HTML file in a window of this size in pixels and runs a script in it once its figures are drawn (async code; it
+/// calls see(text) at most once). Chromium is Debian's, found on PATH. Throws std::system_error: no such file (there is no
+/// Chromium), timed out after browsing_time, interrupted.
 Browsed browse(const std::filesystem::path& page, const std::string& script, int width);
 
 }  // namespace drape::bench

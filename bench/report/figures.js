@@ -38,7 +38,7 @@ function workPrecisionLayout(width, colours, rows, uncertainty, entries) {
 const kindLooks = {"our best": {symbol: "circle", width: 6}, "automatic": {symbol: "square"}, "explicit": {symbol: "triangle-up"}, "thesis": {symbol: "triangle-down"},
                    "SUNDIALS, tuned": {symbol: "diamond", width: 2.5}};
 
-/** A study's trials: all of them as dots, and what nobody of the same kind beats in both as curves. */
+/** A study's trials: all of them as dots, and those that no other of the same kind beats in both as curves. */
 function trialsFigure(file, table) {
   const rows = rowsOf(table).filter((row) => finitePositive(row.error) && finitePositive(row.time));
   if (!rows.length) return [];

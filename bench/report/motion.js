@@ -1,7 +1,7 @@
 "use strict";
 // What is shown of a motion: positions at any time, distances from the truth as colours, and what three.js draws.
 
-// Viridis [van der Walt, Smith 2015] at ninths: even steps of lightness, for the colour-blind, too.
+// Viridis [van der Walt, Smith 2015] at ninths: even steps of lightness, also for the colour-blind.
 const viridis = ["#440154", "#482878", "#3e4a89", "#31688e", "#26828e", "#1f9e89", "#35b779", "#6ece58", "#b5de2b", "#fde725"];
 
 const bytesOf = (text) => Uint8Array.from(atob(text), (character) => character.charCodeAt(0));

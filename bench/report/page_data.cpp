@@ -51,7 +51,7 @@ Json page_column(const results::Column& column) {
   return object;
 }
 
-/// A list for each quantity; of long runs every so many steps, and the last.
+/// A list for each quantity; long runs are thinned to equidistant steps and the last.
 Json page_steps(const std::vector<results::StepRecord>& steps) {
   const std::size_t stride = (steps.size() + most_steps_shown - 1) / most_steps_shown;
   Json object{{"every", stride}};

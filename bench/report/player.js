@@ -41,7 +41,7 @@ function showTime(player, t) {
   renderViews(player);
 }
 
-/** Plays from the time shown to the end, so many times slower or faster than it happened. */
+/** Plays from the time shown to the end, slowed down or sped up by a factor. */
 function play(player) {
   if (player.playing) return void (player.playing = false);
   player.playing = true;

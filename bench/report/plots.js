@@ -4,7 +4,7 @@
 /** A number that depends on nothing but the text. */
 const hashed = (text) => [...text].reduce((sum, letter) => (31 * sum + letter.codePointAt(0)) % 1000003, 7);
 
-/** The look of a method with its solvers, "bdf2/newton/cholesky", or of a package: {color, symbol, dash}. What looks.js does not know has a look of its own, too. */
+/** The look of a method with its solvers, "bdf2/newton/cholesky", or of a package: {color, symbol, dash}. What looks.js does not know also has a look of its own. */
 function style(name) {
   const [method, ...solvers] = name.split("/"), solver = solvers.join("/");
   const other = (list, text) => list[hashed(text) % list.length];
@@ -53,7 +53,7 @@ function axis(title, colours, more = {}) {
           tickcolor: colours.line, automargin: true, ...exponents, ...more};
 }
 
-/** What a log axis of such values needs: where they span few powers of ten, digits between these are labelled, too. */
+/** What a log axis of such values needs: where they span few powers of ten, digits between these are labelled as well. */
 function logTicks(values) {
   const seen = values.filter((value) => value > 0 && Number.isFinite(value)), decades = Math.log10(Math.max(...seen) / Math.min(...seen));
   return {type: "log", dtick: decades < 1 ? "D1" : decades < 2 ? "D2" : 1};

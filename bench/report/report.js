@@ -19,7 +19,7 @@ function showHeader() {
   document.getElementById("header").append(sources);
 }
 
-/** What the files come to: a table that report prints, too. */
+/** What the files come to: a table that report also prints. */
 const card = (table) => element("div", {className: "card"}, element("h3", {}, table.description),
                                 element("div", {className: "scroll", tabIndex: 0, role: "region", "aria-label": table.description}, tableElement(table)));
 

@@ -54,7 +54,7 @@ function stepChoice(runs) {
 const ofSteps = (value) => ({steps}) => (steps.t.length ? {t: steps.t, value: value(steps)} : undefined);
 const fromZero = {rangemode: "tozero"};
 const quantities = [
-  {title: "Energy", says: "Kinetic and potential energy together, after each step: it may only fall, but for what moves or blows.", label: "energy [J]",
+  {title: "Energy", says: "Kinetic and potential energy together, after each step: it may only fall, except where something moves or blows.", label: "energy [J]",
    of: ofSteps((steps) => steps.kinetic_energy.map((kinetic, k) => toNumber(kinetic) + toNumber(steps.potential_energy[k])))},
   {title: "Updates", says: "Updates of the iterate in each step: where they pile up the stage solver has a hard time.", label: "updates a step", axis: fromZero, of: ofSteps((steps) => steps.updates)},
   {title: "CG iterations", says: "Iterations of conjugate gradients in each step.", label: "CG iterations a step", axis: fromZero, of: ofSteps((steps) => steps.cg_iterations)},

@@ -8,13 +8,13 @@ function compareCells(a, b) {
   return number(a) && number(b) ? a - b : String(a).localeCompare(String(b), "en", {numeric: true});
 }
 
-/** What people see of a column: its title, unit and cells as texts. */
+/** What users see of a column: its title, unit and cells as texts. */
 function shownCells(column) {
   if (column.shown) return column.shown;
   return isNumeric(column) ? column.cells.map((cell) => shortNumber(toNumber(cell))) : column.cells.map((cell) => cell ?? "");
 }
 
-/** Those with a title and a value; all, if none has a title: such a table is for the file rather than for people. */
+/** Those with a title and a value; all, if none has a title: such a table is for the file rather than for users. */
 function visibleColumns(table) {
   const titled = table.columns.filter((column) => column.title !== "");
   const columns = titled.length ? titled : table.columns;

@@ -26,7 +26,7 @@ class EnergyGuard {
   /// method may be wrong by more than the little that was given until then.
   static constexpr double first_steps = 3, first_part = 0.25;
 
-  /// Keeps a reference to the cloth, whose start is the begin of the run.
+  /// Keeps a reference to the cloth, whose start is the beginning of the run.
   EnergyGuard(const model::Scene& scene, const model::Cloth& cloth);
 
   /// Follows the run by an accepted step; whether the energy is above its limit now, or no number.
@@ -62,7 +62,7 @@ class EnergyGuard {
       double work_to(const Point& next) const { return 0.5 * (f + next.f).cwiseProduct(next.x - x).sum(); }
     };
     const solver::SplitOde::Force& given_;
-    Point pair_, last_, now_;  ///< the begin of the pair of steps, and of the step
+    Point pair_, last_, now_;  ///< the beginning of the pair of steps, and of the step
     bool jumps_, halfway_ = false, paired_ = false;
     double fine_ = 0, coarse_ = 0;    ///< by single and by double steps [J]
     double doubt_ = 0, pending_ = 0;  ///< of all pairs, and of the step that has none yet [J]
@@ -84,7 +84,7 @@ class EnergyGuard {
   bool judges_ = true;
 };
 
-/// Ends a run whose energy exceeds the guard's limit, or is no number, as `unstable`; its last good time is that of the step
+/// Ends a run whose energy exceeds the guard's limit, or is not a number, as `unstable`; its last good time is that of the step
 /// before. Where the guard cannot judge, it says so.
 class EnergyGuardObserver : public Observer {
  public:

@@ -11,7 +11,7 @@ struct Interrupted {
   std::filesystem::path out = {};  ///< the file of the sweep; empty if nothing is recorded in it
 };
 
-/// From now on SIGINT and SIGTERM are only noted, but for a second one, which kills.
+/// From now on SIGINT and SIGTERM are only noted, except a second one, which kills.
 void note_interruptions();
 
 /// Throws Interrupted if there was one.

@@ -56,7 +56,7 @@ class Meter {
   std::int64_t evaluations_ = 0, newton_matrices_ = 0;
 };
 
-/// As long as it lives the process may take so much more memory; beyond that operator new throws std::bad_alloc.
+/// As long as it lives the process may take this much more memory; beyond that operator new throws std::bad_alloc.
 class MemoryLimit {
  public:
   explicit MemoryLimit(double megabytes);

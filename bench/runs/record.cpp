@@ -61,7 +61,7 @@ std::string_view stage_solver(const RunSpec& spec) {
   return spec.options.stage->name;
 }
 
-/// What is known of a run before it begins, but for its plan.
+/// What is known of a run before it begins, except its plan.
 results::RunRecord describe(const RunSpec& spec) {
   results::RunRecord run;
   run.scene = spec.scene.name;

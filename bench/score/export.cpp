@@ -54,7 +54,7 @@ its positions at times of its choice, from t = 0 to at most {4:g} s, as an HDF5 
     bench_integrators score --scene scene.toml --frame-time {5:g} frame-*.obj
 
 The order of the vertices does not matter, nor do additional ones. With --cost SECONDS, what the simulator took on the
-same machine, its cost is compared, too.
+same machine, its cost is compared as well.
 )",
                      base::printable(truth.scene.name),
                      truth.scene.description.empty() ? "It has no description" : base::printable(truth.scene.description),

@@ -12,7 +12,7 @@ namespace drape::bench {
 /// The motion of another simulator, its vertices put in the order of our particles.
 struct ExternalMotion {
   std::string name;                   ///< of the file, or of the first and the last one
-  int vertices = 0;                   ///< of a frame, those that are no particles included
+  int vertices = 0;                   ///< of a frame, including those that are not particles
   std::vector<double> times;          ///< [s], from 0 on
   std::vector<solver::State> states;  ///< velocities by difference() if `differenced`
   bool differenced = false;           ///< there were no velocities

@@ -34,7 +34,7 @@ inline constexpr double longest_lag = 0.25;
 /// How late a motion is, and how wrong if that is forgiven.
 struct Lag {
   Uncertain seconds;  ///< negative: it is ahead
-  Uncertain left;     ///< root mean square distance over frames and particles from the reference so much earlier [m]
+  Uncertain left;     ///< root mean square distance over frames and particles from the reference earlier by the lag [m]
 };
 
 std::vector<FrameScore> frame_scores(const ExternalMotion& external, const TrueMotion& truth);
@@ -47,8 +47,8 @@ Lag lag(const ExternalMotion& external, const TrueMotion& truth);
 
 /// How much faster than the reference's the kinetic energy of a motion falls: the rate δ [1/s] for which (1 − δ t) K_ref(t − τ)
 /// comes nearest to K(t), in the sum of squares over all frames. The lag τ is taken out first: what is late is not damped.
-/// Where velocities are differences of frames, the reference's are, too. Below zero: the motion is too lively. The uncertainty
-/// is the δ of the reference's other family. NaN if nothing moves.
+/// Where velocities are differences of frames, the reference's are as well. Below zero: the motion is too lively. The
+/// uncertainty is the δ of the reference's other family. NaN if nothing moves.
 Uncertain damping(const ExternalMotion& external, const TrueMotion& truth, const Lag& late);
 
 }  // namespace drape::bench

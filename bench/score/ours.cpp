@@ -12,7 +12,7 @@
 namespace drape::bench {
 namespace {
 
-constexpr double well = 4;  ///< so many times below an error or beyond a cost
+constexpr double well = 4;  ///< factor below an error or beyond a cost
 
 Problem problem_of(const TrueMotion& truth, const std::vector<FrameScore>& frames) {
   Problem problem{truth.scene.name, truth.scene, model::size(truth.scene)};

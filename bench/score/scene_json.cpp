@@ -75,7 +75,7 @@ Json particles(const model::Scene& scene, const model::Cloth& cloth) {
           {"mass_rule",
            grid.border_cells == model::BorderCells::dual
                ? "lumped: density times the area of the dual cell; half of an inner one on borders, a quarter in corners"
-               : "lumped: density times spacing_u spacing_v, on borders, too"},
+               : "lumped: density times spacing_u spacing_v, also on borders"},
           {"mass", std::vector<double>(cloth.ode.mass.begin(), cloth.ode.mass.end())}};
 }
 

@@ -112,7 +112,7 @@ struct Summary {
   const Scoring* scoring;
   const FrameScore *worst, *last, *deepest;
   double error, maximum, mean_error, end_error, reference_error, reference_depth;
-  Lag late;  ///< what is left: over the size, too
+  Lag late;  ///< what is left: also over the size
   Uncertain damping;
 };
 

@@ -23,7 +23,7 @@ std::vector<TableJob> score_jobs(const model::Scene& scene, const ExternalMotion
 /// Of all that determines them.
 std::string score_identity(const model::Scene& scene, const ExternalMotion& external, const ScoreOptions& options);
 
-/// These tables in a few lines, for people.
+/// These tables in a few lines, for users.
 std::string score_summary(const std::vector<results::Table>& tables);
 
 }  // namespace drape::bench

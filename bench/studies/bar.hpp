@@ -4,7 +4,7 @@
 
 namespace drape::bench {
 
-/// Asks that a value be at least, or at most, so much.
+/// A bound from below or above that a value should keep.
 struct Bar {
   double wanted;
   bool at_least;

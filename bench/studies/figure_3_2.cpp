@@ -207,7 +207,7 @@ constexpr results::ColumnOf<Spectrum> waves_verdict[] = {
     {"verdict", "motion", "", "what Euler does to the kinetic energy", Role::verdict, field<&Spectrum::verdict>},
 };
 
-/// The energies of all methods, and their ratios to the truth. `name` is that of the energy; if not `seen`, people see the
+/// The energies of all methods, and their ratios to the truth. `name` is that of the energy; if not `seen`, users see the
 /// ratios only.
 void add_energies(results::Table& table, const std::string& name, const std::vector<Spectrum>& rows, Energies Spectrum::*energy,
                   bool seen) {

@@ -18,7 +18,7 @@ namespace drape::bench {
 namespace {
 
 constexpr double box_step = 0.01;    ///< [s]
-constexpr std::size_t window = 5;    ///< steps of which people see the mean
+constexpr std::size_t window = 5;    ///< steps of which users see the mean
 constexpr std::size_t at_rest = 20;  ///< the last steps
 constexpr double most_iterations = 1.5, most_time = 1.3;
 
@@ -95,7 +95,7 @@ std::vector<Window> windows(const std::vector<RunRecord>& runs, std::size_t leng
   return all;
 }
 
-/// Means of `length` steps a row. Single ones are for the file: without titles people do not see them.
+/// Means of `length` steps a row. Single ones are for the file: without titles users do not see them.
 results::Table over_time(const char* name, const char* title, const std::vector<RunRecord>& runs, std::size_t length) {
   const std::vector<Window> rows = windows(runs, length);
   results::Table table = results::make_table(name, title, time_column, rows);

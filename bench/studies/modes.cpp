@@ -20,7 +20,7 @@ using reference::Motion;
 using reference::PinnedSheet;
 using solver::Method;
 
-/// A linear mode of a sheet, for people.
+/// A linear mode of a sheet, for users.
 struct NamedMode {
   std::string name;
   LinearMode mode;

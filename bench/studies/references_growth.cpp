@@ -76,7 +76,7 @@ constexpr ColumnOf<Grown> sheet_columns[] = {
 };
 
 constexpr ColumnOf<double> round_columns[] = {
-    {"rounds_{}", "{} rounds", "1", "growth of the perturbation that so many rounds find", Role::quantity,
+    {"rounds_{}", "{} rounds", "1", "growth of the perturbation found in this number of rounds", Role::quantity,
      [](const double& growth) -> Cell { return growth; }},
 };
 

@@ -34,8 +34,8 @@ struct Specimen {
   model::Cloth cloth;
 };
 
-/// How it is tried. A run may evaluate forces, or make Newton matrices, so many times before it counts as not finished: a limit
-/// that does not depend on the machine.
+/// How it is tried. A run may evaluate forces, or make Newton matrices, up to this number of times before it counts as not
+/// finished: a limit that does not depend on the machine.
 struct Conditions {
   const solver::Method* method;
   solver::Options options;

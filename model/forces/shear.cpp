@@ -37,7 +37,7 @@ void quadrant_jacobian(const Configuration& c, EdgeEnds P, EdgeEnds Q, double ka
 }  // namespace
 
 /// Conservative shear: W = ½ G <s_u, s_v>² with the viscous stress dG d/dt <s_u, s_v>. Every particle evaluates it in its
-/// quadrants, each with the weight l_u l_v/4 and the one-sided differences of its two edges, so that borders are no special
+/// quadrants, each with the weight l_u l_v/4 and the one-sided differences of its two edges, so that borders are not a special
 /// case; a cell holds one quadrant of each of its corners.
 std::optional<Term> make_shear(const Sheet& sheet) {
   const Material& m = sheet.material;

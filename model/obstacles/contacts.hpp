@@ -33,16 +33,16 @@ struct Depth {
 
 /// Which particles may touch which obstacles in a step.
 ///
-/// Every particle is asked for the nearest point of every obstacle at the begin of the step; the half-space behind that point
-/// moves with the obstacle and must not be left by the end of the step. A convex obstacle is thereby never tunnelled, however
-/// long the step: it lies on one side of the half-space. Limits: particles are not watched that would have to go more than d
-/// and twice as far as the fastest one and gravity go in a step; one obstacle gives a particle one half-space, so in hollows
-/// narrower than the way of a step the other wall is seen a step later; edges and faces of the sheet between particles are not
-/// tested (chapter 5).
+/// Every particle is asked for the nearest point of every obstacle at the beginning of the step; the half-space behind that
+/// point moves with the obstacle and must not be left by the end of the step. A convex obstacle is thereby never tunnelled,
+/// however long the step: it lies on one side of the half-space. Limits: particles are not watched that would have to go more
+/// than d and twice as far as the fastest one and gravity go in a step; one obstacle gives a particle one half-space, so in
+/// hollows narrower than the way of a step the other wall is seen a step later; edges and faces of the sheet between particles
+/// are not tested (chapter 5).
 class Contacts {
  public:
-  /// Of so many particles under this acceleration [m/s²]. Throws std::invalid_argument if the mesh of an obstacle cannot be
-  /// read.
+  /// For this number of particles under this acceleration [m/s²]. Throws std::invalid_argument if the mesh of an obstacle
+  /// cannot be read.
   Contacts(std::span<const ObstacleRule> obstacles, const ContactRule& rule, double gravity, int particles,
            solver::Counters& work);
 

@@ -45,7 +45,7 @@ enum class ShapeKind {
   mesh,      ///< a closed triangle mesh from `file`, times `scale`
 };
 
-/// An obstacle as people describe it.
+/// An obstacle as users describe it.
 struct ObstacleRule {
   ShapeKind kind = ShapeKind::plane;
   Eigen::Vector3d size = Eigen::Vector3d::Ones();  ///< [m]

@@ -29,7 +29,7 @@ class Value {
   double non_negative() const;  ///< ≥ 0
   int count() const;            ///< a whole number ≥ 1
   Eigen::Vector3d vector() const;
-  std::vector<Value> list(std::size_t size) const;  ///< an array of so many values
+  std::vector<Value> list(std::size_t size) const;  ///< an array of `size` values
   std::vector<Value> list() const;                  ///< an array
   const toml::table& table() const;
 

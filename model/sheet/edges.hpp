@@ -31,7 +31,7 @@ struct EdgeEnds {
 };
 
 /// For an energy gradient g = ∂E/∂p of the edge vector p that depends on the edge vector r: adds the blocks of the forces
-/// −g on the end and +g on the begin of p, derived by the ends of r. block = ∂g/∂r.
+/// −g on the end and +g on the beginning of p, derived by the ends of r. block = ∂g/∂r.
 template <class Add>
 void add_edge_pair(const Add& add, EdgeEnds p, EdgeEnds r, const Eigen::Matrix3d& block) {
   add(p.end, r.end, -block);

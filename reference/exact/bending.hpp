@@ -24,7 +24,7 @@ struct BentSheet {
 /// With the stretch λ = |s'| = 1 + τ/k, the slope θ of the tangent t = (cos θ, sin θ), the normal N and κ = θ',
 ///   whole:         (τ t − B s''')' = f e_z,                s'' = 0 at both ends, (τ t − B s''')_x = 0 at the free one;
 ///   along_normal:  (τ t)' − <N, B s''''> N = f e_z,        κ = 0 at both ends, (τ t − <N, B s'''> N)_x = 0 at the free one,
-/// the conditions being those to which the discrete forces of model/forces/plate.cpp converge: at the end node, too, its
+/// the conditions being those to which the discrete forces of model/forces/plate.cpp converge: at the end node as well, its
 /// bending force is projected. The tension τ is an unknown of its own, so that the stiffness k costs no digits. `whole` has
 /// layers of the width √(B/k) at both ends, in which λ' goes to zero.
 class BentStrip {

@@ -35,7 +35,7 @@ struct LinearMode {
 };
 
 /// The mode of the masses and springs themselves, without error of discretisation. With λ_u = 4/l_u² sin²(π m l_u/2L_u),
-/// λ_v likewise, σ11 = k1 ε_u + C12 ε_v, σ22 = k2 ε_v + C12 ε_u:
+/// λ_v in the same way, σ11 = k1 ε_u + C12 ε_v, σ22 = k2 ε_v + C12 ε_u:
 ///   transverse   ρ ω² = σ11 λ_u/(1+ε_u) + σ22 λ_v/(1+ε_v) + (B1 λ_u + B2 λ_v)(λ_u + λ_v)
 ///   along u      ρ ω² = k1 λ_u + σ22 λ_v/(1+ε_v), and the plate's part unless it is projected
 ///   ρ κ = k1 λ_u + k2 λ_v,   ρ c = d1 λ_u + d2 λ_v, and the plate's part, which D does not hold, where there is its force.

@@ -89,7 +89,7 @@ Trajectory solve(int formulas, const solver::SplitOde& ode, const solver::State&
   const FirstOrderOde first_order(ode, y0, t0);
   Cvode solver(first_order, formulas, t0, times.back(), options);
   Trajectory trajectory{{times.begin(), times.end()}, {}};
-  for (double t : times)  // CVODE does not take a first output time that is no step away
+  for (double t : times)  // CVODE does not take a first output time that is less than a step away
     trajectory.states.push_back(first_order.output(t, t == t0 ? first_order.initial() : solver.advance(t)));
   solver.count_work(*ode.work);
   return trajectory;

@@ -11,7 +11,7 @@ enum class Part { whole, linear, remainder };
 ///
 /// y = (positions [m], velocities [m/s]) of all coordinates, as forces read them: nothing is gathered or scattered. Pinned
 /// coordinates have no acceleration, so that they keep their prescribed velocities and move linearly, which every method
-/// reproduces to round-off; they are no unknowns. dx/dt = v belongs to the linear part. The ODE must outlive this object.
+/// reproduces to round-off; they are not unknowns. dx/dt = v belongs to the linear part. The ODE must outlive this object.
 /// Evaluations throw std::runtime_error if the result is not finite.
 class FirstOrderOde {
  public:

@@ -71,7 +71,7 @@ class Session {
     } catch (const std::exception& error) {
       reason_ = error.what();
     } catch (...) {
-      reason_ = "the force or its Jacobian threw something that is no std::exception";
+      reason_ = "the force or its Jacobian threw something that is not a std::exception";
     }
     threw_ = true;
     return -1;

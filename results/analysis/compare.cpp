@@ -227,7 +227,7 @@ void judge_shared(const std::vector<Timed>& cells, bool slower, const CompareOpt
                 slower ? Judgement::regression : Judgement::better});
 }
 
-/// Whether the tests could find anything with such samples, be they ever so different.
+/// Whether the tests could find anything with such samples, however different they are.
 bool can_tell(std::vector<Timed> cells, const CompareOptions& options) {
   double least = 1;
   for (Timed& cell : cells) {

@@ -27,7 +27,7 @@ struct CompareOptions {
   double error_factor = 1.01;  ///< an error grows if it does by this factor, beyond the uncertainties of both references
   double level = 0.01;         ///< probability that times of the same program are called slower
   double time_factor = 1.05;   ///< a slowdown below this is none
-  bool quiet = false;          ///< whether the machine was as quick for b as for a: then what all cells share is judged, too
+  bool quiet = false;          ///< whether the machine was as quick for b as for a: then what all cells share is judged as well
 };
 
 /// Compares b with a. Cells are matched by scene, method, parameters, step and end; tables by name, rows by their keys.

@@ -89,7 +89,7 @@ Judgement judge_counter(double a, double b) {
   return a > b ? Judgement::better : Judgement::regression;
 }
 
-/// A number of which nobody knows which way is better.
+/// A number whose better direction is unknown.
 Judgement judge_quantity(double a, double b, double factor) {
   if (std::isnan(a) && std::isnan(b)) return Judgement::same;
   const bool near = a == b || std::abs(b - a) <= (factor - 1) * std::max(std::abs(a), std::abs(b)) + round_off;

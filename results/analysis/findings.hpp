@@ -27,10 +27,10 @@ struct Findings {
 /// The worst of all judgements, with counts as its reason, and the ten worst cells as a table of this name.
 Judged summary(const Findings& findings, const std::string& name);
 
-/// Whether an error has grown from a to b by this factor and beyond the noise, or shrunk likewise.
+/// Whether an error has grown from a to b by this factor and beyond the noise, or shrunk by it.
 Judgement judge_error(double a, double b, double factor, double noise);
 
-/// A number for people.
+/// A number for users.
 std::string shown(double value);
 
 /// What tables of equal name say of accuracy and work.

@@ -16,7 +16,7 @@
 namespace drape::results {
 namespace {
 
-/// The keys of a row that people see; of a curve those that are texts, for all of its rows.
+/// The keys of a row that users see; of a curve those that are texts, for all of its rows.
 std::string row_title(const Table& table, std::size_t row, bool of_curve = false) {
   std::string title;
   for (const Column& column : table.columns) {
@@ -126,7 +126,7 @@ void add_missed(const Table& table, std::vector<Missed>& missed) {
       missed.push_back({table.name, row_title(table, row), verdict});
 }
 
-/// At most so many rows, and how many more there are.
+/// At most `most` rows, and the number of those left out.
 Table shortened(Table table, std::size_t most) {
   const std::size_t all = rows(table);
   if (all <= most) return table;

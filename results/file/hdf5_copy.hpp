@@ -18,7 +18,7 @@ struct Sealed {
 /// stores or than `most_numbers` allows, or if that process does not end well.
 Opened copied_in_sandbox(const Sealed& file);
 
-/// [bytes] The numbers and texts of a file may take so much memory.
+/// [bytes] Limit of the memory that numbers and texts of a file may take.
 std::size_t most_numbers(std::size_t file_size);
 
 }  // namespace drape::results::hdf5

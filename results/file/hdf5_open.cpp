@@ -42,7 +42,7 @@ bool begins(std::span<const std::byte> text, std::string_view with) {
 
 /// The library's part of a file and whether its checksum follows; without one it is all of the file.
 Sealed unseal(std::span<const std::byte> bytes) {
-  if (!begins(bytes, "\211HDF\r\n\032\n")) throw Error("is no HDF5 file");
+  if (!begins(bytes, "\211HDF\r\n\032\n")) throw Error("is not an HDF5 file");
   const auto seal = bytes.last(std::min(seal_size, bytes.size()));
   const auto content = bytes.first(bytes.size() - seal.size());
   if (!begins(seal, seal_name)) return {bytes, false};
@@ -51,9 +51,9 @@ Sealed unseal(std::span<const std::byte> bytes) {
 }
 
 std::string bytes_of(const std::filesystem::path& path) {
-  std::error_code unknown;  // then it is no regular file to us
+  std::error_code unknown;  // then it is not a regular file to us
   if (!std::filesystem::exists(path, unknown)) throw Error("there is no such file");
-  if (!std::filesystem::is_regular_file(path, unknown)) throw Error("is no regular file");
+  if (!std::filesystem::is_regular_file(path, unknown)) throw Error("is not a regular file");
   std::ifstream stream(path, std::ios::binary);
   if (!stream) throw Error("cannot be read");
   return {std::istreambuf_iterator<char>(stream), {}};

@@ -126,7 +126,7 @@ void Journal::read(const Provenance& provenance, Start start) {
   if (std::string(header_.begin(), header_.end()).starts_with(bytes)) return clear();
   std::istringstream sequence(bytes);
   const Provenance theirs = facts_in(next_item(sequence));
-  if (theirs.empty()) throw base::FileError(fmt::format("{}: is no journal of this program; remove it", path_.string()));
+  if (theirs.empty()) throw base::FileError(fmt::format("{}: is not a journal of this program; remove it", path_.string()));
   auto good = sequence.tellg();
   for (json item = next_item(sequence); is_unit(item); item = next_item(sequence)) {
     units_.insert_or_assign(item[0].get<std::string>(), Bytes(item[1].get_binary()));

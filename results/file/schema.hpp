@@ -6,7 +6,7 @@
 
 namespace drape::results {
 
-/// The layout of a run in the file: this one list serves writing and reading. results/README.md shows it for people.
+/// The layout of a run in the file: this one list serves writing and reading. results/README.md shows it for users.
 inline constexpr int schema_version = 5;
 inline constexpr int oldest_readable_version = 4;  ///< whose columns have no roles: see schema_4.hpp
 

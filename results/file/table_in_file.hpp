@@ -5,7 +5,7 @@
 
 namespace drape::results {
 
-/// Writes a table as a group of datasets, one for each column; what people are shown in place of cells is not kept.
+/// Writes a table as a group of datasets, one for each column; what users are shown in place of cells is not kept.
 void write_table(const hdf5::Handle& tables, const Table& table);
 
 /// `version`: of the file's schema.

@@ -53,7 +53,7 @@ class Check {
 
   bool group(const std::string& path) { return take(path, "group") && (attribute(path, "description", "text"), true); }
 
-  /// A dataset of so many dimensions; its shape if it is as it must be.
+  /// A dataset of this number of dimensions; its shape if it is as it must be.
   std::optional<Shape> numbers(const std::string& path, std::string_view type, std::size_t dimensions,
                                const std::optional<std::string>& unit) {
     const auto item = take(path, type);
@@ -235,7 +235,7 @@ void check_table(Check& check, const Handle& file, const std::string& group, boo
   }
 }
 
-/// Texts with a description that are no facts we ask for: versions of libraries.
+/// Texts with a description beyond the facts that we ask for: versions of libraries.
 void check_facts(Check& check, const Handle& file) {
   std::set<std::string> names(std::begin(known_facts), std::end(known_facts));
   for (const std::string& name : hdf5::described_texts(file)) names.insert(name);

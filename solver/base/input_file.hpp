@@ -12,7 +12,8 @@ struct UnreadableFile : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Throws UnreadableFile unless this is a regular file of at most so many bytes: devices and pipes never end, or never begin.
+/// Throws UnreadableFile unless this is a regular file of at most this number of bytes: devices and pipes never end, or never
+/// begin.
 void require_input_file(const std::filesystem::path& file, std::uintmax_t most_bytes);
 
 /// The bytes of a regular file. Throws UnreadableFile, also if the file is larger than this or grows beyond it.

@@ -6,7 +6,8 @@
 
 namespace drape::base {
 
-/// The larger of two numbers, and NaN if one of them is: std::max(a, NaN) is a, so an error that is no number would look small.
+/// The larger of two numbers, and NaN if one of them is: std::max(a, NaN) is a, so an error that is not a number would look
+/// small.
 inline double larger(double a, double b) { return a < b || std::isnan(b) ? b : a; }
 
 /// The largest of some numbers, NaN if one of them is; minus infinity if there are none.

@@ -4,11 +4,11 @@
 #include <string>
 #include <string_view>
 
-/// Texts of others, as names of files, keys and values, on their way to a terminal or a file that people read.
+/// Texts of others, as names of files, keys and values, on their way to a terminal or a file that users read.
 namespace drape::base {
 
 /// One line without anything that acts on a terminal or reorders what is shown: control characters, line breaks and invisible
-/// formatting characters become \n, \r, \t or \uXXXX, bytes that are no UTF-8 become \xXX.
+/// formatting characters become \n, \r, \t or \uXXXX, bytes that are not UTF-8 become \xXX.
 std::string printable(std::string_view text);
 
 /// The same, but line feeds stay: of a text that is laid out in lines. JSON remains the same JSON.

@@ -13,7 +13,7 @@ struct ChildSaid {
 };
 
 /// Runs a program, found on PATH unless its name has a slash, with the words after its name as arguments. One that takes longer
-/// than so many seconds is killed with all that it has started; so it is when a signal reaches us. Throws std::system_error: no
+/// than `seconds` is killed with its whole process group, as it is when a signal reaches us. Throws std::system_error: no
 /// such file (there is no such program), timed out, interrupted.
 ChildSaid run_child(std::vector<std::string> words, double seconds);
 

@@ -24,7 +24,7 @@
 namespace drape::base {
 namespace {
 
-/// How a copy ends, as exit codes that nobody else uses.
+/// How a copy ends, as exit codes that nothing else uses.
 enum Ending : int { done = 70, failed = 71, out_of_memory = 72 };
 
 constexpr const char* own_process = "process of its own";

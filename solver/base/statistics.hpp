@@ -10,7 +10,7 @@ double quantile(std::vector<double> numbers, double share);
 
 /// Two samples of times by their ranks: nothing is assumed of how times are distributed   [Mann, Whitney 1947].
 struct RankTest {
-  double slower = 1;       ///< probability that samples of one distribution look so much or more as if b took longer
+  double slower = 1;       ///< probability that samples of one distribution look at least as much as if b took longer
   double faster = 1;       ///< the same for a
   double superiority = 0;  ///< Â₁₂: probability that a time of b exceeds one of a; ½: no difference   [Vargha, Delaney 2000]
   double ratio = 1;        ///< median of all b/a   [Hodges, Lehmann 1963, of logarithms]

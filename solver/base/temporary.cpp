@@ -43,7 +43,7 @@ int create(const fs::path& path, Temporary::Kind kind) {
   return fd;
 }
 
-/// Whether an entry can be locked; where the file system has no locks, nobody else can lock it either.
+/// Whether an entry can be locked; where the file system has no locks, no other process can lock it either.
 bool locked(int fd) { return flock(fd, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK; }
 
 }  // namespace
@@ -64,7 +64,7 @@ Temporary::Temporary(const fs::path& folder, Kind kind) {
 }
 
 Temporary::~Temporary() {
-  std::error_code ignored;  // a destructor has nobody to tell
+  std::error_code ignored;  // a destructor has no caller to tell
   if (is_at(fd_, path_)) fs::remove_all(path_, ignored);
   close(fd_);
 }

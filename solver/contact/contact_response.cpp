@@ -129,7 +129,7 @@ void ContactResponse::configure(Touched& p) {
     p.free.setZero();
   } else {
     p.free = p.tangent();
-    if (p.free.trace() < 0.5) p.free.setZero();  // but for round-off
+    if (p.free.trace() < 0.5) p.free.setZero();  // except for round-off
   }
 }
 

@@ -15,7 +15,7 @@ namespace drape::solver {
 /// found together with the solution: at the end of the step <x, n> ≥ least, multipliers push, and one of the two is at its
 /// limit. A constrained particle sticks while its tangential multiplier stays below η times the normal one; else it slides, and
 /// η times the normal one acts against its motion. Friction lags: it is that of the multipliers and velocities of the step
-/// before, but for new contacts and for particles that it would turn round, which stick.
+/// before, except for new contacts and for particles that it would turn round, which stick.
 ///
 /// Constrained directions follow x0 + (t − t0) v in every method, so that one with history ends on the border as Euler does.
 /// After the step they move with the obstacle, and where they are new the history follows: an impact is a new beginning.

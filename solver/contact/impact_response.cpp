@@ -8,7 +8,7 @@
 namespace drape::solver {
 namespace {
 
-constexpr double border_noise = 1e-13;  ///< of a position [m]: so near to the border a particle rests on it
+constexpr double border_noise = 1e-13;  ///< of a position [m]: distance from the border at which a particle rests on it
 
 }  // namespace
 

@@ -34,7 +34,7 @@ class ImpactResponse {
     Contact contact;
     Eigen::Matrix3d allowed;  ///< projector on what the pins leave
     Eigen::Vector3d escape;   ///< displacement that raises <x, n> by 1
-    double start;             ///< least <x, n> at the begin of the step [m]
+    double start;             ///< least <x, n> at the beginning of the step [m]
     bool touched = false;
     double pushed = 0, impact = 0, load = 0;  ///< along `escape`: position [m], velocity [m/s], acceleration [m/s²]
   };

@@ -83,7 +83,8 @@ class Cholesky : public Preconditioner {
   std::vector<Lanes> work_;
 };
 
-/// Takes CHOLMOD's columns of G = L √D apart. Within a row what was solved for last comes last, lest the processor wait for it.
+/// Takes CHOLMOD's columns of G = L √D apart. Within a row what was solved for last comes last, to avoid stalls of the
+/// processor.
 void Cholesky::take_factor() {
   const int n = static_cast<int>(factor_->n);
   const int *const begin = static_cast<int*>(factor_->p), *const count = static_cast<int*>(factor_->nz);

@@ -59,8 +59,8 @@ struct GridLine {
 
   Lanes at(const double* x, int a) const { return lanes(x + begin + 3 * a); }
 
-  /// What couples node a to its neighbours. At the ends of a line that is no border, the ends of the next lines are read with
-  /// the coefficient 0: they must be finite.
+  /// What couples node a to its neighbours. At the ends of a line that is not a border, the ends of the next lines are read
+  /// with the coefficient 0: they must be finite.
   Lanes around(const double* x, int a) const {
     const FivePoint::Node& n = nodes[a];
     const double* const p = x + begin + 3 * a;

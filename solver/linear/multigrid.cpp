@@ -33,7 +33,7 @@ void each_red(const Level& level, int b, const F& f) {
 
 /// z = r / D on red nodes (a + b even), (r + what neighbours pull) / D on black ones. What then is left is on red nodes only:
 /// what their neighbours pull. It goes to the coarse grid. A line's black ends are first 0: the next lines read them, maybe
-/// before they are known, and nobody knows what z was.
+/// before they are known, and z is unknown.
 void smooth_down(Level& level, const Vectors& r, Vectors& z) {
   const FivePoint& A = level.A;
   level.r.setZero();
@@ -111,7 +111,7 @@ double smooth_up(Level& level, const Vectors& r, Vectors& z) {
 }
 
 /// One V(1,1) cycle on a grid, with Gauss–Seidel by colours; black before red on the way up makes it symmetric. Each way takes
-/// one pass over memory. Matrices that are no five-point star of a grid are left to modified incomplete Cholesky.
+/// one pass over memory. Matrices that are not a five-point star of a grid are left to modified incomplete Cholesky.
 class Multigrid : public Preconditioner {
  public:
   void analyze(const SparseMatrix&) override {}

@@ -12,7 +12,7 @@ constexpr double forcing = 0.02;          ///< tolerance of an iterative solve o
 constexpr double growth = 4;              ///< an update that makes |d| grow more leads away: Anderson's method is not monotone
 constexpr double smallest_part = 1e-3;    ///< of an update; below it there is no way on
 constexpr double slow_rate = 0.3;         ///< a Newton matrix that converges slower is renewed,
-constexpr int patience = 6;               ///< or after so many updates,
+constexpr int patience = 6;               ///< or after this number of updates,
 constexpr int most_patience = 12;         ///< even if it was made for this stage,
 constexpr double different_gamma = 0.25;  ///< or for a γ so far away
 constexpr double similar_gamma = 0.1;     ///< the constant matrix serves for a γ as near as this
@@ -145,7 +145,7 @@ bool AcceleratedLoop::backtrack(State& y) {
   return true;
 }
 
-/// The rest of the stage by Newton's method with line searches; false if that fails, too.
+/// The rest of the stage by Newton's method with line searches; false if that fails as well.
 bool AcceleratedLoop::search(State& y) {
   const int updates = result_.updates;
   search_.solve(*stage_, guess_, newton_, y, result_);

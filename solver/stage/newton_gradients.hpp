@@ -13,7 +13,7 @@ namespace drape::solver {
 /// They end when two parts are small. That of the residual, |J d − r| ≤ η |r|, is the forcing term of an inexact Newton method
 /// [Dembo, Eisenstat, Steihaug 1982]. It says little of d where springs are stiff and the cloth is slack: there d is almost all
 /// in modes that resist with hardly more than their mass and that have next to no part in r. So that |d| tells how far off v is
-/// as with a factor, the error of d must be a small part of d, too: in the norm of J, in which conjugate gradients know by how
+/// as with a factor, the error of d must also be a small part of d: in the norm of J, in which conjugate gradients know by how
 /// much it falls with every iteration [Hestenes, Stiefel 1952]; as J ≥ M it is no smaller in the norm of M. Wherever they end,
 /// <r, d> > 0, as a line search needs.
 class NewtonGradients {

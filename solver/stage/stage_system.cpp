@@ -112,7 +112,7 @@ double StageSystem::noise(const State& y, double gamma) const {
   return round_off(gamma * (spring_ * flat(y.x)).matrix().norm()) + underflow;
 }
 
-/// At rest b vanishes like r does, but for its noise, which a relative test alone would never get below.
+/// At rest b vanishes like r does, except for its noise, which a relative test alone would never get below.
 StageSystem::Scale StageSystem::scale(const State& y, double gamma) {
   multiply(A_, y.v, q_);
   ++work_.products;

@@ -17,7 +17,7 @@ namespace {
 using solver::SparseMatrix;
 using solver::Vectors;
 
-/// a = b + 3 c on vector fields of so many particles.
+/// a = b + 3 c on vector fields of this number of particles.
 class Triad {
  public:
   explicit Triad(int particles)
@@ -26,7 +26,7 @@ class Triad {
         a_(b_),
         calls_(std::max(1, 1000000 / particles)) {}
 
-  /// Bandwidth of some calls, so many that the clock's resolution does not matter [bytes/s].
+  /// Bandwidth over enough calls that the clock's resolution does not matter [bytes/s].
   double bandwidth() {
     const double time = seconds([&] {
       for (int k = 0; k < calls_; ++k) {

@@ -54,7 +54,8 @@ results::Table steps(bool quick, Checkpoint& checkpoint);
 results::Table iterations(bool quick, Checkpoint& checkpoint);
 results::Table bars(bool quick, Checkpoint& checkpoint);
 
-/// The bandwidth of an iteration of conjugate gradients without a preconditioner over that of the triad, in so many turns.
+/// The bandwidth of an iteration of conjugate gradients without a preconditioner over that of the triad, in this number of
+/// turns.
 std::vector<double> bandwidth_of_bare_iterations(int n, int turns);
 
 }  // namespace drape::bench::scaling_study

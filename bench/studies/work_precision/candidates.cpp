@@ -85,7 +85,7 @@ Family by_fraction(RunSpec spec, int halvings) {
   return family;
 }
 
-/// The loop of the thesis with another linear solver, to so many digits; and stages that end as far off as the time step.
+/// The loop of the thesis with another linear solver, to a number of digits; and stages that end as far off as the time step.
 void add_loose(std::vector<Family>& all, const model::Scene& scene, const std::string& method, int parts) {
   solver::Options options;
   for (const double tolerance : {0.1, 0.01}) {

@@ -61,13 +61,13 @@ std::vector<LeftOut> left_out(const model::Scene& scene, Search search, const Me
 /// sub-steps follow the stability limit, by fractions of that. Throws std::invalid_argument as choose_method() does.
 Family ladder(const model::Scene& scene, const std::string& method);
 
-/// From 0.1 on, two a decade, to so many digits.
+/// From 0.1 on, two a decade, to a number of digits.
 std::vector<double> tolerances(int finest);
 
 /// Into how many parts a tenth of the end is divided at most.
 int finest_parts(Search search);
 
-/// A fifth of the end, and steps that divide a tenth of it into 1 to so many parts, each about √2 times the next.
+/// A fifth of the end, and steps that divide a tenth of it into 1 to `most` parts, each about √2 times the next.
 std::vector<double> divided_steps(double end, int parts);
 
 }  // namespace drape::bench

@@ -17,7 +17,7 @@ std::string energy_fault(const RunSpec& spec);
 /// The states of a compiled scene at some times.
 using States = std::function<std::vector<solver::State>(const model::Cloth& cloth, std::span<const double> times)>;
 
-/// The same for a run of another code, seen at times that divide the run into so many equal parts.
+/// The same for a run of another code, seen at times that divide the run into equal parts.
 std::string energy_fault(const model::Scene& scene, const States& solve, int parts);
 
 }  // namespace drape::bench

@@ -17,7 +17,7 @@ constexpr double kept = 0.3;  ///< changes of γ that GMRES copes with without a
 const std::string gmres = "constant-gmres", constant = "constant", newton = "newton", newton_gmres = "newton-gmres",
                   klu = "klu";
 
-/// The smallest first: each search takes so many of them, as many as there are of ours.
+/// The smallest first: each search takes as many of them as there are of ours.
 std::size_t number_of(Search search) { return search == Search::full ? 48 : search == Search::usual ? 31 : 12; }
 
 PeerSetup by_steps(const std::string& tableau, double stage_tolerance, bool deduced = false) {

@@ -16,10 +16,10 @@
 namespace drape::bench {
 namespace {
 
-/// Below so many uncertainties of the truth an error says nothing.
+/// Below this multiple of the truth's uncertainty an error says nothing.
 constexpr double too_exact = 1;
 
-/// A family that is so many times slower than another of the same code twice in a row will not win, unless finer steps take
+/// A family that is slower by this factor than another of the same code twice in a row will not win, unless finer steps take
 /// hardly more time: it may be the quickest at smaller errors, if it is not yet slower by far, or so coarse that nothing
 /// follows.
 constexpr double hopeless = 2, by_far = 8;
@@ -32,7 +32,7 @@ constexpr std::size_t leap = 4;
 constexpr double slow = 100;
 constexpr int fewest_repetitions = 3;
 
-/// A first run may have been so much slower than others by chance.
+/// A first run may have been slower than others by this factor by chance.
 constexpr double slack = 1.4;
 
 double seconds(TimeOf time_of) {
@@ -81,7 +81,7 @@ Trial try_candidate(const Problem& problem, const Family& family, std::size_t ca
   return trial;
 }
 
-/// Whether a rival was as exact, and so many times quicker.
+/// Whether a rival was as exact and quicker by this factor.
 bool outdone(const results::Measured& trial, const std::vector<results::Measured>& rivals, double factor) {
   return !trial.times.empty() && std::ranges::any_of(rivals, [&](const results::Measured& other) {
     return !other.times.empty() && other.error <= trial.error && factor * other.times[0] < trial.times[0];

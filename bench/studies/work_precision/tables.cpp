@@ -259,7 +259,7 @@ results::Table winners_table(const std::vector<SceneTrials>& scenes) {
   const std::vector<WinnerGroup> groups = winner_groups(usual);
   const std::vector<WinnersRow> rows = winners_rows(scenes, groups);
   results::Table table{"winners",
-                       fmt::format("With hindsight: the quickest with an error of at most so much, and ratios to our best; "
+                       fmt::format("With hindsight: the quickest at each error, and ratios to our best; "
                                    "usual: {}; auto: the best method with automatic stages and linear solvers; {}",
                                    usual, reference::sundials_build()),
                        {}};

@@ -38,7 +38,7 @@ std::vector<std::string> packages();
 /// Where errors are in metres and times are compared with other codes'.
 bool is_peer_edge(const SceneTrials& scene);
 
-/// A bar about 100 × 100 particles of that scene: an error [m] in so many seconds per simulated second.
+/// A bar about 100 × 100 particles of that scene: an error [m] and its limit in seconds per simulated second.
 struct PeerBar {
   const char* contender;
   double error, seconds;

@@ -97,7 +97,7 @@ void find_truth(Problem& problem, Checkpoint& checkpoint) {
   }
 }
 
-/// Velocity Verlet, so many times below its stability limit, and extrapolated from twice that.
+/// Velocity Verlet, at a fraction of its stability limit, and extrapolated from twice that.
 std::vector<solver::Vectors> leapfrog(const Problem& problem, double fraction) {
   const auto positions = [&](double part) {
     RunSpec spec{problem.scene, "", &solver::method("verlet"), problem.times.front(), {}};
@@ -179,7 +179,7 @@ constexpr results::ColumnOf<Absent> absent_columns[] = {
     {"reason", "reason", "", "why it was not tried", results::Role::note, results::field<&Absent::reason>},
 };
 
-/// Our methods that are not tried, so that nobody takes their absence for a defeat.
+/// Our methods that are not tried, so that their absence is not taken for a defeat.
 results::Table left_out_table(const std::vector<Entry>& list, const Methods& methods) {
   std::vector<Absent> rows;
   for (const Entry& entry : list)

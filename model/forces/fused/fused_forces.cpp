@@ -8,7 +8,7 @@ namespace {
 
 using solver::Vectors;
 
-/// Columns at a time: so many of two lines fit into a cache of 32 KB. If x, v and f do not stay in a cache, fewer, so that
+/// Columns at a time: this number of two lines fits into a cache of 32 KB. If x, v and f do not stay in a cache, fewer, so that
 /// what comes next can be fetched meanwhile: more than a dozen cache lines at once and the processor would wait for them.
 constexpr int long_block = 128, short_block = 32;
 constexpr int cached_particles = 20'000;
@@ -52,7 +52,7 @@ GridSweep::GridSweep(const Grid& grid, const GridLaw& law)
       warp_width_(Eigen::ArrayXd::Zero(length_)) {
   weft_width_.head(grid.nu - 1) = 1;
   for (int a = 0; a < grid.nu; ++a) warp_width_[a] = grid.cell_width_u(a);
-  const std::ptrdiff_t stride = ((length_ / lanes + 2) | 1) * lanes;  // loops look at the columns before and behind, too
+  const std::ptrdiff_t stride = ((length_ / lanes + 2) | 1) * lanes;  // loops look at the columns before and behind as well
   memory_.setZero(50 * stride);
   Allocator allocate(memory_.data(), stride);
   double distance = 0;
