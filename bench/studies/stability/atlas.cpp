@@ -209,9 +209,9 @@ struct Endings {
 
 template <Verdict verdict>
 constexpr results::ColumnOf<Endings> count_column(const char* name) {
-  return {name,          to_string(verdict).data(),
-          "1",           "runs",
-          Role::counter, [](const Endings& row) { return to_cell(row.counts[static_cast<std::size_t>(verdict)]); }};
+  return {name, to_string(verdict).data(), "1", "runs", Role::quantity, [](const Endings& row) {
+            return to_cell(row.counts[static_cast<std::size_t>(verdict)]);
+          }};
 }
 
 constexpr results::ColumnOf<Endings> endings_columns[] = {
