@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <initializer_list>
+#include <utility>
 
 #include "results/verdict.hpp"
 
@@ -33,6 +34,25 @@ Figure usual_figure(const Table& table) {
   if (table.name == "stability-atlas") return Figure::stability;
   if (table.name.starts_with("figure-4.3") && has({"t"})) return Figure::over_time;
   return has({"step", "n"}) && has({"error", "rms"}) && has({"order"}) ? Figure::convergence : Figure::none;
+}
+
+void move_to_first_rows(Table& curves) {
+  const auto curve_of = [&](std::size_t row) {
+    std::string name;
+    for (const Column& column : curves.columns)
+      if (column.role == Role::key && column.unit.empty()) name.append(text_in(&column, row)).append("\n");
+    return name;
+  };
+  std::size_t first = 0;
+  for (std::size_t row = 0; row < rows(curves); ++row) {
+    if (curve_of(row) != curve_of(first)) first = row;
+    const bool is_last = row + 1 == rows(curves) || curve_of(row + 1) != curve_of(row);
+    if (!is_last || row == first) continue;
+    for (Column& column : curves.columns)
+      if (column.role == Role::verdict || column.role == Role::order || column.name == "spread") {
+        std::swap(column.cells[first], column.cells[row]);
+      }
+  }
 }
 
 std::string usual_verdict(const std::string& text) {

@@ -12,6 +12,9 @@ Role usual_role(std::string_view name, std::string_view unit);
 
 Figure usual_figure(const Table& table);
 
+/// Moves what a curve comes to from its last row, where such files have it, to its first.
+void move_to_first_rows(Table& curves);
+
 /// A verdict of such a file as verdict.hpp has it: "NOT 4" is "missed: not 4".
 std::string usual_verdict(const std::string& text);
 

@@ -105,6 +105,7 @@ Table read_table(const Handle& tables, const std::string& name, int version) {
     table.figure = read_named("figure", hdf5::read_text(group, "figure"), figure_named);
   } else {
     table.figure = usual_figure(table);
+    if (table.figure == Figure::convergence) move_to_first_rows(table);
   }
   return table;
 }

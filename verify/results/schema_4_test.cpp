@@ -38,6 +38,7 @@ TEST(SchemaFour, ReadsWithRolesVerdictsAndFigures) {
   }
   EXPECT_EQ(met, 13);
   EXPECT_EQ(missed, 0);
+  EXPECT_EQ(text_in(find_column(table, Role::verdict), 0), "met: 1 as declared") << "in the first row of the curve";
 }
 
 TEST(SchemaFour, IsValidAndComparesWithItself) {

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <deque>
 
 #include "bench/studies/bar.hpp"
 #include "bench/studies/scaling/scaling.hpp"
@@ -11,20 +10,27 @@
 namespace drape::bench::scaling_study {
 namespace {
 
-/// What a BDF(2) step of the large sheet costs a particle over what the same step of the small one costs. The small one is run
-/// several times over, for its steps are short, and both in turns, because the machine's speed drifts.
+/// What a BDF(2) step of the large sheet costs a particle over what the same step of the small one costs. After each of the
+/// large one the small one is run several times over, for its steps are short, and in turns, because the machine's speed
+/// drifts.
 std::vector<double> growth(int large, int small) {
   constexpr int copies = 5, steps = 5;
-  Run big(large, "bdf2");
-  std::deque<Run> little;
-  for (int k = 0; k < copies; ++k) little.emplace_back(small, "bdf2");
-  std::vector<double> ratios;
-  for (int k = 0; k < steps; ++k) {
+  const model::Cloth big = hung_sheet(large), little = hung_sheet(small);
+  std::vector<double> small_times;
+  StepClock clock([&](int count) {
+    if (count <= first_steps) return;
     std::vector<double> times;
-    const double time = big.advance() / big.particles();
-    for (Run& run : little) times.push_back(run.advance() / run.particles());
-    ratios.push_back(time / base::quantile(times, 0.5));
-  }
+    for (int k = 0; k < copies; ++k) {
+      StepClock own;
+      run_steps(small, "bdf2", little, count, own);
+      times.push_back(own.times.back());
+    }
+    small_times.push_back(base::quantile(times, 0.5));
+  });
+  run_steps(large, "bdf2", big, first_steps + steps, clock);
+  std::vector<double> ratios;
+  for (int k = 0; k < steps; ++k)
+    ratios.push_back(clock.times[first_steps + k] / big.ode.particles() / (small_times[k] / little.ode.particles()));
   return ratios;
 }
 

@@ -4,7 +4,9 @@
 #include <sys/resource.h>
 
 #include <cmath>
+#include <numeric>
 #include <optional>
+#include <stdexcept>
 
 #include "model/scene_file/scene_file.hpp"
 #include "results/columns.hpp"
@@ -18,10 +20,16 @@ std::vector<int> sizes(bool quick) {
   return {20, 50, 100, 200, 316, 500, 1000};
 }
 
-model::Cloth hung_sheet(int n) {
+namespace {
+
+model::Scene hung_scene(int n) {
   const model::Override size[] = {{"grid.n", std::to_string(n)}};
-  return model::compile(model::load_scene("hung-edge", size));
+  return model::load_scene("hung-edge", size);
 }
+
+}  // namespace
+
+model::Cloth hung_sheet(int n) { return model::compile(hung_scene(n)); }
 
 void with_threads(int n, const std::function<void(int threads)>& f) {
   for (const int threads : {1, 2}) {
@@ -32,18 +40,17 @@ void with_threads(int n, const std::function<void(int threads)>& f) {
   base::use_threads(1);
 }
 
-Run::Run(int n, const std::string& method)
-    : method_(method), cloth_(hung_sheet(n)), integrator_(cloth_.ode, solver::method(method), {}, cloth_.start) {
-  constexpr int first_steps = 2;  // they make the matrices
-  for (int k = 0; k < first_steps; ++k) advance();
+void StepClock::observe(const solver::StepReport&) {
+  times.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count());
+  if (between_) between_(static_cast<int>(times.size()));
+  start();
 }
 
-double Run::advance() {
-  solver::StageResult result;
-  const double time = seconds([&] { result = integrator_.step(step); });
-  if (result.outcome != solver::Outcome::success)
-    throw std::runtime_error(fmt::format("a step of {} failed: {}", method_, solver::to_string(result.outcome)));
-  return time;
+void run_steps(int n, const std::string& method, const model::Cloth& cloth, int steps, StepClock& clock) {
+  const RunSpec spec{hung_scene(n), "", &solver::method(method), step, {}};
+  Observer* const observers[] = {&clock};
+  const RunEnd end = run(spec, cloth, observers, {.steps = static_cast<std::size_t>(steps)});
+  if (!end.succeeded()) throw std::runtime_error(fmt::format("a step of {} failed: {}", method, end.result.message));
 }
 
 namespace {
@@ -67,10 +74,10 @@ double exponent(const std::vector<int>& sides, const std::vector<double>& times)
   return (x * y).sum() / x.square().sum();
 }
 
-std::string_view linear_solver_of(const Run& run) {
+std::string_view linear_solver_of(const solver::Counters& work) {
   std::string_view used;
   for (const solver::LinearSolver& kind : solver::linear_solvers())
-    if (run.count(fmt::format("linear_solver/{}", kind.name)) > 0) used = kind.name;
+    if (work.count(fmt::format("linear_solver/{}", kind.name)) > 0) used = kind.name;
   return used;
 }
 
@@ -86,16 +93,21 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(StepCost, seconds, updates, iterations, parti
 
 StepCost time_steps(int n, const std::string& method) {
   constexpr int timed = 3;
-  Run run(n, method);
-  const auto updates_before = run.count("updates"), iterations_before = run.count("cg_iterations");
-  double time = 0;
-  for (int k = 0; k < timed; ++k) time += run.advance() / timed;
-  return {.seconds = time,
-          .updates = static_cast<double>(run.count("updates") - updates_before) / timed,
-          .iterations = static_cast<double>(run.count("cg_iterations") - iterations_before) / timed,
-          .particles = run.particles(),
-          .linear_solver = std::string(linear_solver_of(run)),
-          .escalations = run.count("escalations"),
+  const model::Cloth cloth = hung_sheet(n);
+  const solver::Counters& work = *cloth.ode.work;
+  std::int64_t updates_before = 0, iterations_before = 0;
+  StepClock clock([&](int steps) {
+    if (steps != first_steps) return;
+    updates_before = work.count("updates");
+    iterations_before = work.count("cg_iterations");
+  });
+  run_steps(n, method, cloth, first_steps + timed, clock);
+  return {.seconds = std::accumulate(clock.times.begin() + first_steps, clock.times.end(), 0.0) / timed,
+          .updates = static_cast<double>(work.count("updates") - updates_before) / timed,
+          .iterations = static_cast<double>(work.count("cg_iterations") - iterations_before) / timed,
+          .particles = cloth.ode.particles(),
+          .linear_solver = std::string(linear_solver_of(work)),
+          .escalations = work.count("escalations"),
           .memory = peak_memory_mb()};
 }
 

@@ -3,12 +3,13 @@
 #include <chrono>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "bench/runs/run.hpp"
 #include "bench/studies/studies.hpp"
 #include "model/cloth.hpp"
 #include "results/table.hpp"
-#include "solver/integrator.hpp"
 
 /// What the tables of the study `scaling` share.
 namespace drape::bench::scaling_study {
@@ -32,22 +33,29 @@ double seconds(const F& f) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-/// A run of the sheet with the program's own choice of everything but the method, past its first steps.
-class Run {
+/// Takes the wall time of every step, without what is done between two.
+class StepClock : public Observer {
  public:
-  Run(int n, const std::string& method);
+  /// `between`: called after every step with the number of steps so far; may be empty.
+  explicit StepClock(std::function<void(int steps)> between = {}) : between_(std::move(between)) {}
 
-  /// Wall time of the next step [s]. Throws std::runtime_error if the step fails.
-  double advance();
+  void begin(const model::Scene&, const model::Cloth&, const solver::State&) override { start(); }
+  void observe(const solver::StepReport& step) override;
 
-  int particles() const { return cloth_.ode.particles(); }
-  std::int64_t count(std::string_view work) const { return cloth_.ode.work->count(work); }
+  std::vector<double> times;  ///< [s]
 
  private:
-  std::string method_;
-  model::Cloth cloth_;
-  solver::Integrator integrator_;
+  void start() { begin_ = std::chrono::steady_clock::now(); }
+
+  std::function<void(int steps)> between_;
+  std::chrono::steady_clock::time_point begin_;
 };
+
+constexpr int first_steps = 2;  ///< they make the matrices
+
+/// Runs this many steps of the sheet, with the program's own choice of everything but the method. Throws std::runtime_error if
+/// one fails.
+void run_steps(int n, const std::string& method, const model::Cloth& cloth, int steps, StepClock& clock);
 
 /// A table each: a step by size; an iteration of conjugate gradients by size; and whether the bars are met.
 results::Table steps(bool quick, Checkpoint& checkpoint);
