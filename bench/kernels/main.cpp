@@ -28,7 +28,7 @@ model::Scene sheet(int n, std::vector<model::Override> changes) {
   return model::load_scene("hung-edge", changes);
 }
 
-/// Nobody's exact grid, so that no branch or cancellation is special.
+/// Off the exact grid, so that no branch or cancellation is special.
 Vectors perturbed(const Vectors& x, double size) { return x + size * Vectors::Random(x.rows(), 3); }
 
 SparseMatrix stage_matrix(const solver::SplitOde& ode, double h) {

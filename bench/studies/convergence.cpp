@@ -156,7 +156,7 @@ void hold_still(std::vector<solver::Pin>& pins, int particles, int coordinate) {
 struct Errors {
   std::optional<double> rms = {}, maximum = {};  ///< the mean weighted with dual cells: the L2 norm
   std::optional<double> residual = {};           ///< [N]
-  std::optional<std::string> remark = {};        ///< why there is no number
+  std::optional<std::string> remark = {};        ///< why the number is missing
 };
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Errors, rms, maximum, residual, remark)
 
@@ -223,7 +223,7 @@ constexpr results::ColumnOf<Equilibrium> equilibrium_columns[] = {
     {"order", "order", "1", "between this resolution and the one before, of the rms error", Role::note,
      results::field<&Equilibrium::order>},
     {"residual", "", "N", "largest force that was left", Role::note, of_errors<&Errors::residual>},
-    {"remark", "remark", "", "why there is no number", Role::note, of_errors<&Errors::remark>},
+    {"remark", "remark", "", "why the number is missing", Role::note, of_errors<&Errors::remark>},
     {"uncertainty", "", "m", "of the exact solution", Role::uncertainty, results::field<&Equilibrium::uncertainty>},
 };
 

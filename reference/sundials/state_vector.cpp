@@ -10,7 +10,8 @@ namespace {
 
 using Array = Eigen::Map<Eigen::ArrayXd>;
 
-/// So many numbers of a sum of several vectors are added up before they are stored: they stay in the first-level cache.
+/// A block of this many numbers of a sum of vectors is added up before it is stored: it stays in the first-level
+/// cache.
 constexpr Eigen::Index chunk = 128;
 
 Array positions(N_Vector vector) {

@@ -191,7 +191,7 @@ TEST(ReferenceError, PassesOnWhatTheForceOrItsJacobianThrew) {
   EXPECT_THAT(failure(problem).what(), HasSubstr("the cloth is torn"));
   problem = damped_oscillator();
   problem.ode.jacobian = [](double, const Vectors&, const Vectors&, SparseMatrix&, SparseMatrix&) { throw 42; };
-  EXPECT_THAT(failure(problem).what(), HasSubstr("no std::exception"));
+  EXPECT_THAT(failure(problem).what(), HasSubstr("not a std::exception"));
 }
 
 TEST(ReferenceError, SaysThatTheJacobianIsNotFinite) {

@@ -325,7 +325,7 @@ TEST(ReadRuns, NamesAFileThatIsNotThere) {
 
 TEST(ReadRuns, RefusesAFileThatIsNotHdf5) {
   const fs::path text = fs::path(DRAPE_SOURCE_DIR) / "README.md";
-  EXPECT_THAT(complaint([&] { read_runs(text); }), AllOf(HasSubstr(text.string()), HasSubstr("is no HDF5 file")));
+  EXPECT_THAT(complaint([&] { read_runs(text); }), AllOf(HasSubstr(text.string()), HasSubstr("is not an HDF5 file")));
 }
 
 TEST(ReadRuns, RefusesATruncatedFile) {

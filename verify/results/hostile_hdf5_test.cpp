@@ -135,9 +135,9 @@ TEST_F(HostileHdf5, LinksThatLeadElsewhere) {
 
 TEST_F(HostileHdf5, NoRegularFile) {
   ASSERT_EQ(mkfifo((program.folder() / "pipe.h5").c_str(), 0666), 0);
-  EXPECT_THAT(refused("pipe.h5"), HasSubstr("is no regular file"));
-  EXPECT_THAT(refused("/dev/zero"), HasSubstr("is no regular file"));
-  EXPECT_THAT(refused("."), HasSubstr("is no regular file"));
+  EXPECT_THAT(refused("pipe.h5"), HasSubstr("is not a regular file"));
+  EXPECT_THAT(refused("/dev/zero"), HasSubstr("is not a regular file"));
+  EXPECT_THAT(refused("."), HasSubstr("is not a regular file"));
 }
 
 // --- What h5py has changed -----------------------------------------------------------------------------------------------

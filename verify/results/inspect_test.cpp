@@ -84,7 +84,7 @@ TEST_F(Inspect, SaysWhatThereIsInstead) {
   EXPECT_THAT(complaint({"inspect", "nothing.h5"}), HasSubstr("nothing.h5: there is no such file"));
   EXPECT_THAT(complaint({"compare", "a.h5", "nothing.h5"}), HasSubstr("nothing.h5: there is no such file"));
   program_.write("text.h5", "no HDF5");
-  EXPECT_THAT(complaint({"inspect", "text.h5"}), HasSubstr("text.h5: is no HDF5 file"));
+  EXPECT_THAT(complaint({"inspect", "text.h5"}), HasSubstr("text.h5: is not an HDF5 file"));
 }
 
 TEST_F(Inspect, SaysWhetherAFileIsAsSpecified) {

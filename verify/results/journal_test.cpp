@@ -121,7 +121,7 @@ TEST(Journal, RefusesWhatIsNotItsOwn) {
   EXPECT_THAT(complaint([&] { place.open(Start::resumed, other_sweep); }), HasSubstr("something else"));
   EXPECT_EQ(content(place.journal), whole);
   std::ofstream(place.journal) << "somebody's notes";
-  EXPECT_THAT(complaint([&] { place.open(); }), HasSubstr("runs.h5.journal: is no journal"));
+  EXPECT_THAT(complaint([&] { place.open(); }), HasSubstr("runs.h5.journal: is not a journal"));
   EXPECT_EQ(content(place.journal), "somebody's notes");
 }
 
@@ -167,7 +167,7 @@ TEST(Journal, ThatIsNoRegularFileIsRefused) {
 TEST(Journal, OfDeeplyNestedListsIsNoJournal) {
   const Place place;
   std::ofstream(place.journal) << std::string(10'000'000, '\x81');
-  EXPECT_THAT(complaint([&] { place.open(); }), HasSubstr("runs.h5.journal: is no journal"));
+  EXPECT_THAT(complaint([&] { place.open(); }), HasSubstr("runs.h5.journal: is not a journal"));
 }
 
 }  // namespace
