@@ -142,7 +142,7 @@ const std::vector<BadInput> bad_inputs = {
     {"UnknownSceneOfStudy", {"study", "work-precision", "--scene", "no-such"}, {"no-such", "hung-edge"}},
     {"SetOfStudyWithoutScene", {"study", "work-precision", "--set", "grid.n=5"}, {"--set", "--scene"}},
     {"OutExistsForStudy", {"study", "hung-sheets", "--quick", "--out", "exists.h5"}, {"exists.h5 exists", "another --out"}},
-    {"ResumeAFileThatIsNone", run_with("--out", {"exists.h5"}) + Words{"--resume"}, {"exists.h5: ", "no HDF5 file"}},
+    {"ResumeAFileThatIsNone", run_with("--out", {"exists.h5"}) + Words{"--resume"}, {"exists.h5: ", "not an HDF5 file"}},
     {"ResumeWithoutOut", run_with() + Words{"--resume"}, {"--resume requires --out"}},
     {"ResumeWithFrames",
      run_with("--out", {"a.h5"}) + Words{"--resume", "--frames", "new"},
