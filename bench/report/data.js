@@ -1,29 +1,34 @@
-"use strict";
 // What is in the page: the files, their tables by column, and the texts that numbers are shown as.
 
-const {files, overview} = JSON.parse(document.getElementById("data").textContent);
+export const {files, overview} = JSON.parse(document.getElementById("data").textContent);
 
 /** An element with properties and children; strings become text, never HTML. */
-function element(name, properties = {}, ...children) {
+export function element(name, properties = {}, ...children) {
   const made = document.createElement(name);
   for (const [key, value] of Object.entries(properties)) {
-    if (key === "on") for (const [event, react] of Object.entries(value)) made.addEventListener(event, react);
-    else if (key in made) made[key] = value;
-    else made.setAttribute(key, value);
+    if (key === "on")
+      for (const [event, react] of Object.entries(value)) made.addEventListener(event, react);
+    else if (key in made)
+      made[key] = value;
+    else
+      made.setAttribute(key, value);
   }
   made.append(...children.filter((child) => child !== null && child !== undefined));
   return made;
 }
 
-const fact = (file, name) => file.provenance.find((any) => any.name === name)?.value ?? "unknown";
+export const fact = (file, name) => file.provenance.find((any) => any.name === name)?.value ?? "unknown";
 
 /** A number of the page's data, which has texts in place of infinities. */
-const toNumber = (cell) => (cell === null || cell === undefined ? NaN : cell === "inf" ? Infinity : cell === "-inf" ? -Infinity : cell);
+export function toNumber(cell) {
+  if (cell === "inf") return Infinity;
+  return cell === "-inf" ? -Infinity : cell ?? NaN;
+}
 
-const isNumeric = (column) => column.unit !== "";
+export const isNumeric = (column) => column.unit !== "";
 
 /** Four digits, as in the program's own tables. */
-function shortNumber(value) {
+export function shortNumber(value) {
   if (value === null || Number.isNaN(value)) return "";
   if (!Number.isFinite(value)) return value > 0 ? "∞" : "−∞";
   if (Number.isInteger(value) && Math.abs(value) < 1e7) return String(value);
@@ -35,21 +40,21 @@ function shortNumber(value) {
 }
 
 /** The cells of a column of a table, numbers as numbers; undefined if there is none of that name. */
-function cellsOf(table, name) {
+export function cellsOf(table, name) {
   const column = table.columns.find((any) => any.name === name);
   if (!column) return undefined;
   return isNumeric(column) ? column.cells.map(toNumber) : column.cells.map((cell) => cell ?? "");
 }
 
 /** Rows of a table as objects. */
-function rowsOf(table) {
+export function rowsOf(table) {
   const columns = table.columns.map((column) => [column.name, cellsOf(table, column.name)]);
   const length = table.columns[0]?.cells.length ?? 0;
   return Array.from({length}, (_, k) => Object.fromEntries(columns.map(([name, cells]) => [name, cells[k]])));
 }
 
 /** A Map from key(item) to the items of that key, in order of appearance. */
-function groupBy(items, key) {
+export function groupBy(items, key) {
   const groups = new Map();
   for (const item of items) {
     const name = key(item);
@@ -59,14 +64,14 @@ function groupBy(items, key) {
   return groups;
 }
 
-const unique = (items) => [...new Set(items)];
+export const unique = (items) => [...new Set(items)];
 
 /** Whether a verdict says that something is not as it was wanted (results/verdict.hpp). */
-const isMissed = (verdict) => /^missed(:|$)/.test(verdict);
+export const isMissed = (verdict) => /^missed(:|$)/.test(verdict);
 
 /** Columns {name, unit, cells} as CSV [RFC 4180]: numbers read back as the same numbers. */
 function toCsv(columns) {
-  const quoted = (text) => (/[",\n\r]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
+  const quoted = (text) => (/[",\n\r]/.test(text) ? `"${text.replaceAll("\"", "\"\"")}"` : text);
   const cell = (value) => (value === null || value === undefined || Number.isNaN(value) ? "" : quoted(String(value)));
   const text = (value) => (value === Infinity ? "inf" : value === -Infinity ? "-inf" : cell(value));
   const lines = [columns.map((column) => quoted(column.name)).join(",")];
@@ -76,7 +81,7 @@ function toCsv(columns) {
 }
 
 /** A link that saves a table as CSV; columns() is asked when it is used. */
-function csvLink(name, columns) {
+export function csvLink(name, columns) {
   const link = element("a", {className: "action", href: "#", download: `${fileName(name)}.csv`}, "CSV");
   link.addEventListener("click", () => {
     URL.revokeObjectURL(link.href);
@@ -85,7 +90,8 @@ function csvLink(name, columns) {
   return link;
 }
 
-const fileName = (text) => text.replace(/[^\p{L}\p{N}.]+/gu, "-").replace(/^[-.]+|-$/g, "");
+export const fileName = (text) => text.replace(/[^\p{L}\p{N}.]+/gu, "-").replace(/^[-.]+|-$/g, "");
 
-const commandLine = (file) => element("p", {className: "command"}, "from ", element("code", {}, file.file), ", made by ",
-                                      element("code", {}, fact(file, "command_line")));
+export const commandLine = (file) => element(
+    "p", {className: "command"}, "from ", element("code", {}, file.file), ", made by ",
+    element("code", {}, fact(file, "command_line")));

@@ -8,7 +8,6 @@ namespace drape::bench::embedded {
 
 extern const std::string_view head_html, body_html, style_css;
 extern const std::string_view plotly_js, three_js, orbit_controls_js;
-extern const std::string_view data_js, tables_js, looks_js, plots_js, figures_js, run_figures_js, motion_js, player_js,
-    report_js;
+extern const std::string_view report_js;  ///< all modules of this folder in one script
 
 }  // namespace drape::bench::embedded

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 Browsed draw(const fs::path& page) {
   try {
-    return browse(fs::absolute(page), "see(JSON.stringify(await allPictures()));", 1280);
+    return browse(fs::absolute(page), "see(JSON.stringify(await report.allPictures()));", 1280);
   } catch (const std::system_error& error) {
     check_interruption();
     if (error.code() == std::errc::no_such_file_or_directory)

@@ -1,16 +1,25 @@
-"use strict";
 // What is shown of a motion: positions at any time, distances from the truth as colours, and what three.js draws.
 
+import {element, shortNumber} from "./data.js";
+
 // Viridis [van der Walt, Smith 2015] at ninths: even steps of lightness, also for the colour-blind.
-const viridis = ["#440154", "#482878", "#3e4a89", "#31688e", "#26828e", "#1f9e89", "#35b779", "#6ece58", "#b5de2b", "#fde725"];
+export const viridis =
+    ["#440154", "#482878", "#3e4a89", "#31688e", "#26828e", "#1f9e89", "#35b779", "#6ece58", "#b5de2b", "#fde725"];
 
 const bytesOf = (text) => Uint8Array.from(atob(text), (character) => character.charCodeAt(0));
 
 /** A trajectory, unpacked once: positions frame by frame, what constrains each particle, obstacles with their poses. */
 function unpack(trajectory, surfaces) {
-  const obstacles = trajectory.obstacles.drawn.map(({surface, poses}) => ({surface: surfaces[surface], poses: new Float32Array(bytesOf(poses).buffer)}));
-  return {...trajectory, particles: trajectory.nu * trajectory.nv, positions: new Float32Array(bytesOf(trajectory.positions).buffer),
-          constraint: bytesOf(trajectory.constraint), obstacles, missing: trajectory.obstacles.missing};
+  const obstacles = trajectory.obstacles.drawn.map(
+      ({surface, poses}) => ({surface: surfaces[surface], poses: new Float32Array(bytesOf(poses).buffer)}));
+  return {
+    ...trajectory,
+    particles: trajectory.nu * trajectory.nv,
+    positions: new Float32Array(bytesOf(trajectory.positions).buffer),
+    constraint: bytesOf(trajectory.constraint),
+    obstacles,
+    missing: trajectory.obstacles.missing
+  };
 }
 
 /** The frames before and after a time, and how far it is from the one to the other; after the end the last one. */
@@ -21,22 +30,27 @@ function framesAt(times, t) {
 }
 
 /** Positions at a time, between frames linearly, written to `to`. */
-function positionsAt({times, positions, particles}, t, to) {
+export function positionsAt({times, positions, particles}, t, to) {
   const {below, above, share} = framesAt(times, t), size = 3 * particles;
-  for (let i = 0; i < size; ++i) to[i] = (1 - share) * positions[below * size + i] + share * positions[above * size + i];
+  for (let i = 0; i < size; ++i)
+    to[i] = (1 - share) * positions[below * size + i] + share * positions[above * size + i];
 }
 
 /** The distance of each particle from that of the truth. */
-function distances(positions, truth) {
-  return Array.from({length: positions.length / 3}, (_, i) => Math.hypot(...[0, 1, 2].map((c) => positions[3 * i + c] - truth[3 * i + c])));
+export function distances(positions, truth) {
+  return Array.from(
+      {length: positions.length / 3},
+      (_, i) => Math.hypot(...[0, 1, 2].map((c) => positions[3 * i + c] - truth[3 * i + c])));
 }
 
-const rootMeanSquare = (numbers) => Math.sqrt(numbers.reduce((sum, x) => sum + x * x, 0) / numbers.length);
+export const rootMeanSquare = (numbers) => Math.sqrt(numbers.reduce((sum, x) => sum + x * x, 0) / numbers.length);
 
-const runLabel = (run) => `${run.method}, h = ${shortNumber(run.step)} s`;
+export const runLabel = (run) => `${run.method}, h = ${shortNumber(run.step)} s`;
 
-/** Distances from the truth, all that a colour means: share(distance) in [0, 1] on a log scale of four powers of ten. */
-function colourScale(views, truth, end) {
+/**
+ * Distances from the truth, all that a colour means: share(distance) in [0, 1] on a log scale of four powers of ten.
+ */
+export function colourScale(views, truth, end) {
   let largest = 0;
   const mine = new Float32Array(3 * truth.motion.particles), its = mine.slice();
   for (const view of views)
@@ -48,7 +62,7 @@ function colourScale(views, truth, end) {
   return {top, low: 1e-4 * top, share: (distance) => Math.min(1, Math.max(0, 1 + Math.log10(distance / top) / 4))};
 }
 
-function colourAt(share) {
+export function colourAt(share) {
   const at = share * (viridis.length - 1), below = Math.min(Math.floor(at), viridis.length - 2);
   return new THREE.Color(viridis[below]).lerp(new THREE.Color(viridis[below + 1]), at - below);
 }
@@ -77,29 +91,39 @@ function surfaceGeometry(surface) {
 /** A grey body with its sharp edges drawn, which tells it from the sheet on light and dark pages alike. */
 function makeObstacle({surface, poses}) {
   const geometry = surfaceGeometry(surface), body = new THREE.Group();
-  body.add(new THREE.Mesh(geometry, new THREE.MeshPhongMaterial({color: 0x76828e, shininess: 0, flatShading: !surface.smooth, side: THREE.DoubleSide})));
-  if (!surface.smooth) body.add(new THREE.LineSegments(new THREE.EdgesGeometry(geometry, 40), new THREE.LineBasicMaterial({color: 0x4a5560})));
+  body.add(new THREE.Mesh(
+      geometry,
+      new THREE.MeshPhongMaterial(
+          {color: 0x76828e, shininess: 0, flatShading: !surface.smooth, side: THREE.DoubleSide})));
+  if (!surface.smooth)
+    body.add(
+        new THREE.LineSegments(new THREE.EdgesGeometry(geometry, 40), new THREE.LineBasicMaterial({color: 0x4a5560})));
   return {body, poses};
 }
 
 /** Moves an obstacle to where it is at a time. */
-function placeObstacle({body, poses}, times, t) {
+export function placeObstacle({body, poses}, times, t) {
   const moves = poses.length > 7, {below, above, share} = moves ? framesAt(times, t) : {below: 0, above: 0, share: 0};
-  const position = (frame) => new THREE.Vector3().fromArray(poses, 7 * frame), turn = (frame) => new THREE.Quaternion().fromArray(poses, 7 * frame + 3);
+  const position = (frame) => new THREE.Vector3().fromArray(poses, 7 * frame),
+        turn = (frame) => new THREE.Quaternion().fromArray(poses, 7 * frame + 3);
   body.position.copy(position(below).lerp(position(above), share));
   body.quaternion.copy(turn(below).slerp(turn(above), share));
 }
 
 // What the trajectory says of particles, and how they are marked.
-const constraints = [{kind: 1, name: "pinned", square: true, colour: "#ffffff", border: "#000000", size: 9},
-                     {kind: 2, name: "in contact", square: false, colour: "#D55E00", border: "#ffffff", size: 8}];
+export const constraints = [
+  {kind: 1, name: "pinned", square: true, colour: "#ffffff", border: "#000000", size: 9},
+  {kind: 2, name: "in contact", square: false, colour: "#D55E00", border: "#ffffff", size: 8}
+];
 
 /** A mark as a small picture. */
-function markPicture({square, colour, border}) {
+export function markPicture({square, colour, border}) {
   const canvas = element("canvas", {width: 32, height: 32}), context = canvas.getContext("2d");
   context.fillStyle = colour, context.strokeStyle = border, context.lineWidth = square ? 6 : 3;
-  if (square) context.rect(4, 4, 24, 24);
-  else context.arc(16, 16, 12, 0, 2 * Math.PI);
+  if (square)
+    context.rect(4, 4, 24, 24);
+  else
+    context.arc(16, 16, 12, 0, 2 * Math.PI);
   context.fill(), context.stroke();
   return canvas;
 }
@@ -109,10 +133,17 @@ function makeMarks(mark, positions, particles) {
   const geometry = new THREE.BufferGeometry();
   geometry.setAttribute("position", positions);
   geometry.setIndex(new THREE.BufferAttribute(new Uint32Array(particles), 1));
-  const material = new THREE.PointsMaterial({map: new THREE.CanvasTexture(markPicture(mark)), size: mark.size, sizeAttenuation: false,
-                                             transparent: true, alphaTest: 0.4});
+  const material = new THREE.PointsMaterial({
+    map: new THREE.CanvasTexture(markPicture(mark)),
+    size: mark.size,
+    sizeAttenuation: false,
+    transparent: true,
+    alphaTest: 0.4
+  });
   material.onBeforeCompile = (shader) => {
-    shader.vertexShader = shader.vertexShader.replace("#include <project_vertex>", "#include <project_vertex>\n gl_Position = projectionMatrix * vec4(0.99 * mvPosition.xyz, 1.0);");
+    shader.vertexShader = shader.vertexShader.replace(
+        "#include <project_vertex>",
+        "#include <project_vertex>\n gl_Position = projectionMatrix * vec4(0.99 * mvPosition.xyz, 1.0);");
   };
   const points = new THREE.Points(geometry, material);
   points.frustumCulled = false;
@@ -120,13 +151,13 @@ function makeMarks(mark, positions, particles) {
 }
 
 /** What each particle is at a time: those of the frame before. */
-function constraintsAt({times, constraint, particles}, t) {
+export function constraintsAt({times, constraint, particles}, t) {
   const first = constraint.length > particles ? framesAt(times, t).below * particles : 0;
   return constraint.subarray(first, first + particles);
 }
 
 /** Puts the marks on those particles that are of their kind at a time. */
-function placeMarks({mark, geometry}, motion, t) {
+export function placeMarks({mark, geometry}, motion, t) {
   let count = 0;
   constraintsAt(motion, t).forEach((kind, i) => {
     if (kind === mark.kind) geometry.index.array[count++] = i;
@@ -135,15 +166,20 @@ function placeMarks({mark, geometry}, motion, t) {
   geometry.setDrawRange(0, count);
 }
 
-const hasMarks = (motion, mark) => motion.constraint.includes(mark.kind);
+export const hasMarks = (motion, mark) => motion.constraint.includes(mark.kind);
 
 /** The sheet, or the line of a chain, with its mesh. */
 function makeCloth(motion, geometry) {
   const chain = motion.nu === 1 || motion.nv === 1;
   if (!chain) geometry.setIndex(cellTriangles(motion));
-  const cloth = chain ? new THREE.Line(geometry, new THREE.LineBasicMaterial({vertexColors: THREE.VertexColors}))
-                      : new THREE.Mesh(geometry, new THREE.MeshLambertMaterial({vertexColors: THREE.VertexColors, side: THREE.DoubleSide}));
-  const lines = chain ? [] : [new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({color: 0x000000, wireframe: true, transparent: true, opacity: 0.12}))];
+  const cloth = chain ?
+      new THREE.Line(geometry, new THREE.LineBasicMaterial({vertexColors: THREE.VertexColors})) :
+      new THREE.Mesh(
+          geometry, new THREE.MeshLambertMaterial({vertexColors: THREE.VertexColors, side: THREE.DoubleSide}));
+  const lines = chain ?
+      [] :
+      [new THREE.Mesh(
+          geometry, new THREE.MeshBasicMaterial({color: 0x000000, wireframe: true, transparent: true, opacity: 0.12}))];
   for (const any of [cloth, ...lines]) any.frustumCulled = false;
   return {chain, cloth, lines};
 }
@@ -154,25 +190,32 @@ function makeScene(motion) {
   geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(count), 3));
   geometry.setAttribute("color", new THREE.BufferAttribute(new Float32Array(count).fill(0.6), 3));
   const {chain, cloth, lines} = makeCloth(motion, geometry), bodies = motion.obstacles.map(makeObstacle);
-  const marks = constraints.filter((mark) => hasMarks(motion, mark)).map((mark) => makeMarks(mark, geometry.attributes.position, motion.particles));
+  const marks = constraints.filter((mark) => hasMarks(motion, mark))
+                    .map((mark) => makeMarks(mark, geometry.attributes.position, motion.particles));
   const scene = new THREE.Scene(), sun = new THREE.DirectionalLight(0xffffff, 0.7);
   sun.position.set(1, -2, 3);
-  scene.add(new THREE.AmbientLight(0xffffff, 0.6), sun, cloth, ...lines, ...bodies.map(({body}) => body), ...marks.map(({points}) => points));
+  scene.add(
+      new THREE.AmbientLight(0xffffff, 0.6), sun, cloth, ...lines, ...bodies.map(({body}) => body),
+      ...marks.map(({points}) => points));
   return {scene, cloth, geometry, chain, bodies, marks};
 }
 
 /** A run's canvas with its name and, below it, how far it is off. */
-function makeView(run, surfaces) {
-  const motion = unpack(run.trajectory, surfaces), canvas = element("canvas", {role: "img", "aria-label": `Motion of ${runLabel(run)}`});
+export function makeView(run, surfaces) {
+  const motion = unpack(run.trajectory, surfaces),
+        canvas = element("canvas", {role: "img", "aria-label": `Motion of ${runLabel(run)}`});
   const says = element("p", {className: "quiet"}, "\u00a0");
-  const box = element("div", {className: "view"}, element("p", {}, element("strong", {}, run.method), ` h = ${shortNumber(run.step)} s`), canvas, says);
+  const box = element(
+      "div", {className: "view"},
+      element("p", {}, element("strong", {}, run.method), ` h = ${shortNumber(run.step)} s`), canvas, says);
   return {run, motion, canvas, says, box, ...makeScene(motion)};
 }
 
 /** The box around all that moves, over all frames. */
-function bounds(views) {
+export function bounds(views) {
   const box = new THREE.Box3(), point = new THREE.Vector3();
   for (const {motion} of views)
-    for (let i = 0; i < motion.positions.length; i += 3) box.expandByPoint(point.set(...motion.positions.subarray(i, i + 3)));
+    for (let i = 0; i < motion.positions.length; i += 3)
+      box.expandByPoint(point.set(...motion.positions.subarray(i, i + 3)));
   return box.getBoundingSphere(new THREE.Sphere());
 }

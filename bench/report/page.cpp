@@ -47,10 +47,7 @@ std::string report_page(std::span<const std::string> names, std::span<const resu
     add_script(page, embedded::three_js);
     add_script(page, embedded::orbit_controls_js);
   }
-  for (const std::string_view script :
-       {embedded::data_js, embedded::tables_js, embedded::looks_js, embedded::plots_js, embedded::figures_js,
-        embedded::run_figures_js, embedded::motion_js, embedded::player_js, embedded::report_js})
-    add_script(page, script);
+  add_script(page, embedded::report_js);
   return page + "</html>\n";
 }
 

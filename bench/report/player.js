@@ -1,5 +1,10 @@
-"use strict";
 // Motions side by side: one camera, one time, each run coloured by its distance from the one chosen as the truth.
+
+import {commandLine, element, files, groupBy, shortNumber, unique} from "./data.js";
+import {bounds, colourAt, colourScale, constraints, constraintsAt, distances, hasMarks, makeView} from "./motion.js";
+import {markPicture, placeMarks, placeObstacle, positionsAt, rootMeanSquare, runLabel, viridis} from "./motion.js";
+import {along, axis, baseLayout, labelled, lineStyle, logTicks, style, timeAxis} from "./plots.js";
+import {comparedRuns} from "./run_figures.js";
 
 /** Writes positions and colours of time t into a view. */
 function updateView(view, player) {
@@ -13,8 +18,11 @@ function updateView(view, player) {
   geometry.computeBoundingSphere();
   for (const body of view.bodies) placeObstacle(body, motion.times, player.t);
   for (const marks of view.marks) placeMarks(marks, motion, player.t);
-  const ended = player.t > motion.times[motion.times.length - 1] + 1e-9 ? `; ended at ${shortNumber(motion.times[motion.times.length - 1])} s` : "";
-  view.says.textContent = (view === player.truth ? "the others are measured from this one" : `RMS ${rootMeanSquare(view.off).toExponential(2)} m off`) + ended;
+  const ended = player.t > motion.times[motion.times.length - 1] + 1e-9 ?
+      `; ended at ${shortNumber(motion.times[motion.times.length - 1])} s` :
+      "";
+  const distance = `RMS ${rootMeanSquare(view.off).toExponential(2)} m off`;
+  view.says.textContent = (view === player.truth ? "the others are measured from this one" : distance) + ended;
 }
 
 /** One renderer draws all the views and hands each its picture: browsers allow but few at a time. */
@@ -24,7 +32,8 @@ function renderViews(player) {
     const size = Math.round(canvas.clientWidth * devicePixelRatio);
     if (!size) continue;
     if (canvas.width !== size) canvas.width = canvas.height = size;
-    for (const {mark, points} of marks) points.material.size = Math.max(3, Math.min(mark.size, canvas.clientWidth / 40)) * devicePixelRatio;
+    for (const {mark, points} of marks)
+      points.material.size = Math.max(3, Math.min(mark.size, canvas.clientWidth / 40)) * devicePixelRatio;
     renderer.setSize(size, size, false);
     renderer.render(scene, camera);
     const context = canvas.getContext("2d");
@@ -33,7 +42,7 @@ function renderViews(player) {
   }
 }
 
-function showTime(player, t) {
+export function showTime(player, t) {
   player.t = t;
   player.slider.value = t;
   player.clock.textContent = `t = ${t.toFixed(3)} s`;
@@ -52,8 +61,10 @@ function play(player) {
     last = now;
     showTime(player, t);
     if (t >= player.end) player.playing = false;
-    if (player.playing) requestAnimationFrame(step);
-    else player.button.textContent = "Play";
+    if (player.playing)
+      requestAnimationFrame(step);
+    else
+      player.button.textContent = "Play";
   };
   requestAnimationFrame(step);
 }
@@ -61,7 +72,8 @@ function play(player) {
 /** The particle below the pointer with its numbers. */
 function hover(player, view, event) {
   const area = view.canvas.getBoundingClientRect(), ray = new THREE.Raycaster();
-  const at = new THREE.Vector2(2 * (event.clientX - area.left) / area.width - 1, 1 - 2 * (event.clientY - area.top) / area.height);
+  const at = new THREE.Vector2(
+      2 * (event.clientX - area.left) / area.width - 1, 1 - 2 * (event.clientY - area.top) / area.height);
   ray.setFromCamera(at, player.camera);
   const [hit] = view.chain ? [] : ray.intersectObject(view.cloth);
   if (!hit) return void (view.canvas.title = "");
@@ -70,8 +82,8 @@ function hover(player, view, event) {
   const i = [hit.face.a, hit.face.b, hit.face.c].sort((p, q) => far(p) - far(q))[0], {nu} = view.motion;
   const place = [...array.subarray(3 * i, 3 * i + 3)].map((x) => x.toFixed(4)).join(", ");
   const constrained = constraints.find(({kind}) => kind === constraintsAt(view.motion, player.t)[i]);
-  view.canvas.title = view.says.textContent =
-    `particle (${i % nu}, ${Math.floor(i / nu)})${constrained ? `, ${constrained.name}` : ""}: (${place}) m, ${view.off[i].toExponential(2)} m off`;
+  view.canvas.title = view.says.textContent = `particle (${i % nu}, ${Math.floor(i / nu)})${
+      constrained ? `, ${constrained.name}` : ""}: (${place}) m, ${view.off[i].toExponential(2)} m off`;
 }
 
 /** The arrow keys turn the camera. */
@@ -80,7 +92,8 @@ function turn(player, event) {
   if (!turns) return;
   event.preventDefault();
   const {camera, controls} = player, from = camera.position.clone().sub(controls.target);
-  from.applyAxisAngle(camera.up, turns[0]).applyAxisAngle(new THREE.Vector3().crossVectors(camera.up, from).normalize(), turns[1]);
+  from.applyAxisAngle(camera.up, turns[0])
+      .applyAxisAngle(new THREE.Vector3().crossVectors(camera.up, from).normalize(), turns[1]);
   camera.position.copy(controls.target).add(from);
   controls.update();
 }
@@ -110,25 +123,39 @@ const alike = (a, b) => a.motion.nu === b.motion.nu && a.motion.nv === b.motion.
 function scaleElement(player) {
   const bar = element("div", {className: "scale", role: "img", "aria-label": "colours of distances"});
   bar.style.background = `linear-gradient(to right, ${viridis.join(", ")})`;
-  const labels = [0, 1, 2, 3, 4].map((k) => element("span", {}, `${k ? "" : "≤ "}${shortNumber(Number((player.scale.top * 10 ** (k - 4)).toPrecision(2)))} m`));
+  const labels = [0, 1, 2, 3, 4].map(
+      (k) => element(
+          "span", {}, `${k ? "" : "≤ "}${shortNumber(Number((player.scale.top * 10 ** (k - 4)).toPrecision(2)))} m`));
   return element("div", {}, bar, element("div", {className: "scale-labels"}, ...labels));
 }
 
 /** What the marks mean that there are, and what is not drawn. */
 function legendElement({views}) {
   const entry = (picture, name) => element("span", {}, picture, ` ${name}`);
-  const entries = constraints.filter((mark) => views.some(({motion}) => hasMarks(motion, mark))).map((mark) => entry(markPicture(mark), mark.name));
+  const entries = constraints.filter((mark) => views.some(({motion}) => hasMarks(motion, mark)))
+                      .map((mark) => entry(markPicture(mark), mark.name));
   if (views.some(({bodies}) => bodies.length)) entries.push(entry(element("span", {className: "body"}), "obstacle"));
-  const missing = unique(views.flatMap(({motion}) => motion.missing)).map((why) => element("p", {className: "bad"}, `An obstacle is not drawn: ${why}`));
+  const missing = unique(views.flatMap(({motion}) => motion.missing))
+                      .map((why) => element("p", {className: "bad"}, `An obstacle is not drawn: ${why}`));
   return element("div", {}, element("p", {className: "legend"}, ...entries), ...missing);
 }
 
 function makeControls(player) {
   player.button = element("button", {type: "button", on: {click: () => play(player)}}, "Play");
-  player.slider = element("input", {type: "range", className: "time", min: 0, max: player.end, step: player.end / 1000, value: 0, "aria-label": "time"});
+  player.slider = element("input", {
+    type: "range",
+    className: "time",
+    min: 0,
+    max: player.end,
+    step: player.end / 1000,
+    value: 0,
+    "aria-label": "time"
+  });
   player.slider.addEventListener("input", () => showTime(player, Number(player.slider.value)));
   player.clock = element("output", {});
-  player.speed = element("select", {"aria-label": "speed"}, ...[0.1, 0.25, 0.5, 1, 2].map((speed) => element("option", {value: speed}, `${speed} ×`)));
+  player.speed = element(
+      "select", {"aria-label": "speed"},
+      ...[0.1, 0.25, 0.5, 1, 2].map((speed) => element("option", {value: speed}, `${speed} ×`)));
   player.speed.value = 0.5;
   const reset = element("button", {type: "button", on: {click: () => player.controls.reset()}}, "Reset view");
   return element("div", {className: "actions"}, player.button, player.slider, player.clock, player.speed, reset);
@@ -148,13 +175,36 @@ function distanceRows(player) {
 function distanceFigure(file, name, player) {
   const rows = distanceRows(player), truth = runLabel(player.truth.run);
   const make = (width, colours) => {
-    const curves = labelled([...groupBy(rows.filter((row) => row.rms > 0), runLabel)].map(([label, of]) => ({
-      type: "scatter", mode: "lines+markers", name: label, x: of.map((row) => row.t), y: of.map((row) => row.rms),
-      hovertemplate: `${label}<br>t = %{x:.4g} s: %{y:.3e} m<extra></extra>`, line: lineStyle(of[0].method), marker: {symbol: style(of[0].method).symbol, size: 5}})), width, along);
-    return {data: curves, layout: {...baseLayout(width, colours, curves.length), xaxis: timeAxis(colours), yaxis: axis("RMS distance [m]", colours, logTicks(rows.map((row) => row.rms)))}};
+    const curves = labelled(
+        [...groupBy(rows.filter((row) => row.rms > 0), runLabel)].map(
+            ([label, of]) => ({
+              type: "scatter",
+              mode: "lines+markers",
+              name: label,
+              x: of.map((row) => row.t),
+              y: of.map((row) => row.rms),
+              hovertemplate: `${label}<br>t = %{x:.4g} s: %{y:.3e} m<extra></extra>`,
+              line: lineStyle(of[0].method),
+              marker: {symbol: style(of[0].method).symbol, size: 5}
+            })),
+        width, along);
+    return {
+      data: curves,
+      layout: {
+        ...baseLayout(width, colours, curves.length),
+        xaxis: timeAxis(colours),
+        yaxis: axis("RMS distance [m]", colours, logTicks(rows.map((row) => row.rms)))
+      }
+    };
   };
-  return {file, make, title: `Distance from ${truth}: ${name}`, says: "Root mean square distance of the recorded positions, frame by frame.",
-          columns: () => ["method", "step", "t", "rms", "maximum"].map((column) => ({name: column, cells: rows.map((row) => row[column])}))};
+  return {
+    file,
+    make,
+    title: `Distance from ${truth}: ${name}`,
+    says: "Root mean square distance of the recorded positions, frame by frame.",
+    columns: () => ["method", "step", "t", "rms", "maximum"].map(
+        (column) => ({name: column, cells: rows.map((row) => row[column])}))
+  };
 }
 
 /** The motions of compared runs as an article; undefined if less than one was recorded. */
@@ -162,20 +212,40 @@ function playerElement(file, name, runs, id) {
   const all = runs.filter((run) => run.trajectory?.times.length).map((run) => makeView(run, file.surfaces));
   if (!all.length) return undefined;
   const truth = mostAccurate(all), views = all.filter((view) => alike(view, truth));
-  const player = {views, truth, t: 0, playing: false, end: Math.max(...views.map((view) => view.motion.times[view.motion.times.length - 1]))};
+  const player = {
+    views,
+    truth,
+    t: 0,
+    playing: false,
+    end: Math.max(...views.map((view) => view.motion.times[view.motion.times.length - 1]))
+  };
   player.scale = colourScale(views, truth, player.end);
   player.true_positions = new Float32Array(3 * truth.motion.particles);
   player.renderer = new THREE.WebGLRenderer({antialias: true, alpha: true, preserveDrawingBuffer: true});
-  const grid = element("div", {className: "player", tabIndex: 0, role: "group", "aria-label": "Motions; drag or use the arrow keys to turn them"}, ...views.map((view) => view.box));
+  const grid = element(
+      "div", {
+        className: "player",
+        tabIndex: 0,
+        role: "group",
+        "aria-label": "Motions; drag or use the arrow keys to turn them"
+      },
+      ...views.map((view) => view.box));
   makeCamera(player, grid);
   const controls = makeControls(player);
   for (const view of views) view.canvas.addEventListener("pointermove", (event) => hover(player, view, event));
   new ResizeObserver(() => renderViews(player)).observe(grid);
-  const says = `Drag to turn, wheel to come nearer, point at a particle for its numbers. Colours are distances from ${runLabel(truth.run)}, ${truth.run.error ? `which has the least error of these runs, ${shortNumber(truth.run.error.rms)} at the end` : "one of the least step"}.`;
-  const figure = element("figure", {id}, element("figcaption", {}, element("h3", {}, `Motion: ${name}`), element("p", {}, says)), grid, controls, scaleElement(player),
-                         legendElement(player), commandLine(file));
+  const says = `Drag to turn, wheel to come nearer, point at a particle for its numbers. Colours are distances from ${
+      runLabel(truth.run)}, ${
+      truth.run.error ? `which has the least error of these runs, ${shortNumber(truth.run.error.rms)} at the end` :
+                        "one of the least step"}.`;
+  const figure = element(
+      "figure", {id}, element("figcaption", {}, element("h3", {}, `Motion: ${name}`), element("p", {}, says)), grid,
+      controls, scaleElement(player), legendElement(player), commandLine(file));
   return {figure, player, more: views.length > 1 ? [distanceFigure(file, name, player)] : []};
 }
 
 /** All motions of a file. */
-const playersOf = (file) => comparedRuns(file).map(([name, runs], k) => playerElement(file, name, runs, `motion-${files.indexOf(file) + 1}-${k + 1}`)).filter((any) => any);
+export const playersOf = (file) =>
+    comparedRuns(file)
+        .map(([name, runs], k) => playerElement(file, name, runs, `motion-${files.indexOf(file) + 1}-${k + 1}`))
+        .filter((any) => any);

@@ -1,11 +1,16 @@
-"use strict";
 // Figures around Plotly: colours of the page, its width, and what is saved from them.
+
+import {commandLine, csvLink, element, fileName, files} from "./data.js";
+import {looks} from "./looks.js";
 
 /** A number that depends on nothing but the text. */
 const hashed = (text) => [...text].reduce((sum, letter) => (31 * sum + letter.codePointAt(0)) % 1000003, 7);
 
-/** The look of a method with its solvers, "bdf2/newton/cholesky", or of a package: {color, symbol, dash}. What looks.js does not know also has a look of its own. */
-function style(name) {
+/**
+ * The look of a method with its solvers, "bdf2/newton/cholesky", or of a package: {color, symbol, dash}. What looks.js
+ * does not know also has a look of its own.
+ */
+export function style(name) {
   const [method, ...solvers] = name.split("/"), solver = solvers.join("/");
   const other = (list, text) => list[hashed(text) % list.length];
   const [symbol, dash] = looks.solvers[solver] ?? other(looks.other_marks, solver);
@@ -13,30 +18,44 @@ function style(name) {
 }
 
 /** The look of a curve without marks. */
-function lineStyle(name) {
+export function lineStyle(name) {
   const {color, dash} = style(name);
   return {color, dash, width: 1.6};
 }
 
 const mostCurves = 8;  // shown at first; a click in the legend shows the others
 
-/** The curves with their names beside them where there is room, the first shown and the others in the legend. `share`: where along a curve its name stands. */
-function labelled(curves, width, share = () => 1) {
+/**
+ * The curves with their names beside them where there is room, the first shown and the others in the legend. `share`:
+ * where along a curve its name stands.
+ */
+export function labelled(curves, width, share = () => 1) {
   return curves.map((curve, k) => {
     const points = curve.x.length, at = Math.min(points - 1, Math.round(share(k, curves.length) * (points - 1)));
-    const named = isNarrow(width) ? {} : {mode: `${curve.mode}+text`, texttemplate: curve.x.map((_, place) => (place === at ? curve.name : "")), textposition: "top center",
-                                          textfont: {size: 11, color: curve.line.color}, cliponaxis: false};
+    const named = isNarrow(width) ? {} : {
+      mode: `${curve.mode}+text`,
+      texttemplate: curve.x.map((_, place) => (place === at ? curve.name : "")),
+      textposition: "top center",
+      textfont: {size: 11, color: curve.line.color},
+      cliponaxis: false
+    };
     return {...curve, ...named, visible: k < mostCurves ? true : "legendonly"};
   });
 }
 
 /** What is said where not all curves are shown. */
-const moreCurves = (count) => (count > mostCurves ? ` ${count - mostCurves} more curves are in the legend: a click shows them.` : "");
+export const moreCurves = (count) =>
+    (count > mostCurves ? ` ${count - mostCurves} more curves are in the legend: a click shows them.` : "");
 
 /** Where names stand on curves that begin and end together. */
-const along = (k, count) => 0.25 + (0.65 * (k % mostCurves)) / Math.max(1, Math.min(count, mostCurves) - 1);
+export const along = (k, count) => 0.25 + (0.65 * (k % mostCurves)) / Math.max(1, Math.min(count, mostCurves) - 1);
 
-const paper = {text: "#000000", line: "#cccccc", band: "rgba(120, 130, 140, 0.16)", page: "#ffffff"};
+const paper = {
+  text: "#000000",
+  line: "#cccccc",
+  band: "rgba(120, 130, 140, 0.16)",
+  page: "#ffffff"
+};
 
 function pageColours() {
   const css = getComputedStyle(document.documentElement);
@@ -47,69 +66,107 @@ function pageColours() {
 const isNarrow = (width) => width < 600;
 
 /** An axis with a title; more wins over what all axes share. */
-function axis(title, colours, more = {}) {
+export function axis(title, colours, more = {}) {
   const exponents = more.type === "log" ? {dtick: 1, exponentformat: "power", minor: {}} : {exponentformat: "power"};
-  return {title: {text: title, standoff: 8}, gridcolor: colours.line, zeroline: false, linecolor: colours.line, ticks: "outside",
-          tickcolor: colours.line, automargin: true, ...exponents, ...more};
+  return {
+    title: {text: title, standoff: 8},
+    gridcolor: colours.line,
+    zeroline: false,
+    linecolor: colours.line,
+    ticks: "outside",
+    tickcolor: colours.line,
+    automargin: true,
+    ...exponents,
+    ...more
+  };
 }
 
-/** What a log axis of such values needs: where they span few powers of ten, digits between these are labelled as well. */
-function logTicks(values) {
-  const seen = values.filter((value) => value > 0 && Number.isFinite(value)), decades = Math.log10(Math.max(...seen) / Math.min(...seen));
+/**
+ * What a log axis of such values needs: where they span few powers of ten, digits between these are labelled as well.
+ */
+export function logTicks(values) {
+  const seen = values.filter((value) => value > 0 && Number.isFinite(value)),
+        decades = Math.log10(Math.max(...seen) / Math.min(...seen));
   return {type: "log", dtick: decades < 1 ? "D1" : decades < 2 ? "D2" : 1};
 }
 
 /** The axis of times that begin at 0. */
-const timeAxis = (colours, more = {}) => axis("t [s]", colours, {rangemode: "tozero", ...more});
+export const timeAxis = (colours, more = {}) => axis("t [s]", colours, {rangemode: "tozero", ...more});
 
 /** The layout that all figures share: legend beside the plot, or below it where there is no room. */
-function baseLayout(width, colours, entries) {
+export function baseLayout(width, colours, entries) {
   const narrow = isNarrow(width);
   const least = matchMedia("print").matches ? 340 : 430;  // so that two fit on a page
   const legendRows = narrow ? Math.ceil(entries / Math.max(1, Math.floor(width / 170))) : 0;
   return {
-    width, height: narrow ? least + 20 * legendRows : Math.max(least, 70 + 21 * entries), showlegend: true, paper_bgcolor: colours.page, plot_bgcolor: colours.page,
+    width,
+    height: narrow ? least + 20 * legendRows : Math.max(least, 70 + 21 * entries),
+    showlegend: true,
+    paper_bgcolor: colours.page,
+    plot_bgcolor: colours.page,
     font: {family: "system-ui, Liberation Sans, sans-serif", size: narrow ? 11 : 13, color: colours.text},
-    margin: {l: 10, r: 10, t: 34, b: narrow ? 60 + 20 * legendRows : 10}, hovermode: "closest",
+    margin: {l: 10, r: 10, t: 34, b: narrow ? 60 + 20 * legendRows : 10},
+    hovermode: "closest",
     legend: narrow ? {orientation: "h", y: -0.22, yanchor: "top", x: 0} : {x: 1.02, y: 1, tracegroupgap: 4},
     hoverlabel: {align: "left", namelength: -1},
   };
 }
 
 /** Where errors are beyond what the reference can tell. */
-function uncertainBand(limit, lowest, colours) {
+export function uncertainBand(limit, lowest, colours) {
   if (!(limit > lowest)) return [];
-  return [{type: "rect", xref: "x", yref: "paper", x0: lowest, x1: limit, y0: 0, y1: 1, fillcolor: colours.band, line: {width: 0}, layer: "below"}];
+  return [{
+    type: "rect",
+    xref: "x",
+    yref: "paper",
+    x0: lowest,
+    x1: limit,
+    y0: 0,
+    y1: 1,
+    fillcolor: colours.band,
+    line: {width: 0},
+    layer: "below"
+  }];
 }
 
-/** Powers of ten around errors as a range of a log axis; beyond ten sizes of the scene, where the unstable are, it ends. */
-function logRange(errors, reversed = false) {
-  const logs = errors.filter((error) => error > 0 && Number.isFinite(error)).map((error) => Math.min(1, Math.log10(error)));
+/**
+ * Powers of ten around errors as a range of a log axis; beyond ten sizes of the scene, where the unstable are, it
+ * ends.
+ */
+export function logRange(errors, reversed = false) {
+  const logs =
+      errors.filter((error) => error > 0 && Number.isFinite(error)).map((error) => Math.min(1, Math.log10(error)));
   const low = Math.min(...logs), high = Math.max(...logs), edge = 0.05 * (high - low) + 0.1;
   return reversed ? [high + edge, low - edge] : [low - edge, high + edge];
 }
 
-const plots = [];  // every plot that was made: {div, make, name}
+export const plots = [];  // every plot that was made: {div, make, name}
 
 function drawPlot(plot) {
   const width = plot.div.clientWidth || 700;
   const {data, layout} = plot.make(width, pageColours());
   plot.width = width;
-  return Plotly.react(plot.div, data, layout, {displaylogo: false, modeBarButtonsToRemove: ["lasso2d", "select2d", "toImage"]});
+  return Plotly.react(
+      plot.div, data, layout, {displaylogo: false, modeBarButtonsToRemove: ["lasso2d", "select2d", "toImage"]});
 }
 
-/** A plot for papers, on white, 900 pixels wide, as the text of an SVG. Unlike Plotly's, its lines scale with it, and its names are always the same. */
-async function svgOf(plot) {
+/**
+ * A plot for papers, on white, 900 pixels wide, as the text of an SVG. Unlike Plotly's, its lines scale with it, and
+ * its names are always the same.
+ */
+export async function svgOf(plot) {
   const {data, layout} = plot.make(900, paper);
   const shown = plot.div.data ?? data;
   const visible = data.map((trace, k) => ({...trace, uid: `t${k}`, visible: shown[k]?.visible ?? true}));
-  const svg = await Plotly.toImage({data: visible, layout}, {format: "svg", width: 900, height: layout.height, imageDataOnly: true});
+  const svg = await Plotly.toImage(
+      {data: visible, layout}, {format: "svg", width: 900, height: layout.height, imageDataOnly: true});
   const [, random] = svg.match(/id="defs-([0-9a-f]+)"/), known = `f${plots.indexOf(plot)}`;
-  return svg.replace(/vector-effect: ?non-scaling-stroke;?/g, "").replace(new RegExp(`\\b(defs-|topdefs-|clip|legend|g)${random}`, "g"), `$1${known}`);
+  return svg.replace(/vector-effect: ?non-scaling-stroke;?/g, "")
+      .replace(new RegExp(`\\b(defs-|topdefs-|clip|legend|g)${random}`, "g"), `$1${known}`);
 }
 
 /** The same as PNG with three dots a pixel: its bytes in base 64. */
-async function pngOf(svg) {
+export async function pngOf(svg) {
   const image = new Image();
   image.src = `data:image/svg+xml,${encodeURIComponent(svg)}`;
   await image.decode();
@@ -120,12 +177,14 @@ async function pngOf(svg) {
 
 /** Saves a plot as a file. */
 async function savePlot(plot, format) {
-  const svg = await svgOf(plot), url = format === "png" ? `data:image/png;base64,${await pngOf(svg)}` : `data:image/svg+xml,${encodeURIComponent(svg)}`;
+  const svg = await svgOf(plot),
+        url = format === "png" ? `data:image/png;base64,${await pngOf(svg)}` :
+                                 `data:image/svg+xml,${encodeURIComponent(svg)}`;
   element("a", {href: url, download: `${plot.name}.${format}`}).click();
 }
 
 /** All figures as such pictures: [{name, svg, png}]. */
-async function allPictures() {
+export async function allPictures() {
   const pictures = [];
   for (const plot of plots) {
     const svg = await svgOf(plot);
@@ -143,22 +202,31 @@ function plotName(title) {
 }
 
 /**
- * A figure: {title, says (one sentence), make(width, colours) -> {data, layout}, columns() for the CSV, file, controls}.
- * Drawn when drawAll() is called, and again when colours or widths change.
+ * A figure: {title, says (one sentence), make(width, colours) -> {data, layout}, columns() for the CSV, file,
+ * controls}. Drawn when drawAll() is called, and again when colours or widths change.
  */
-function figureElement(figure, id) {
-  const plot = {div: element("div", {className: "plot", role: "img", "aria-label": `${figure.title}. ${figure.says}`}), make: figure.make, name: plotName(figure.title)};
+export function figureElement(figure, id) {
+  const plot = {
+    div: element("div", {className: "plot", role: "img", "aria-label": `${figure.title}. ${figure.says}`}),
+    make: figure.make,
+    name: plotName(figure.title)
+  };
   plots.push(plot);
   for (const control of figure.controls ?? []) control.addEventListener("change", () => drawPlot(plot));
-  const save = (format) => element("button", {type: "button", on: {click: () => savePlot(plot, format)}}, format.toUpperCase());
-  return element("figure", {id}, element("figcaption", {}, element("h3", {}, figure.title), element("p", {}, figure.says)),
-                 figure.controls ? element("div", {className: "actions"}, ...figure.controls.map((control) => control.parentElement ?? control)) : null,
-                 plot.div,
-                 element("div", {className: "actions"}, csvLink(plot.name, figure.columns), save("svg"), save("png")), commandLine(figure.file));
+  const save = (format) =>
+      element("button", {type: "button", on: {click: () => savePlot(plot, format)}}, format.toUpperCase());
+  return element(
+      "figure", {id}, element("figcaption", {}, element("h3", {}, figure.title), element("p", {}, figure.says)),
+      figure.controls ?
+          element(
+              "div", {className: "actions"}, ...figure.controls.map((control) => control.parentElement ?? control)) :
+          null,
+      plot.div, element("div", {className: "actions"}, csvLink(plot.name, figure.columns), save("svg"), save("png")),
+      commandLine(figure.file));
 }
 
 /** Draws all figures, one after the other so that the page answers meanwhile. */
-async function drawAll() {
+export async function drawAll() {
   for (const plot of plots) {
     await drawPlot(plot);
     await new Promise((resolve) => setTimeout(resolve));

@@ -1,26 +1,42 @@
-"use strict";
 // Figures of runs: those of one scene with the same changes and the same end are compared.
+
+import {element, groupBy, shortNumber, toNumber, unique} from "./data.js";
+import {finitePositive, workPrecisionLayout, workPrecisionTrace} from "./figures.js";
+import {runLabel} from "./motion.js";
+import {along, axis, baseLayout, labelled, lineStyle, moreCurves, style, timeAxis} from "./plots.js";
 
 const runTitle = (run) => [run.scene, run.overrides, `${shortNumber(run.until)} s`].filter((text) => text).join(", ");
 
-const comparedRuns = (file) => [...groupBy(file.runs, runTitle)];
+export const comparedRuns = (file) => [...groupBy(file.runs, runTitle)];
 
 /** A run as a row of time against error, with the quartiles of its times; undefined if it cannot be one. */
 function workPrecisionRow(run) {
   const times = (run.times_ms ?? []).map(toNumber).filter(finitePositive).sort((a, b) => a - b);
-  if (run.outcome !== "success" || !run.error?.comparable || !finitePositive(run.error.rms) || !times.length) return undefined;
+  if (run.outcome !== "success" || !run.error?.comparable || !finitePositive(run.error.rms) || !times.length)
+    return undefined;
   const share = (part) => {
     const at = part * (times.length - 1), below = Math.floor(at);
     return times[below] + (at - below) * ((times[below + 1] ?? times[below]) - times[below]);
   };
-  return {method: run.method, step: run.step, steps: run.steps.t.length, error: run.error.rms, uncertainty: run.error.reference_error,
-          unresolved: !run.error.resolved, lower: share(0.25), time: share(0.5), upper: share(0.75)};
+  return {
+    method: run.method,
+    step: run.step,
+    steps: run.steps.t.length,
+    error: run.error.rms,
+    uncertainty: run.error.reference_error,
+    unresolved: !run.error.resolved,
+    lower: share(0.25),
+    time: share(0.5),
+    upper: share(0.75)
+  };
 }
 
 /** Methods in the order of how little more time than the quickest they take for an error that they reach. */
 function byUse(methods, rows) {
-  const excess = (row) => row.time / Math.min(...rows.filter((other) => other.error <= row.error).map((other) => other.time));
-  const least = new Map(methods.map((method) => [method, Math.min(...rows.filter((row) => row.method === method).map(excess))]));
+  const excess = (row) =>
+      row.time / Math.min(...rows.filter((other) => other.error <= row.error).map((other) => other.time));
+  const least =
+      new Map(methods.map((method) => [method, Math.min(...rows.filter((row) => row.method === method).map(excess))]));
   return [...methods].sort((a, b) => least.get(a) - least.get(b));
 }
 
@@ -30,21 +46,32 @@ function runWorkPrecision(file, name, runs) {
   const methods = byUse(unique(rows.map((row) => row.method)), rows);
   const uncertainty = Math.max(...rows.map((row) => row.uncertainty));
   const make = (width, colours) => {
-    const curves = labelled(methods.map((method) => workPrecisionTrace(method, rows.filter((row) => row.method === method).sort((a, b) => b.step - a.step), style(method),
-                                                                       (row) => `${method}, h = ${shortNumber(row.step)} s`)), width);
+    const curves = labelled(
+        methods.map(
+            (method) => workPrecisionTrace(
+                method, rows.filter((row) => row.method === method).sort((a, b) => b.step - a.step), style(method),
+                (row) => `${method}, h = ${shortNumber(row.step)} s`)),
+        width);
     return {data: curves, layout: workPrecisionLayout(width, colours, rows, uncertainty, curves.length)};
   };
   return [{
-    file, make, title: `Work–precision of runs: ${name}`,
-    says: `Lower is quicker, further right more accurate; bars are quartiles of the times. Marks are hollow where the error is below 10 × the reference's own of ${shortNumber(uncertainty)} (grey band).` + moreCurves(methods.length),
-    columns: () => ["method", "step", "error", "uncertainty", "time", "lower", "upper"].map((column) => ({name: column, cells: rows.map((row) => row[column])})),
+    file,
+    make,
+    title: `Work–precision of runs: ${name}`,
+    says:
+        "Lower is quicker, further right more accurate; bars are quartiles of the times. Marks are hollow where the " +
+        `error is below 10 × the reference's own of ${shortNumber(uncertainty)} (grey band).` +
+        moreCurves(methods.length),
+    columns: () => ["method", "step", "error", "uncertainty", "time", "lower", "upper"].map(
+        (column) => ({name: column, cells: rows.map((row) => row[column])})),
   }];
 }
 
 /** A choice among step sizes for a figure. */
 function stepChoice(runs) {
   const steps = unique(runs.map((run) => run.step)).sort((a, b) => b - a);
-  const select = element("select", {}, ...steps.map((step) => element("option", {value: step}, `${shortNumber(step)} s`)));
+  const select =
+      element("select", {}, ...steps.map((step) => element("option", {value: step}, `${shortNumber(step)} s`)));
   select.value = steps[Math.floor((steps.length - 1) / 2)];
   element("label", {}, "step h ", select);
   return select;
@@ -52,15 +79,53 @@ function stepChoice(runs) {
 
 /** What is drawn over time: of(run) gives {t, value}, two lists; undefined if the run has none. */
 const ofSteps = (value) => ({steps}) => (steps.t.length ? {t: steps.t, value: value(steps)} : undefined);
-const fromZero = {rangemode: "tozero"};
+const fromZero = {
+  rangemode: "tozero"
+};
 const quantities = [
-  {title: "Energy", says: "Kinetic and potential energy together, after each step: it may only fall, except where something moves or blows.", label: "energy [J]",
-   of: ofSteps((steps) => steps.kinetic_energy.map((kinetic, k) => toNumber(kinetic) + toNumber(steps.potential_energy[k])))},
-  {title: "Updates", says: "Updates of the iterate in each step: where they pile up the stage solver has a hard time.", label: "updates a step", axis: fromZero, of: ofSteps((steps) => steps.updates)},
-  {title: "CG iterations", says: "Iterations of conjugate gradients in each step.", label: "CG iterations a step", axis: fromZero, of: ofSteps((steps) => steps.cg_iterations)},
-  {title: "Contacts", says: "Particles that obstacles constrain at the end of each step.", label: "particles in contact", axis: fromZero, of: ofSteps((steps) => steps.contacts)},
-  {title: "Clearance", says: "Least distance of a particle from an obstacle in each recorded frame, negative inside.", label: "clearance [mm]", axis: fromZero, of: frameClearance},
-  {title: "Step size", says: "Size of the steps that were taken: where it falls the method was cut short.", label: "h [s]", axis: fromZero, of: ofSteps((steps) => steps.h.map(toNumber))},
+  {
+    title: "Energy",
+    says: "Kinetic and potential energy together, after each step: it may only fall, except where something moves " +
+        "or blows.",
+    label: "energy [J]",
+    of: ofSteps(
+        (steps) => steps.kinetic_energy.map((kinetic, k) => toNumber(kinetic) + toNumber(steps.potential_energy[k])))
+  },
+  {
+    title: "Updates",
+    says: "Updates of the iterate in each step: where they pile up the stage solver has a hard time.",
+    label: "updates a step",
+    axis: fromZero,
+    of: ofSteps((steps) => steps.updates)
+  },
+  {
+    title: "CG iterations",
+    says: "Iterations of conjugate gradients in each step.",
+    label: "CG iterations a step",
+    axis: fromZero,
+    of: ofSteps((steps) => steps.cg_iterations)
+  },
+  {
+    title: "Contacts",
+    says: "Particles that obstacles constrain at the end of each step.",
+    label: "particles in contact",
+    axis: fromZero,
+    of: ofSteps((steps) => steps.contacts)
+  },
+  {
+    title: "Clearance",
+    says: "Least distance of a particle from an obstacle in each recorded frame, negative inside.",
+    label: "clearance [mm]",
+    axis: fromZero,
+    of: frameClearance
+  },
+  {
+    title: "Step size",
+    says: "Size of the steps that were taken: where it falls the method was cut short.",
+    label: "h [s]",
+    axis: fromZero,
+    of: ofSteps((steps) => steps.h.map(toNumber))
+  },
 ];
 
 function frameClearance({trajectory}) {
@@ -76,15 +141,29 @@ function worthSeeing(quantity, runs) {
 }
 
 function timeFigure(file, name, runs, quantity) {
-  const rank = (run) => (run.outcome === "success" ? toNumber(run.error?.rms) || 0 : Infinity), choice = stepChoice(runs);
+  const rank = (run) => (run.outcome === "success" ? toNumber(run.error?.rms) || 0 : Infinity),
+        choice = stepChoice(runs);
   const chosen = () => runs.filter((run) => run.step === Number(choice.value)).sort((a, b) => rank(a) - rank(b));
   const make = (width, colours) => {
-    const curves = labelled(chosen().map((run) => {
-      const failed = run.outcome !== "success";
-      return {type: "scatter", mode: "lines", name: failed ? `${run.method}: ${run.outcome}` : run.method, x: quantity.of(run).t, y: quantity.of(run).value,
-              hovertemplate: `${run.method}, h = ${shortNumber(run.step)} s<br>t = %{x:.4g} s: %{y:.6g}<extra></extra>`, line: lineStyle(run.method)};
-    }), width, along);
-    const layout = {...baseLayout(width, colours, curves.length), xaxis: timeAxis(colours), yaxis: axis(quantity.label, colours, quantity.axis)};
+    const curves = labelled(
+        chosen().map((run) => {
+          const failed = run.outcome !== "success";
+          return {
+            type: "scatter",
+            mode: "lines",
+            name: failed ? `${run.method}: ${run.outcome}` : run.method,
+            x: quantity.of(run).t,
+            y: quantity.of(run).value,
+            hovertemplate: `${run.method}, h = ${shortNumber(run.step)} s<br>t = %{x:.4g} s: %{y:.6g}<extra></extra>`,
+            line: lineStyle(run.method)
+          };
+        }),
+        width, along);
+    const layout = {
+      ...baseLayout(width, colours, curves.length),
+      xaxis: timeAxis(colours),
+      yaxis: axis(quantity.label, colours, quantity.axis)
+    };
     return {data: curves, layout};
   };
   const columns = () => {
@@ -92,39 +171,75 @@ function timeFigure(file, name, runs, quantity) {
       const {t, value} = quantity.of(run);
       return t.map((time, k) => ({method: run.method, step: run.step, t: time, value: value[k]}));
     });
-    return ["method", "step", "t", "value"].map((column) => ({name: column === "value" ? quantity.label : column, cells: rows.map((row) => row[column])}));
+    return ["method", "step", "t", "value"].map(
+        (column) => ({name: column === "value" ? quantity.label : column, cells: rows.map((row) => row[column])}));
   };
   const every = Math.max(...runs.map((run) => run.steps.every));
-  const says = quantity.says + (every > 1 && quantity.title !== "Clearance" ? ` Of long runs every ${every}th step is shown.` : "") + moreCurves(chosen().length);
+  const says = quantity.says +
+      (every > 1 && quantity.title !== "Clearance" ? ` Of long runs every ${every}th step is shown.` : "") +
+      moreCurves(chosen().length);
   return {file, make, columns, says, title: `${quantity.title}: ${name}`, controls: [choice]};
 }
 
 /** How near obstacles were at the nearest, a line for each run. */
 function clearanceFigure(file, name, runs) {
-  const rows = runs.map((run) => ({method: run.method, step: run.step, outcome: run.outcome, clearance: 1000 * toNumber(run.contact.clearance), energy_rise: toNumber(run.contact.energy_rise),
-                                   area: toNumber(run.contact.area), reference_area: toNumber(run.contact.reference_area)})).filter((row) => Number.isFinite(row.clearance));
+  const rows = runs.map((run) => ({
+                          method: run.method,
+                          step: run.step,
+                          outcome: run.outcome,
+                          clearance: 1000 * toNumber(run.contact.clearance),
+                          energy_rise: toNumber(run.contact.energy_rise),
+                          area: toNumber(run.contact.area),
+                          reference_area: toNumber(run.contact.reference_area)
+                        }))
+                   .filter((row) => Number.isFinite(row.clearance));
   if (!rows.length) return [];
   const label = (row) => runLabel(row) + (row.outcome === "success" ? "" : `: ${row.outcome}`);
   const make = (width, colours) => {
-    const dots = [...groupBy(rows, (row) => row.method)].map(([method, of]) => ({
-      type: "scatter", mode: "markers", name: method, x: of.map((row) => row.clearance), y: of.map(label),
-      text: of.map((row) => `area in contact at the end ${shortNumber(row.area)}${Number.isNaN(row.reference_area) ? "" : ` (reference ${shortNumber(row.reference_area)})`}, energy rise ${shortNumber(row.energy_rise)}`),
-      hovertemplate: "%{y}<br>%{x:.4g} mm<br>%{text}<extra></extra>", marker: {color: style(method).color, symbol: style(method).symbol, size: 9}}));
-    const layout = {...baseLayout(width, colours, 0), height: 110 + 24 * rows.length, showlegend: false, xaxis: axis("least clearance [mm]", colours, {zeroline: true, zerolinecolor: colours.text, rangemode: "tozero"}),
-                    yaxis: axis("", colours, {type: "category", autorange: "reversed"})};
+    const dots = [...groupBy(rows, (row) => row.method)].map(
+        ([method, of]) => ({
+          type: "scatter",
+          mode: "markers",
+          name: method,
+          x: of.map((row) => row.clearance),
+          y: of.map(label),
+          text: of.map(
+              (row) => `area in contact at the end ${shortNumber(row.area)}${
+                  Number.isNaN(row.reference_area) ?
+                      "" :
+                      ` (reference ${shortNumber(row.reference_area)})`}, energy rise ${shortNumber(row.energy_rise)}`),
+          hovertemplate: "%{y}<br>%{x:.4g} mm<br>%{text}<extra></extra>",
+          marker: {color: style(method).color, symbol: style(method).symbol, size: 9}
+        }));
+    const layout = {
+      ...baseLayout(width, colours, 0),
+      height: 110 + 24 * rows.length,
+      showlegend: false,
+      xaxis: axis("least clearance [mm]", colours, {zeroline: true, zerolinecolor: colours.text, rangemode: "tozero"}),
+      yaxis: axis("", colours, {type: "category", autorange: "reversed"})
+    };
     return {data: dots, layout};
   };
-  return [{file, make, title: `Least clearance: ${name}`, says: "Least distance of a particle from an obstacle at the end of any step, negative inside.",
-           columns: () => ["method", "step", "clearance", "energy_rise", "area", "reference_area"].map((column) => ({name: column === "clearance" ? "clearance [mm]" : column, cells: rows.map((row) => row[column])}))}];
+  return [{
+    file,
+    make,
+    title: `Least clearance: ${name}`,
+    says: "Least distance of a particle from an obstacle at the end of any step, negative inside.",
+    columns: () => ["method", "step", "clearance", "energy_rise", "area", "reference_area"].map(
+        (column) => ({name: column === "clearance" ? "clearance [mm]" : column, cells: rows.map((row) => row[column])}))
+  }];
 }
 
 /** All figures of the runs of a file. */
-function figuresOfRuns(file) {
+export function figuresOfRuns(file) {
   return comparedRuns(file).flatMap(([name, runs]) => {
     const overTime = quantities.flatMap((quantity) => {
       const known = runs.filter((run) => quantity.of(run));
       return known.length && worthSeeing(quantity, known) ? [timeFigure(file, name, known, quantity)] : [];
     });
-    return [...runWorkPrecision(file, name, runs), ...overTime, ...clearanceFigure(file, name, runs.filter((run) => run.contact))];
+    return [
+      ...runWorkPrecision(file, name, runs), ...overTime,
+      ...clearanceFigure(file, name, runs.filter((run) => run.contact))
+    ];
   });
 }

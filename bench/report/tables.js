@@ -1,5 +1,6 @@
-"use strict";
 // Tables that sort by a click on a column's head.
+
+import {commandLine, csvLink, element, isMissed, isNumeric, rowsOf, shortNumber, toNumber} from "./data.js";
 
 function compareCells(a, b) {
   const number = (value) => typeof value === "number";
@@ -11,7 +12,8 @@ function compareCells(a, b) {
 /** What users see of a column: its title, unit and cells as texts. */
 function shownCells(column) {
   if (column.shown) return column.shown;
-  return isNumeric(column) ? column.cells.map((cell) => shortNumber(toNumber(cell))) : column.cells.map((cell) => cell ?? "");
+  return isNumeric(column) ? column.cells.map((cell) => shortNumber(toNumber(cell))) :
+                             column.cells.map((cell) => cell ?? "");
 }
 
 /** Those with a title and a value; all, if none has a title: such a table is for the file rather than for users. */
@@ -33,15 +35,19 @@ function sortBy(head, body, values) {
 }
 
 function columnHead(column, body) {
-  const values = column.shown && !isNumeric(column) ? column.shown : column.cells.map((cell) => (isNumeric(column) ? toNumber(cell) : cell ?? ""));
+  const values = column.shown && !isNumeric(column) ?
+      column.shown :
+      column.cells.map((cell) => (isNumeric(column) ? toNumber(cell) : cell ?? ""));
   const head = element("th", {scope: "col", className: isNumeric(column) ? "number" : "", title: column.description});
   const unit = isNumeric(column) && column.unit !== "1" ? element("small", {}, `[${column.unit}]`) : null;
-  head.append(element("button", {type: "button", on: {click: () => sortBy(head, body, values)}}, column.title || column.name), unit ?? "");
+  head.append(
+      element("button", {type: "button", on: {click: () => sortBy(head, body, values)}}, column.title || column.name),
+      unit ?? "");
   return head;
 }
 
 /** The table element for a table of the page's data. */
-function tableElement(table) {
+export function tableElement(table) {
   const columns = visibleColumns(table);
   const body = element("tbody");
   const texts = columns.map(shownCells);
@@ -50,27 +56,34 @@ function tableElement(table) {
     columns.forEach((column, c) => {
       const bad = column.role === "verdict" && isMissed(texts[c][k]);
       const className = [isNumeric(column) ? "number" : "", bad ? "bad" : ""].join(" ").trim();
-      row.append(c === 0 ? element("th", {scope: "row", className, title: texts[c][k]}, texts[c][k]) : element("td", {className}, texts[c][k]));
+      row.append(
+          c === 0 ? element("th", {scope: "row", className, title: texts[c][k]}, texts[c][k]) :
+                    element("td", {className}, texts[c][k]));
     });
     body.append(row);
   }
   const heads = columns.map((column) => columnHead(column, body));
-  return element("table", {}, element("caption", {hidden: true}, table.description), element("thead", {}, element("tr", {}, ...heads)), body);
+  return element(
+      "table", {}, element("caption", {hidden: true}, table.description),
+      element("thead", {}, element("tr", {}, ...heads)), body);
 }
 
-const exactCells = (column) => ({name: column.name, cells: column.cells});
+export const exactCells = (column) => ({name: column.name, cells: column.cells});
 
 /** The columns of a table for CSV, only the rows for which wanted(row). */
-function columnsWhere(table, wanted) {
+export function columnsWhere(table, wanted) {
   const rows = rowsOf(table);
   return table.columns.map((column) => ({name: column.name, cells: column.cells.filter((_, k) => wanted(rows[k]))}));
 }
 
 /** The table with its title, source and CSV; long ones are folded. */
-function tableSection(file, table, id) {
-  const scroll = element("div", {className: "scroll", tabIndex: 0, role: "region", "aria-label": table.description}, tableElement(table));
+export function tableSection(file, table, id) {
+  const scroll = element(
+      "div", {className: "scroll", tabIndex: 0, role: "region", "aria-label": table.description}, tableElement(table));
   const rows = table.columns[0]?.cells.length ?? 0;
   const content = rows > 40 ? element("details", {}, element("summary", {}, `${rows} rows`), scroll) : scroll;
   const actions = element("div", {className: "actions"}, csvLink(table.name, () => table.columns.map(exactCells)));
-  return element("article", {className: "table", id}, element("h3", {}, table.description || table.name), content, actions, commandLine(file));
+  return element(
+      "article", {className: "table", id}, element("h3", {}, table.description || table.name), content, actions,
+      commandLine(file));
 }

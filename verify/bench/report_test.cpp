@@ -204,13 +204,14 @@ constexpr const char* look = R"(
                      body: body.share, risen: body.row - later.row, pins: coloured(after, canvas.width, isWhite).share, contacts: coloured(after, canvas.width, isOrange).share});
   });
   seen.legends = all("#motion figure").map((figure) => figure.querySelector(".legend")?.parentElement.innerText ?? "");
-  const svg = await svgOf(plots[0]), png = await pngOf(svg), image = new Image();
+  const svg = await report.svgOf(report.plots[0]), png = await report.pngOf(svg), image = new Image();
   image.src = `data:image/png;base64,${png}`;
   await image.decode();
-  const copy = element("canvas", {width: image.width, height: image.height});
+  const copy = document.createElement("canvas");
+  copy.width = image.width, copy.height = image.height;
   copy.getContext("2d").drawImage(image, 0, 0);
   const ink = coloured(picture(copy), copy.width, (r, g, b) => Math.min(r, g, b) < 180).share;
-  seen.picture = {name: plots[0].name, svg, bytes: atob(png).length, width: image.width, ink};
+  seen.picture = {name: report.plots[0].name, svg, bytes: atob(png).length, width: image.width, ink};
   const sorted = all("article.table").find((table) => table.textContent.includes("from the data")), head = sorted.querySelector("thead button");
   const order = () => all("tbody th", sorted).map((cell) => cell.textContent);
   head.click();

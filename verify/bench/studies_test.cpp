@@ -21,9 +21,9 @@ namespace {
 using results::Cell;
 using results::Column;
 using results::fit_order;
+using results::order_verdict;
 using results::Role;
 using results::Table;
-using results::order_verdict;
 using testing::AllOf;
 using testing::AnyOf;
 using testing::Contains;
