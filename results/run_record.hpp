@@ -19,6 +19,13 @@ struct Parameter {
   std::string description;
 };
 
+/// A key of the scene with its value, in TOML. A list of tables, as that of the pins, has a row for each of its entries.
+struct SceneValue {
+  std::string key;
+  std::string value;
+  std::string unit;  ///< "1": a number without dimension; empty: not a number
+};
+
 /// How often a kind of work was done.
 struct WorkCount {
   std::string name;
@@ -106,10 +113,11 @@ inline bool resolved(const ErrorRecord& error) { return error.rms >= resolution 
 struct RunRecord {
   std::string cell;  ///< identity of what was run: equal in all files where the same was asked for; empty outside of sweeps
   std::string scene;
-  std::string scene_toml;  ///< the complete scene, defaults and overrides included
-  std::string overrides;   ///< what was set differently from the scene, for example "material.damping=0.5"
-  std::string plan;        ///< what the scene compiled to, for users
-  std::string method;      ///< as on the command line, for example "bdf2/cholesky"
+  std::string scene_toml;              ///< the complete scene, defaults and overrides included, for users
+  std::vector<SceneValue> scene_keys;  ///< the same as data
+  std::string overrides;               ///< what was set differently from the scene, for example "material.damping=0.5"
+  std::string plan;                    ///< what the scene compiled to, for users
+  std::string method;                  ///< as on the command line, for example "bdf2/cholesky"
   std::string stage_solver;
   std::string linear_solver;
   double step = 0;   ///< [s]

@@ -1,19 +1,16 @@
 #include "bench/report/obstacles.hpp"
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
 #include <algorithm>
 #include <exception>
 #include <nlohmann/json.hpp>
 #include <span>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "bench/report/base64.hpp"
 #include "model/obstacles/contacts.hpp"
-#include "model/obstacles/surface.hpp"
 #include "model/scene_file/scene_file.hpp"
 
 namespace drape::bench {
@@ -29,21 +26,15 @@ struct Readable {
 
 /// Obstacles are read one by one, as if each were the only one of its scene.
 Readable read_obstacles(const results::RunRecord& run) {
-  toml::table text = toml::parse(run.scene_toml);
-  const toml::node_view<toml::node> listed = text["obstacles"];
-  const toml::array obstacles = listed.is_array() ? *listed.as_array() : toml::array{};
-  const auto scene_with = [&](const toml::array& some) {
-    text.insert_or_assign("obstacles", some);
-    std::ostringstream out;
-    out << text;
-    return model::parse_scene(out.str(), run.scene);
-  };
-  Readable read{scene_with({}), {}};
-  for (const toml::node& obstacle : obstacles) {
-    toml::array one;
-    one.push_back(*obstacle.as_table());
+  std::vector<model::Override> rest, obstacles;
+  for (const results::SceneValue& row : run.scene_keys)
+    (row.key == "obstacles" ? obstacles : rest).push_back({row.key, row.value});
+  Readable read{model::scene_of(rest, run.scene), {}};
+  for (const model::Override& obstacle : obstacles) {
+    std::vector<model::Override> rows = rest;
+    rows.push_back(obstacle);
     try {
-      read.scene.obstacles.push_back(scene_with(one).obstacles.front());
+      read.scene.obstacles.push_back(model::scene_of(rows, run.scene).obstacles.front());
     } catch (const model::SceneError& error) {
       read.missing.emplace_back(error.what());
     }
@@ -65,12 +56,11 @@ std::string packed(const std::vector<Number>& numbers) {
 }
 
 Json page_surface(const model::ObstacleRule& rule, double plane_side) {
-  const model::Polygons polygons = model::obstacle_polygons(rule, plane_side);
+  const model::Polygons polygons = rule.shape->surface(plane_side);
   std::vector<float> places;
   for (const Eigen::Vector3d& vertex : polygons.vertices)
     for (const double x : vertex) places.push_back(static_cast<float>(x));
-  const bool round = rule.kind == model::ShapeKind::sphere || rule.kind == model::ShapeKind::mesh;
-  return {{"vertices", packed(places)}, {"triangles", packed(triangles(polygons))}, {"smooth", round}};
+  return {{"vertices", packed(places)}, {"triangles", packed(triangles(polygons))}, {"smooth", rule.kind->smooth}};
 }
 
 std::size_t index_of(Json surface, Json& surfaces) {

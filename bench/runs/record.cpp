@@ -66,6 +66,8 @@ results::RunRecord describe(const RunSpec& spec) {
   results::RunRecord run;
   run.scene = spec.scene.name;
   run.scene_toml = model::to_toml(spec.scene);
+  for (const model::KeyValue& row : model::key_values(spec.scene))
+    run.scene_keys.push_back({row.key, model::to_toml(row.value), row.unit});
   run.overrides = spec.overrides;
   run.method = spec.method_name();
   run.stage_solver = stage_solver(spec);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <variant>
 
 #include "bench/score/export.hpp"
 #include "bench/score/observables.hpp"
@@ -13,43 +14,33 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Units of the keys that have any; "bend" and its damping depend on the form.
-constexpr std::pair<std::string_view, const char*> units_of_keys[] = {{"material.density", "kg/m²"},
-                                                                      {"material.tension", "N/m"},
-                                                                      {"material.damping", "N s/m"},
-                                                                      {"material.shear", "N/m"},
-                                                                      {"material.shear_damping", "N s/m"},
-                                                                      {"material.contraction", "N/m"},
-                                                                      {"forces.gravity", "m/s²"},
-                                                                      {"forces.wind", "N/m²"},
-                                                                      {"material.contraction_damping", "N s/m"},
-                                                                      {"forces.wind_constant", "1"},
-                                                                      {"forces.wind_frequency", "rad/s"},
-                                                                      {"forces.drag", "1"},
-                                                                      {"forces.lift", "1"},
-                                                                      {"forces.air", "N s/m³"},
-                                                                      {"contact.distance", "m"},
-                                                                      {"contact.relaxation", "1"},
-                                                                      {"contact.reaction_time", "s"}};
+/// Values of keys as JSON has them.
+struct ToJson {
+  Json operator()(std::monostate) const { return {}; }
+  Json operator()(const model::List& list) const {
+    Json all = Json::array();
+    for (const model::Data& value : list) all.push_back(std::visit(*this, value));
+    return all;
+  }
+  Json operator()(const model::Entries& table) const {
+    Json all = Json::object();
+    for (const auto& [key, value] : table) all[key] = std::visit(*this, value);
+    return all;
+  }
+  Json operator()(const auto& value) const { return value; }
+};
 
-std::string unit_of(const std::string& path, const model::Scene& scene) {
-  const bool membrane = scene.sheet.material.bend_form == model::BendForm::membrane;
-  if (path == "material.bend") return membrane ? "N/m" : "N m";
-  if (path == "material.bend_damping") return membrane ? "N s/m" : "N m s";
-  const auto* found = std::ranges::find(units_of_keys, path, [](const auto& pair) { return pair.first; });
-  return found == std::end(units_of_keys) ? "" : found->second;
-}
+Json to_json(const model::Data& value) { return std::visit(ToJson(), value); }
 
-/// All keys of a section. Numbers, flags, words and lists of them are written in TOML as in JSON.
+/// All keys of a section.
 Json section(const std::string& name, const model::Scene& scene) {
-  const auto values = model::key_values(scene);
   Json all = Json::object();
-  for (const model::KeyHelp& key : model::scene_keys()) {
-    if (!key.path.starts_with(name + ".")) continue;
-    Json entry{{"value", Json::parse(values.at(key.path))}};
-    if (const std::string unit = unit_of(key.path, scene); !unit.empty()) entry["unit"] = unit;
+  for (const model::KeyValue& key : model::key_values(scene)) {
+    if (!key.key.starts_with(name + ".")) continue;
+    Json entry{{"value", to_json(key.value)}};
+    if (!key.unit.empty()) entry["unit"] = key.unit;
     entry["meaning"] = key.description;
-    all[key.path.substr(name.size() + 1)] = entry;
+    all[key.key.substr(name.size() + 1)] = entry;
   }
   return all;
 }
@@ -97,15 +88,12 @@ Json pins(const model::Cloth& cloth, std::span<const double> times) {
   return all;
 }
 
+/// Shape and lengths: what else there is of it, as the file of a mesh, is in obstacle-k.obj.
 Json shape(const model::ObstacleRule& rule) {
-  switch (rule.kind) {
-    case model::ShapeKind::plane: return {{"shape", "plane"}, {"meaning", "the half-space below z = 0 of its own frame"}};
-    case model::ShapeKind::sphere: return {{"shape", "sphere"}, {"radius", rule.radius}};
-    case model::ShapeKind::box: return {{"shape", "box"}, {"size", list(rule.size)}};
-    case model::ShapeKind::cylinder: return {{"shape", "cylinder"}, {"radius", rule.radius}, {"height", rule.height}};
-    case model::ShapeKind::mesh: return {{"shape", "mesh"}, {"meaning", "the surface in obstacle-k.obj"}};
-  }
-  throw std::invalid_argument("unknown shape of an obstacle");
+  Json entry{{"shape", rule.kind->name}, {"meaning", rule.kind->description}};
+  for (const model::KeyValue& key : model::key_values(rule))
+    if (key.unit == "m") entry[key.key] = to_json(key.value);
+  return entry;
 }
 
 Json obstacles(const model::Scene& scene) {

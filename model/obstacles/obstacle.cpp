@@ -2,24 +2,9 @@
 
 #include <algorithm>
 #include <numbers>
-#include <stdexcept>
-
-#include "model/obstacles/mesh_shape.hpp"
-#include "model/obstacles/shapes.hpp"
 
 namespace drape::model {
 namespace {
-
-std::shared_ptr<const Shape> shape(const ObstacleRule& rule) {
-  switch (rule.kind) {
-    case ShapeKind::plane: return half_space();
-    case ShapeKind::sphere: return sphere(rule.radius);
-    case ShapeKind::box: return box(rule.size);
-    case ShapeKind::cylinder: return cylinder(rule.radius, rule.height);
-    case ShapeKind::mesh: return mesh_shape(rule.file, rule.scale);
-  }
-  throw std::invalid_argument("unknown shape of an obstacle");
-}
 
 Eigen::Quaterniond orientation(const KeyFrame& frame) {
   const double degrees = frame.rotation.norm();
@@ -31,7 +16,7 @@ Pose pose_of(const KeyFrame& frame) { return {frame.position, orientation(frame)
 
 }  // namespace
 
-Obstacle::Obstacle(const ObstacleRule& rule) : shape_(shape(rule)), motion_(rule.motion), friction_(rule.friction) {}
+Obstacle::Obstacle(const ObstacleRule& rule) : shape_(rule.shape->make()), motion_(rule.motion), friction_(rule.friction) {}
 
 Pose Obstacle::pose(double t) const {
   const auto next = std::ranges::upper_bound(motion_, t, {}, &KeyFrame::t);

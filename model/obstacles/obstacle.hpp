@@ -2,8 +2,11 @@
 
 #include <Eigen/Geometry>
 #include <memory>
-#include <string>
+#include <span>
+#include <string_view>
 #include <vector>
+
+#include "model/obstacles/polygons.hpp"
 
 namespace drape::model {
 
@@ -37,30 +40,45 @@ struct KeyFrame {
   Eigen::Vector3d rotation = Eigen::Vector3d::Zero();  ///< axis times angle, [degrees]
 };
 
-enum class ShapeKind {
-  plane,     ///< the half-space below z = 0
-  sphere,    ///< `radius`
-  box,       ///< `size`, centred
-  cylinder,  ///< `radius`, `height`, centred, axis along z: a round table
-  mesh,      ///< a closed triangle mesh from `file`, times `scale`
+/// A shape as users describe it: the values of its keys.
+class ShapeRule {
+ public:
+  virtual ~ShapeRule() = default;
+
+  /// Throws std::invalid_argument, naming the file, if a mesh cannot be read or is not closed.
+  virtual std::unique_ptr<const Shape> make() const = 0;
+
+  /// The surface in its own frame, for looking at; of a plane a square with the given side [m]. Throws as make() does.
+  virtual Polygons surface(double plane_side) const = 0;
 };
+
+template <class Record>
+struct Key;
+
+/// A row of the table of shapes; each is defined in a file of its own in shapes/.
+struct ShapeKind {
+  std::string_view name;
+  std::string_view description;
+  bool smooth;                                ///< the faces of its surface stand for something round
+  std::shared_ptr<ShapeRule> (*create)();     ///< with defaults
+  std::span<const Key<ShapeRule>> (*keys)();  ///< beside those of all obstacles, in the order of reading
+};
+
+/// All shapes that the model knows.
+std::span<const ShapeKind* const> shape_kinds();
 
 /// An obstacle as users describe it.
 struct ObstacleRule {
-  ShapeKind kind = ShapeKind::plane;
-  Eigen::Vector3d size = Eigen::Vector3d::Ones();  ///< [m]
-  double radius = 1;                               ///< [m]
-  double height = 1;                               ///< [m]
-  std::string file = {};
-  double scale = 1;
-  double friction = 0;              ///< η, Coulomb's coefficient
-  std::vector<KeyFrame> motion{1};  ///< at least one; times ascend
+  const ShapeKind* kind = nullptr;
+  std::shared_ptr<const ShapeRule> shape;  ///< of this kind
+  double friction = 0;                     ///< η, Coulomb's coefficient
+  std::vector<KeyFrame> motion{1};         ///< at least one; times ascend
 };
 
 /// An obstacle ready to be asked. Copies share the shape.
 class Obstacle {
  public:
-  /// Throws std::invalid_argument, naming the file, if a mesh cannot be read or is not closed.
+  /// Throws as ShapeRule::make() does.
   explicit Obstacle(const ObstacleRule& rule);
 
   Pose pose(double t) const;

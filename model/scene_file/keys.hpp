@@ -1,18 +1,22 @@
 #pragma once
 
-#include "model/scene_file/toml_value.hpp"
+#include <span>
+#include <string>
+
+#include "model/keys/key.hpp"
+#include "model/scene.hpp"
+#include "model/scene_file/scene_file.hpp"
 
 namespace drape::model {
 
-/// A key of scene files: how it is read and how it is written. The table is the only place that knows a key.
-struct SceneKey {
-  std::string_view path;  ///< "section.key"
-  std::string_view description;
-  void (*read)(const Value&, Scene&);
-  std::string (*write)(const Scene&);  ///< as TOML
-};
+using SceneKey = Key<Scene>;
 
-/// All keys in the order in which they are read and written.
+/// All keys of scene files in the order in which they are read and written. The table is the only place that knows a key.
 std::span<const SceneKey> scene_key_table();
+
+template <class Record>
+KeyValue key_value(const Key<Record>& key, const Record& record) {
+  return {std::string(key.name), std::string(key.unit_in(record)), std::string(key.description), key.data(record)};
+}
 
 }  // namespace drape::model

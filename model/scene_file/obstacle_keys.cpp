@@ -1,139 +1,66 @@
 #include "model/scene_file/obstacle_keys.hpp"
 
 #include <fmt/format.h>
-#include <xxhash.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cstdint>
-#include <filesystem>
 #include <iterator>
-#include <stdexcept>
+#include <memory>
+#include <string_view>
+#include <vector>
 
-#include "model/scene_file/toml_text.hpp"
-#include "solver/base/input_file.hpp"
-#include "solver/base/printable.hpp"
+#include "model/scene_file/keys.hpp"
 
 namespace drape::model {
 namespace {
 
-constexpr std::string_view shapes[] = {"plane", "sphere", "box", "cylinder", "mesh"};
-constexpr std::uintmax_t most_bytes = 256 << 20;  // of the file of a mesh
-constexpr std::string_view frame_keys[] = {"time", "position", "rotation"};
-
-/// The same file whatever folder the text is read from.
-std::string absolute_path(const std::filesystem::path& file) { return std::filesystem::absolute(file).lexically_normal(); }
-
-/// XXH3 of the bytes of a file.
-std::string checksum(const std::string& file) {
-  try {
-    const std::string bytes = base::content_of(file, most_bytes);
-    return fmt::format("{:016x}", XXH3_64bits(bytes.data(), bytes.size()));
-  } catch (const base::UnreadableFile& error) {
-    throw std::invalid_argument(fmt::format("{}: {}: expected the mesh of an obstacle", file, error.what()));
-  }
-}
-
-void read_file(const Value& value, ObstacleRule& rule) {
-  rule.file = absolute_path(value.folder() / value.text());
-  try {
-    base::require_input_file(rule.file, most_bytes);
-  } catch (const base::UnreadableFile& error) {
-    value.fail(fmt::format("the file of a mesh, {}: {}", base::quoted(rule.file), error.what()));
-  }
-}
-
-void read_checksum(const Value& value, ObstacleRule& rule) {
-  if (value.text() != checksum(rule.file)) value.fail(fmt::format("{}, that of {}", checksum(rule.file), rule.file));
-}
-
-KeyFrame read_frame(const Value& value) {
-  KeyFrame frame;
-  if (!value.table().contains("time")) value.fail("'time' in every key frame");
-  for (const auto& [key, node] : value.table()) {
-    const Value entry = value.child(key.str(), node);
-    if (key == "time") {
-      frame.t = entry.number();
-    } else if (key == "position") {
-      frame.position = entry.vector();
-    } else if (key == "rotation") {
-      frame.rotation = entry.vector();
-    } else {
-      entry.fail(fmt::format("no such key; a key frame has {}", fmt::join(frame_keys, ", ")));
-    }
-  }
-  return frame;
-}
+constexpr Key<KeyFrame> frame_keys[] = {
+    {"time", "s", "when", at<&KeyFrame::t>, check::number, true},
+    {"position", "m", "[x, y, z]", at<&KeyFrame::position>, check::number},
+    {"rotation", "degrees", "axis times angle", at<&KeyFrame::rotation>, check::number},
+};
 
 void read_motion(const Value& value, ObstacleRule& rule) {
   rule.motion.clear();
-  for (const Value& frame : value.list()) rule.motion.push_back(read_frame(frame));
+  for (const Value& frame : value.list()) read_table<KeyFrame>(frame, "key frame", frame_keys, rule.motion.emplace_back());
   if (rule.motion.empty()) value.fail("at least one key frame");
   if (std::ranges::adjacent_find(rule.motion, std::ranges::greater_equal{}, &KeyFrame::t) != rule.motion.end())
     value.fail("key frames with times that ascend");
 }
 
-std::string written_frame(const KeyFrame& frame) {
-  return fmt::format("{{ time = {}, position = {}, rotation = {} }}", frame.t, written(frame.position),
-                     written(frame.rotation));
+Data motion_data(const ObstacleRule& rule) {
+  List frames;
+  for (const KeyFrame& frame : rule.motion) frames.emplace_back(entries_of<KeyFrame>(frame_keys, frame));
+  return frames;
 }
 
-constexpr unsigned only(ShapeKind kind) { return 1u << static_cast<unsigned>(kind); }
-constexpr unsigned any_shape = ~0u;
+/// What `motion` says as well.
+Data not_written(const ObstacleRule& /*rule*/) { return {}; }
 
-/// A key of obstacles: the shapes that have it, how it is read and how it is written, if it is.
-struct ObstacleKey {
-  std::string_view name;
-  unsigned shapes;
-  bool necessary;
-  void (*read)(const Value&, ObstacleRule&);
-  std::string (*write)(const ObstacleRule&);
+/// The keys of every obstacle.
+constexpr Key<ObstacleRule> common_keys[] = {
+    {"friction", "1", "Coulomb's coefficient", at<&ObstacleRule::friction>, check::non_negative},
+    {"position", "m", "[x, y, z] of an obstacle at rest",
+     [](const Value& value, ObstacleRule& rule) { rule.motion.front().position = value.vector(&Value::number); }, not_written},
+    {"rotation", "degrees", "axis times angle of an obstacle at rest",
+     [](const Value& value, ObstacleRule& rule) { rule.motion.front().rotation = value.vector(&Value::number); }, not_written},
+    {"motion", "", "key frames", read_motion, motion_data},
 };
 
-/// In the order of reading and writing: the shape comes first, a file before its checksum.
-constexpr ObstacleKey obstacle_keys[] = {
-    {"shape", any_shape, true, [](const Value& v, ObstacleRule& o) { o.kind = static_cast<ShapeKind>(v.one_of(shapes)); },
-     [](const ObstacleRule& o) { return written(shapes, o.kind); }},
-    {"size", only(ShapeKind::box), true,
-     [](const Value& v, ObstacleRule& o) {
-       const std::vector<Value> lengths = v.list(3);
-       o.size = {lengths[0].positive(), lengths[1].positive(), lengths[2].positive()};
-     },
-     [](const ObstacleRule& o) { return written(o.size); }},
-    {"radius", only(ShapeKind::sphere) | only(ShapeKind::cylinder), true,
-     [](const Value& v, ObstacleRule& o) { o.radius = v.positive(); },
-     [](const ObstacleRule& o) { return fmt::format("{}", o.radius); }},
-    {"height", only(ShapeKind::cylinder), true, [](const Value& v, ObstacleRule& o) { o.height = v.positive(); },
-     [](const ObstacleRule& o) { return fmt::format("{}", o.height); }},
-    {"file", only(ShapeKind::mesh), true, read_file, [](const ObstacleRule& o) { return in_quotes(absolute_path(o.file)); }},
-    {"checksum", only(ShapeKind::mesh), false, read_checksum,
-     [](const ObstacleRule& o) { return in_quotes(checksum(o.file)); }},
-    {"scale", only(ShapeKind::mesh), false, [](const Value& v, ObstacleRule& o) { o.scale = v.positive(); },
-     [](const ObstacleRule& o) { return fmt::format("{}", o.scale); }},
-    {"friction", any_shape, false, [](const Value& v, ObstacleRule& o) { o.friction = v.non_negative(); },
-     [](const ObstacleRule& o) { return fmt::format("{}", o.friction); }},
-    {"position", any_shape, false, [](const Value& v, ObstacleRule& o) { o.motion.front().position = v.vector(); }, nullptr},
-    {"rotation", any_shape, false, [](const Value& v, ObstacleRule& o) { o.motion.front().rotation = v.vector(); }, nullptr},
-    {"motion", any_shape, false, read_motion, [](const ObstacleRule& o) { return written_list(o.motion, written_frame); }},
-};
+constexpr KeyInfo shape_key{"shape", "", "what it is", true};
 
-std::vector<ObstacleKey> keys_of(ShapeKind kind) {
-  std::vector<ObstacleKey> keys;
-  std::ranges::copy_if(obstacle_keys, std::back_inserter(keys),
-                       [&](const ObstacleKey& key) { return (key.shapes & only(kind)) != 0; });
-  return keys;
+void read_shape(const Value& value, ObstacleRule& rule) {
+  std::vector<std::string_view> names;
+  for (const ShapeKind* kind : shape_kinds()) names.push_back(kind->name);
+  rule.kind = shape_kinds()[value.one_of(names)];
 }
 
 /// Every key belongs to the shape, none that is necessary is missing.
-void check_keys(const Value& value, ShapeKind kind) {
-  const std::string_view shape = shapes[static_cast<std::size_t>(kind)];
-  const std::vector<ObstacleKey> keys = keys_of(kind);
-  std::vector<std::string_view> names;
-  for (const ObstacleKey& key : keys) names.push_back(key.name);
-  for (const auto& [name, node] : value.table())
-    if (std::ranges::find(names, name.str()) == names.end())
-      value.child(name.str(), node).fail(fmt::format("no such key; a {} has {}", shape, fmt::join(names, ", ")));
-  for (const ObstacleKey& key : keys)
-    if (key.necessary && !value.table().contains(key.name)) value.fail(fmt::format("'{}' in every {}", key.name, shape));
+void check_keys(const Value& value, const ShapeKind& kind) {
+  std::vector<KeyInfo> keys{shape_key};
+  std::ranges::copy(kind.keys(), std::back_inserter(keys));
+  std::ranges::copy(common_keys, std::back_inserter(keys));
+  require_keys(value, kind.name, keys);
   const auto has = [&](std::string_view name) { return value.table().contains(name); };
   if (has("motion") && (has("position") || has("rotation"))) value.fail("'motion' or 'position' and 'rotation', not both");
 }
@@ -141,20 +68,43 @@ void check_keys(const Value& value, ShapeKind kind) {
 }  // namespace
 
 ObstacleRule read_obstacle(const Value& value) {
-  const toml::node* shape = value.table().get("shape");
-  if (shape == nullptr) value.fail("'shape' in every obstacle");
+  const toml::node* shape_name = value.table().get(shape_key.name);
+  if (shape_name == nullptr) value.fail("'shape' in every obstacle");
   ObstacleRule rule;
-  check_keys(value, static_cast<ShapeKind>(value.child("shape", *shape).one_of(shapes)));
-  for (const ObstacleKey& key : obstacle_keys)
-    if (const toml::node* node = value.table().get(key.name)) key.read(value.child(key.name, *node), rule);
+  read_shape(value.child(shape_key.name, *shape_name), rule);
+  check_keys(value, *rule.kind);
+  const std::shared_ptr<ShapeRule> shape = rule.kind->create();
+  read_entries(value, rule.kind->keys(), *shape);
+  rule.shape = shape;
+  read_entries<ObstacleRule>(value, common_keys, rule);
   return rule;
 }
 
-std::string written(const ObstacleRule& rule) {
-  std::vector<std::string> entries;
-  for (const ObstacleKey& key : keys_of(rule.kind))
-    if (key.write != nullptr) entries.push_back(fmt::format("{} = {}", key.name, key.write(rule)));
-  return fmt::format("{{ {} }}", fmt::join(entries, ", "));
+Entries entries_of(const ObstacleRule& rule) {
+  Entries entries{{std::string(shape_key.name), std::string(rule.kind->name)}};
+  std::ranges::move(entries_of(rule.kind->keys(), *rule.shape), std::back_inserter(entries));
+  std::ranges::move(entries_of<ObstacleRule>(common_keys, rule), std::back_inserter(entries));
+  return entries;
+}
+
+std::vector<KeyValue> key_values(const ObstacleRule& rule) {
+  std::vector<KeyValue> values;
+  for (const Key<ShapeRule>& key : rule.kind->keys()) values.push_back(key_value(key, *rule.shape));
+  for (const Key<ObstacleRule>& key : common_keys) values.push_back(key_value(key, rule));
+  std::erase_if(values, [](const KeyValue& key) { return std::holds_alternative<std::monostate>(key.value); });
+  return values;
+}
+
+std::string obstacle_help() {
+  std::vector<std::string> shapes;
+  for (const ShapeKind* kind : shape_kinds()) {
+    std::string& shape = shapes.emplace_back(kind->name);
+    for (const KeyInfo& key : kind->keys()) shape.append(", ").append(key.name);
+  }
+  return fmt::format(
+      "list of {{ shape = {}; friction, position, rotation | motion = [{{ time, position, rotation }}, ...] }}: a rotation is "
+      "an axis times degrees; between two key frames an obstacle turns the shorter way, by less than half a turn",
+      fmt::join(shapes, " | "));
 }
 
 }  // namespace drape::model

@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
 #include <map>
+#include <utility>
+#include <variant>
 
 #include "model/scene_file/keys.hpp"
 #include "model/scene_file/toml_nesting.hpp"
@@ -67,7 +70,7 @@ void collect(const toml::table& table, const std::string& prefix, std::map<std::
   for (const auto& [key, node] : table) {
     const std::string path = prefix + std::string(key.str());
     const bool section =
-        std::ranges::any_of(scene_key_table(), [&](const SceneKey& known) { return known.path.starts_with(path + "."); });
+        std::ranges::any_of(scene_key_table(), [&](const SceneKey& known) { return known.name.starts_with(path + "."); });
     if (section && node.is_table())
       collect(*node.as_table(), path + ".", found);
     else
@@ -77,13 +80,13 @@ void collect(const toml::table& table, const std::string& prefix, std::map<std::
 
 /// `where`: the file and line of the key, or the override.
 void check_known(const std::string& path, const std::string& where) {
-  if (std::ranges::find(scene_key_table(), path, &SceneKey::path) != scene_key_table().end()) return;
+  if (std::ranges::find(scene_key_table(), path, &SceneKey::name) != scene_key_table().end()) return;
   const std::string section = path.substr(0, path.find('.') + 1);
   std::vector<std::string_view> choices;
   for (const SceneKey& known : scene_key_table())
-    if (section.empty() || known.path.starts_with(section)) choices.push_back(known.path);
+    if (section.empty() || known.name.starts_with(section)) choices.push_back(known.name);
   if (choices.empty())
-    for (const SceneKey& known : scene_key_table()) choices.push_back(known.path);
+    for (const SceneKey& known : scene_key_table()) choices.push_back(known.name);
   throw SceneError(fmt::format("{}: {}", where, base::unknown_name("key", path, choices)));
 }
 
@@ -109,6 +112,13 @@ void check_together(const Scene& scene, const std::string& origin) {
   const std::vector<solver::Pin> all = pins(scene);
   if (std::ssize(all) == grid.particles() && std::ranges::all_of(all, &solver::Pin::all))
     fail("pins: expected at least one coordinate that is free to move");
+}
+
+/// The unit stands behind what the description begins with: "k1, k2 [N/m]: one number for both".
+std::string with_unit(const KeyInfo& key) {
+  std::string text(key.description);
+  if (!key.unit.empty() && key.unit != "1") text.insert(std::min(text.find(':'), text.size()), fmt::format(" [{}]", key.unit));
+  return text;
 }
 
 std::string read_file(const std::filesystem::path& path) {
@@ -144,7 +154,7 @@ Scene parse_scene(std::string_view toml, std::string_view origin, std::span<cons
 
   Scene scene;
   for (const SceneKey& key : scene_key_table()) {
-    const auto node = found.find(std::string(key.path));
+    const auto node = found.find(std::string(key.name));
     if (node == found.end()) continue;
     const auto changed = origins.find(node->first);
     key.read(Value(*node->second, node->first, changed == origins.end() ? file : changed->second), scene);
@@ -166,20 +176,40 @@ Scene load_scene(const std::string& name_or_file, std::span<const Override> over
 
 std::string to_toml(const Scene& scene) {
   std::string text;
-  for (const SceneKey& key : scene_key_table()) text += fmt::format("{} = {}\n", key.path, key.write(scene));
+  for (const SceneKey& key : scene_key_table()) text += fmt::format("{} = {}\n", key.name, to_toml(key.data(scene)));
   return text;
 }
 
 std::vector<KeyHelp> scene_keys() {
   std::vector<KeyHelp> keys;
-  for (const SceneKey& key : scene_key_table()) keys.push_back({std::string(key.path), std::string(key.description)});
+  for (const SceneKey& key : scene_key_table()) keys.push_back({std::string(key.name), with_unit(key)});
   return keys;
 }
 
-std::map<std::string, std::string> key_values(const Scene& scene) {
-  std::map<std::string, std::string> values;
-  for (const SceneKey& key : scene_key_table()) values[std::string(key.path)] = key.write(scene);
+std::vector<KeyValue> key_values(const Scene& scene) {
+  std::vector<KeyValue> values;
+  for (const SceneKey& key : scene_key_table()) {
+    KeyValue row = key_value(key, scene);
+    const auto* list = std::get_if<List>(&row.value);
+    if (list == nullptr || (!list->empty() && !std::holds_alternative<Entries>(list->front())))
+      values.push_back(std::move(row));
+    else
+      for (const Data& entry : *list) values.push_back({row.key, row.unit, row.description, entry});
+  }
   return values;
+}
+
+Scene scene_of(std::span<const Override> rows, std::string_view origin) {
+  std::string text;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const auto& [key, value] = rows[k];
+    const bool is_entry = value.starts_with('{');
+    const auto beside = [&](std::size_t other) { return is_entry && other < rows.size() && rows[other].key == key; };
+    text += k > 0 && beside(k - 1) ? ", " : fmt::format("{} = {}", key, is_entry ? "[" : "");
+    text += value;
+    if (!beside(k + 1)) text += is_entry ? "]\n" : "\n";
+  }
+  return parse_scene(text, origin);
 }
 
 }  // namespace drape::model

@@ -1,21 +1,15 @@
 #pragma once
 
-#include <filesystem>
-#include <map>
 #include <span>
-#include <stdexcept>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "model/keys/data.hpp"
+#include "model/keys/scene_error.hpp"
 #include "model/scene.hpp"
 
 namespace drape::model {
-
-/// A scene that cannot be read: one sentence with the file, line, key and what would be right.
-class SceneError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
 
 /// One override of a key: "material.damping" = "0.5".
 struct Override {
@@ -46,11 +40,25 @@ std::span<const BuiltinScene> builtin_scenes();
 /// A key of scene files, for help.
 struct KeyHelp {
   std::string path;
-  std::string description;
+  std::string description;  ///< with its unit
 };
 std::vector<KeyHelp> scene_keys();
 
-/// The values that all keys have in a scene, as TOML, by their paths.
-std::map<std::string, std::string> key_values(const Scene& scene);
+/// What a key holds.
+struct KeyValue {
+  std::string key;
+  std::string unit;  ///< "1": a number without dimension; empty: not a number
+  std::string description;
+  Data value;
+};
+
+/// All keys of a scene. A list of tables, as that of its pins, has a row for each of its entries.
+std::vector<KeyValue> key_values(const Scene& scene);
+
+/// Those of an obstacle except its shape.
+std::vector<KeyValue> key_values(const ObstacleRule& rule);
+
+/// The scene with such rows, their values as TOML. `origin` names it in messages. Throws SceneError.
+Scene scene_of(std::span<const Override> rows, std::string_view origin);
 
 }  // namespace drape::model

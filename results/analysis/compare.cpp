@@ -6,7 +6,6 @@
 #include <cmath>
 #include <map>
 #include <set>
-#include <sstream>
 
 #include "results/analysis/findings.hpp"
 #include "solver/base/statistics.hpp"
@@ -25,10 +24,9 @@ std::map<std::string, std::string> identity(const RunRecord& run) {
                                            {"step", fmt::format("{}", run.step)},
                                            {"until", fmt::format("{}", run.until)}};
   for (const Parameter& parameter : run.parameters) facts["parameter " + parameter.name] = fmt::format("{}", parameter.value);
-  std::istringstream toml(run.scene_toml);
-  for (std::string line; std::getline(toml, line);) {
-    const auto equal = line.find(" = ");
-    facts["scene: " + line.substr(0, equal)] = equal == std::string::npos ? "" : line.substr(equal + 3);
+  for (const auto& [key, value, unit] : run.scene_keys) {
+    std::string& fact = facts["scene: " + key];
+    fact += (fact.empty() ? "" : ", ") + value;  // a list has a row for each of its entries
   }
   return facts;
 }

@@ -1,8 +1,6 @@
 #include "results/analysis/inspect.hpp"
 
-#include <algorithm>
 #include <iterator>
-#include <sstream>
 #include <type_traits>
 
 #include "results/columns.hpp"
@@ -67,25 +65,11 @@ Table members(std::string name, std::string description, const auto& fields, con
   return make_table(std::move(name), std::move(description), value_columns, rows);
 }
 
-/// A line of a TOML file.
-struct Line {
-  std::string key, value;
+constexpr ColumnOf<SceneValue> scene_columns[] = {
+    {"key", "key", "", "of the scene file", Role::key, field<&SceneValue::key>},
+    {"value", "value", "", "in TOML", Role::note, field<&SceneValue::value>},
+    {"unit", "unit", "", "of the value, 1 if it has none; empty: not a number", Role::note, field<&SceneValue::unit>},
 };
-
-constexpr ColumnOf<Line> line_columns[] = {
-    {"key", "key", "", "of the scene file", Role::key, field<&Line::key>},
-    {"value", "value", "", "in TOML", Role::note, field<&Line::value>},
-};
-
-Table scene_table(const std::string& toml) {
-  std::vector<Line> rows;
-  std::istringstream lines(toml);
-  for (std::string line; std::getline(lines, line);) {
-    const auto equal = std::min(line.find(" = "), line.size());
-    rows.push_back({line.substr(0, equal), equal == line.size() ? "" : line.substr(equal + 3)});
-  }
-  return make_table("scene", "the complete scene, as a TOML file would have it", line_columns, rows);
-}
 
 /// At least one number.
 struct Series {
@@ -137,7 +121,8 @@ Table list_of(const std::vector<Table>& tables) {
 
 std::vector<Table> in_full(const RunRecord& run) {
   std::vector<Table> tables{
-      members("run", "one run of one method on one scene", run_fields, run), scene_table(run.scene_toml),
+      members("run", "one run of one method on one scene", run_fields, run),
+      make_table("scene", "the complete scene, key by key", scene_columns, run.scene_keys),
       make_table("parameters", "parameters of the scene and the solvers", parameter_columns, run.parameters),
       make_table("work", "how often each kind of work was done", work_columns, run.work)};
   if (run.error)

@@ -10,6 +10,7 @@
 
 #include "results/file/hdf5.hpp"
 #include "results/file/schema.hpp"
+#include "results/file/schema_4.hpp"
 #include "results/file/table_in_file.hpp"
 #include "results/file/trajectory_in_file.hpp"
 
@@ -104,11 +105,30 @@ std::vector<StepRecord> read_steps(const Handle& group) {
   return steps;
 }
 
+void write_scene_keys(const Handle& group, const std::vector<SceneValue>& keys) {
+  for_each(scene_key_fields, [&](const auto& field) {
+    std::vector<std::string> column;
+    std::ranges::transform(keys, std::back_inserter(column), field.member);
+    hdf5::write_texts(group, field.name, column, field.description);
+  });
+}
+
+std::vector<SceneValue> read_scene_keys(const Handle& group) {
+  std::vector<SceneValue> keys(hdf5::read_texts(group, std::get<0>(scene_key_fields).name).size());
+  for_each(scene_key_fields, [&](const auto& field) {
+    const std::vector<std::string> column = hdf5::read_texts(group, field.name);
+    if (column.size() != keys.size()) throw hdf5::Error(fmt::format("{} must be as long as the other columns", field.name));
+    for (std::size_t i = 0; i < column.size(); ++i) keys[i].*field.member = column[i];
+  });
+  return keys;
+}
+
 // --- Runs ----------------------------------------------------------------------------------------------------------------
 
 void write_run(const Handle& runs, const std::string& name, const RunRecord& run) {
   const Handle group = hdf5::create_group(runs, name, "one run of one method on one scene");
   write_fields(group, run_fields, run);
+  write_scene_keys(hdf5::create_group(group, "scene_keys", "the complete scene, key by key"), run.scene_keys);
   write_steps(hdf5::create_group(group, "steps", "what happened in each accepted step"), run.steps);
   const Handle parameters = hdf5::create_group(group, "parameters", "parameters of the scene");
   for (const Parameter& p : run.parameters) hdf5::write_numbers(parameters, p.name, &p.value, {}, p.unit, p.description);
@@ -127,6 +147,8 @@ void write_run(const Handle& runs, const std::string& name, const RunRecord& run
 
 RunRecord read_run(const Handle& group) {
   RunRecord run = read_fields<RunRecord>(group, run_fields);
+  run.scene_keys =
+      hdf5::has(group, "scene_keys") ? read_scene_keys(hdf5::open_group(group, "scene_keys")) : keys_in(run.scene_toml);
   run.steps = read_steps(hdf5::open_group(group, "steps"));
   const Handle parameters = hdf5::open_group(group, "parameters");
   for (const auto& [name, unit, description] : hdf5::datasets(parameters))

@@ -24,7 +24,7 @@ Field(const char*, Value Record::*, const char*, const char*) -> Field<Record, V
 inline constexpr std::tuple run_fields{
     Field{"cell", &RunRecord::cell, "", "identity of what was run: hash of all that determines the result"},
     Field{"scene", &RunRecord::scene, "", "name of the scene"},
-    Field{"scene_toml", &RunRecord::scene_toml, "", "the complete scene, defaults and overrides included"},
+    Field{"scene_toml", &RunRecord::scene_toml, "", "the complete scene, defaults and overrides included, as a scene file"},
     Field{"overrides", &RunRecord::overrides, "", "what was set differently from the scene"},
     Field{"plan", &RunRecord::plan, "", "what the scene compiled to"},
     Field{"method", &RunRecord::method, "", "time integrator with its solvers, as on the command line"},
@@ -38,6 +38,13 @@ inline constexpr std::tuple run_fields{
     Field{"numerical_stiffness", &RunRecord::numerical_stiffness, "1", "h^2 k / (rho l^2), the larger of weft and warp"},
     Field{"stiffness_to_damping", &RunRecord::stiffness_to_damping, "1", "h k / d; infinite without damping"},
     Field{"times_ms", &RunRecord::times_ms, "ms", "solver wall time of every repetition, in the order they ran"},
+};
+
+/// Of `scene_keys`, which is absent in older files of the same version: see schema_4.hpp.
+inline constexpr std::tuple scene_key_fields{
+    Field{"key", &SceneValue::key, "", "key of scene files; the key of a list of tables stands once for each of them"},
+    Field{"value", &SceneValue::value, "", "its value, in TOML"},
+    Field{"unit", &SceneValue::unit, "", "of the value; 1: a number without dimension, empty: not a number"},
 };
 
 inline constexpr std::tuple step_fields{

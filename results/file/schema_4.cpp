@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <initializer_list>
+#include <sstream>
 #include <utility>
 
 #include "results/verdict.hpp"
@@ -11,6 +12,25 @@ namespace {
 
 bool one_of(std::string_view name, std::initializer_list<std::string_view> names) {
   return std::ranges::find(names, name) != names.end();
+}
+
+/// The tables of a list; a value that is no list of tables, as it is. Older programs left a comma behind the last particle of a
+/// pin.
+std::vector<std::string> entries_of(std::string_view value) {
+  if (!value.starts_with("[{")) return {std::string(value)};
+  std::vector<std::string> entries;
+  int depth = 0;
+  bool in_text = false;
+  for (std::size_t k = 1; k + 1 < value.size(); ++k) {
+    const std::string_view rest = value.substr(k);
+    if (!in_text && rest.starts_with(", ]")) k += 2;
+    if (value[k] == '"') in_text = !in_text;
+    if (!in_text && value[k] == '{' && depth++ == 0) entries.emplace_back();
+    if (depth > 0) entries.back() += value[k];
+    if (in_text && value[k] == '\\') entries.back() += value[++k];
+    if (!in_text && value[k] == '}') --depth;
+  }
+  return entries;
 }
 
 }  // namespace
@@ -66,6 +86,19 @@ std::string usual_verdict(const std::string& text) {
     if (text.ends_with(good)) return verdict(Standing::met, text);
   if (one_of(text, {"agrees", "all converge", "as wanted", "proportional", "within 10"})) return verdict(Standing::met, text);
   return text.starts_with("no ") ? verdict(Standing::open, text) : text;
+}
+
+std::vector<SceneValue> keys_in(const std::string& scene_toml) {
+  std::vector<SceneValue> keys;
+  std::istringstream lines(scene_toml);
+  for (std::string line; std::getline(lines, line);) {
+    constexpr std::string_view equals = " = ";
+    const std::size_t at = std::min(line.find(equals), line.size());
+    const std::string value = at == line.size() ? "" : line.substr(at + equals.size());
+    if (value == "[]") continue;
+    for (const std::string& entry : entries_of(value)) keys.push_back({line.substr(0, at), entry, ""});
+  }
+  return keys;
 }
 
 }  // namespace drape::results

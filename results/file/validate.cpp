@@ -153,6 +153,16 @@ void check_steps(Check& check, const std::string& group) {
   });
 }
 
+/// As many keys as values and units.
+void check_scene_keys(Check& check, const std::string& group) {
+  if (!check.group(group)) return;
+  SameRows keys(check, "keys");
+  for_each(scene_key_fields, [&](const auto& field) {
+    const std::string path = fmt::format("{}/{}", group, field.name);
+    keys.see(path, check.numbers(path, "text", 1, field.unit));
+  });
+}
+
 void check_state(Check& check, const std::string& group) {
   if (!check.group(group)) return;
   SameRows particles(check, "particles");
@@ -195,6 +205,7 @@ void check_trajectory(Check& check, const std::string& group) {
 
 void check_run(Check& check, const std::string& group) {
   fields<RunRecord>(check, group, run_fields);
+  if (check.find(group + "/scene_keys") != nullptr) check_scene_keys(check, group + "/scene_keys");
   check_steps(check, group + "/steps");
   if (check.group(group + "/parameters"))
     for (const std::string& name : check.members(group + "/parameters"))

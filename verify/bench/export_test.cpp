@@ -114,6 +114,7 @@ TEST(Export, TellsWherePinsAndObstaclesAre) {
   const json scene = json::parse(files.at("a/scene.json"));
   EXPECT_EQ(scene.at("pins")[0].at("particle"), 2);
   EXPECT_EQ(scene.at("pins")[0].at("positions")[1], json({0.01, nullptr, -0.02}));
+  EXPECT_EQ(scene.at("obstacles")[0].at("shape"), "sphere");
   EXPECT_EQ(scene.at("obstacles")[0].at("radius"), 0.25);
   EXPECT_EQ(scene.at("obstacles")[0].at("key_frames")[0].at("position"), json({0.5, 0.5, 3.0}));
   EXPECT_EQ(scene.at("contact").at("distance").at("unit"), "m");

@@ -1,5 +1,6 @@
 // Obstacles from mesh files: their distances against exact ones and against all triangles, and which files are refused.
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -17,6 +18,7 @@
 #include "model/obstacles/obstacle.hpp"
 #include "verify/support/distance_field.hpp"
 #include "verify/support/mesh_files.hpp"
+#include "verify/support/obstacles.hpp"
 #include "verify/support/temporary_folder.hpp"
 
 namespace drape::verify::mesh_obstacle_test {
@@ -26,14 +28,13 @@ using Eigen::Vector3d;
 using model::Corners;
 using model::Nearest;
 using model::Obstacle;
-using model::ShapeKind;
 using model::TriangleMesh;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::StartsWith;
 
 Obstacle read(const std::string& file, double scale = 1) {
-  return Obstacle({.kind = ShapeKind::mesh, .file = file, .scale = scale});
+  return Obstacle(obstacle(fmt::format("shape = 'mesh', file = '{}', scale = {}", file, scale)));
 }
 
 /// The mesh as it comes back from a file.
@@ -54,7 +55,7 @@ std::vector<Vector3d> random_points(int count, double extent) {
 // --- A box, from each format -------------------------------------------------------------------------------------------------
 
 void expect_box(const Obstacle& mesh, const Vector3d& size) {
-  const Obstacle box({.kind = ShapeKind::box, .size = size});
+  const Obstacle box(obstacle(fmt::format("shape = 'box', size = [{}, {}, {}]", size[0], size[1], size[2])));
   for (const Vector3d& p : random_points(300, size.maxCoeff())) {
     EXPECT_NEAR(mesh.nearest(p).distance, box.nearest(p).distance, 1e-12);
     EXPECT_LE((mesh.nearest(p).normal - box.nearest(p).normal).norm(), 1e-12);

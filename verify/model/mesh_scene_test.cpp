@@ -10,6 +10,7 @@
 
 #include "model/scene_file/scene_file.hpp"
 #include "verify/support/mesh_files.hpp"
+#include "verify/support/obstacles.hpp"
 #include "verify/support/temporary_folder.hpp"
 
 namespace drape::verify::mesh_scene_test {
@@ -47,8 +48,8 @@ class MeshScene : public testing::Test {
 
 TEST_F(MeshScene, NamesItsFileRelativeToItself) {
   const Scene scene = model::load_scene(scene_);
-  EXPECT_EQ(scene.obstacles.at(0).file, mesh_);
-  EXPECT_EQ(scene.obstacles.at(0).scale, 0.25);
+  EXPECT_EQ(value_of(scene.obstacles.at(0), "file"), "\"" + mesh_ + "\"");
+  EXPECT_EQ(value_of(scene.obstacles.at(0), "scale"), "0.25");
   EXPECT_NEAR(model::Obstacle(scene.obstacles[0]).nearest({1, 0, 0}).distance, 0.75, 1e-15);
 }
 
@@ -57,15 +58,15 @@ TEST_F(MeshScene, OfAnOverrideNamesItsFileRelativeToTheWorkingFolder) {
   const Scene scene =
       model::parse_scene("name = 'x'", "elsewhere/a.toml",
                          std::vector<model::Override>{{"obstacles", "[{shape='mesh', file='" + relative + "'}]"}});
-  EXPECT_EQ(scene.obstacles.at(0).file, mesh_);
+  EXPECT_EQ(value_of(scene.obstacles.at(0), "file"), "\"" + mesh_ + "\"");
 }
 
 TEST_F(MeshScene, IsTheSameAfterWritingAndReadingElsewhere) {
   const std::string text = to_toml(model::load_scene(scene_));
   const Scene again = model::parse_scene(text, "elsewhere/a.toml");
-  EXPECT_EQ(again.obstacles.at(0).kind, model::ShapeKind::mesh);
-  EXPECT_EQ(again.obstacles[0].file, mesh_);
-  EXPECT_EQ(again.obstacles[0].scale, 0.25);
+  EXPECT_EQ(again.obstacles.at(0).kind->name, "mesh");
+  EXPECT_EQ(value_of(again.obstacles[0], "file"), "\"" + mesh_ + "\"");
+  EXPECT_EQ(value_of(again.obstacles[0], "scale"), "0.25");
   EXPECT_EQ(to_toml(again), text);
 }
 

@@ -2,6 +2,7 @@
 
 #include "model/obstacles/obstacle.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "verify/support/distance_field.hpp"
+#include "verify/support/obstacles.hpp"
 
 namespace drape::verify::obstacle_test {
 namespace {
@@ -18,15 +20,15 @@ namespace {
 using Eigen::Vector3d;
 using model::Nearest;
 using model::Obstacle;
-using model::ObstacleRule;
 using model::Pose;
-using model::ShapeKind;
 
-Obstacle plane() { return Obstacle({.kind = ShapeKind::plane}); }
-Obstacle sphere(double radius) { return Obstacle({.kind = ShapeKind::sphere, .radius = radius}); }
-Obstacle box(const Vector3d& size) { return Obstacle({.kind = ShapeKind::box, .size = size}); }
+Obstacle plane() { return Obstacle(obstacle("shape = 'plane'")); }
+Obstacle sphere(double radius) { return Obstacle(obstacle(fmt::format("shape = 'sphere', radius = {}", radius))); }
+Obstacle box(const Vector3d& size) {
+  return Obstacle(obstacle(fmt::format("shape = 'box', size = [{}, {}, {}]", size[0], size[1], size[2])));
+}
 Obstacle cylinder(double radius, double height) {
-  return Obstacle({.kind = ShapeKind::cylinder, .radius = radius, .height = height});
+  return Obstacle(obstacle(fmt::format("shape = 'cylinder', radius = {}, height = {}", radius, height)));
 }
 
 // --- Distances ---------------------------------------------------------------------------------------------------------------
@@ -114,7 +116,11 @@ TEST(Distance, HasANormalOnEdgesAndCorners) {
 // --- Motion ------------------------------------------------------------------------------------------------------------------
 
 /// A plane that moves thus.
-Obstacle moving(const std::vector<model::KeyFrame>& motion) { return Obstacle({.kind = ShapeKind::plane, .motion = motion}); }
+Obstacle moving(const std::vector<model::KeyFrame>& motion) {
+  model::ObstacleRule rule = obstacle("shape = 'plane'");
+  rule.motion = motion;
+  return Obstacle(rule);
+}
 
 const std::vector<model::KeyFrame> quarter_turns = {
     {.t = 1, .position = {1, 0, 0}}, {.t = 3, .position = {3, 4, 0}, .rotation = {0, 0, 90}}, {.t = 4, .rotation = {0, 90, 0}}};
@@ -178,7 +184,7 @@ TEST(Pose, ToBodyUndoesToWorld) {
   EXPECT_LE((moving(quarter_turns).pose(3).to_world({1, 2, 3}) - Vector3d(1, 5, 3)).norm(), 1e-15);
 }
 
-TEST(Obstacle, HasItsFriction) { EXPECT_EQ(Obstacle({.kind = ShapeKind::plane, .friction = 0.25}).friction(), 0.25); }
+TEST(Obstacle, HasItsFriction) { EXPECT_EQ(Obstacle(obstacle("shape = 'plane', friction = 0.25")).friction(), 0.25); }
 
 }  // namespace
 }  // namespace drape::verify::obstacle_test

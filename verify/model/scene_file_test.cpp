@@ -11,6 +11,7 @@
 
 #include "model/cloth.hpp"
 #include "model/scene_file/toml_nesting.hpp"
+#include "verify/support/obstacles.hpp"
 #include "verify/support/temporary_folder.hpp"
 
 namespace drape::verify::scene_file_test {
@@ -112,23 +113,23 @@ void expect_frame(const model::KeyFrame& frame, double t, const Eigen::Vector3d&
 void expect_obstacles(const std::vector<model::ObstacleRule>& obstacles) {
   ASSERT_EQ(obstacles.size(), 4u);
   const auto& [plane, box, sphere, cylinder] = std::tie(obstacles[0], obstacles[1], obstacles[2], obstacles[3]);
-  EXPECT_EQ(plane.kind, model::ShapeKind::plane);
+  EXPECT_EQ(plane.kind->name, "plane");
   EXPECT_EQ(plane.friction, 0);
   ASSERT_EQ(plane.motion.size(), 1u);
   expect_frame(plane.motion[0], 0, {0, 0, 0}, {0, 0, 0});
-  EXPECT_EQ(box.kind, model::ShapeKind::box);
-  EXPECT_EQ(box.size, Eigen::Vector3d(1, 2.5, 3));
+  EXPECT_EQ(box.kind->name, "box");
+  EXPECT_EQ(value_of(box, "size"), "[1, 2.5, 3]");
   EXPECT_EQ(box.friction, 0.3);
   ASSERT_EQ(box.motion.size(), 1u);
   expect_frame(box.motion[0], 0, {0.1, 0, -1}, {0, 90, 0});
-  EXPECT_EQ(sphere.kind, model::ShapeKind::sphere);
-  EXPECT_EQ(sphere.radius, 0.75);
+  EXPECT_EQ(sphere.kind->name, "sphere");
+  EXPECT_EQ(value_of(sphere, "radius"), "0.75");
   ASSERT_EQ(sphere.motion.size(), 2u);
   expect_frame(sphere.motion[0], 0.5, {0, 0, 1}, {0, 0, 0});
   expect_frame(sphere.motion[1], 1, {0, 0, 0}, {0, 0, 45.5});
-  EXPECT_EQ(cylinder.kind, model::ShapeKind::cylinder);
-  EXPECT_EQ(cylinder.radius, 0.6);
-  EXPECT_EQ(cylinder.height, 0.05);
+  EXPECT_EQ(cylinder.kind->name, "cylinder");
+  EXPECT_EQ(value_of(cylinder, "radius"), "0.6");
+  EXPECT_EQ(value_of(cylinder, "height"), "0.05");
 }
 
 /// Every key as `complete` says it.
@@ -238,6 +239,46 @@ TEST(SceneFile, HasAHelpForEveryKeyItWrites) {
     EXPECT_THAT("\n" + text, HasSubstr("\n" + path + " = "));
   }
   EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(text, '\n')), model::scene_keys().size());
+}
+
+/// As a run is recorded.
+std::vector<model::Override> rows_of(const Scene& scene) {
+  std::vector<model::Override> rows;
+  for (const model::KeyValue& row : model::key_values(scene)) rows.push_back({row.key, to_toml(row.value)});
+  return rows;
+}
+
+TEST(SceneFile, IsTheSameAfterItsRowsAreReadAgain) {
+  for (const Scene& scene : {parsed(complete), parsed(complete, {"pins=[]"}), named("x")})
+    EXPECT_EQ(to_toml(model::scene_of(rows_of(scene), "rows")), to_toml(scene));
+}
+
+TEST(SceneFile, HasARowForEveryKeyAndEveryEntryOfAList) {
+  std::vector<std::string> keys;
+  for (const model::KeyValue& row : model::key_values(parsed(complete))) keys.push_back(row.key);
+  EXPECT_EQ(std::ranges::count(keys, "pins"), 2);
+  EXPECT_EQ(std::ranges::count(keys, "obstacles"), 4);
+  EXPECT_EQ(keys.size(), model::scene_keys().size() + 1 + 3);
+}
+
+TEST(SceneFile, HasTheUnitOfEveryKeyInItsHelpAndItsRow) {
+  const auto unit = [](const Scene& scene, std::string_view key) {
+    const std::vector<model::KeyValue> rows = model::key_values(scene);
+    return std::ranges::find(rows, key, &model::KeyValue::key)->unit;
+  };
+  EXPECT_EQ(unit(parsed(complete), "material.bend"), "N/m") << "of the membrane";
+  EXPECT_EQ(unit(named("x"), "material.bend"), "N m") << "of the plate";
+  EXPECT_EQ(unit(named("x"), "forces.drag"), "1");
+  EXPECT_EQ(unit(named("x"), "pins"), "");
+  for (const auto& [path, description] : model::scene_keys())
+    if (const std::string of_key = unit(named("x"), path); of_key.size() > 1)
+      EXPECT_THAT(description, HasSubstr("[" + of_key.substr(0, 3))) << path;
+}
+
+TEST(SceneFile, NamesAllShapesInItsHelp) {
+  const std::vector<model::KeyHelp> keys = model::scene_keys();
+  const std::string help = std::ranges::find(keys, "obstacles", &model::KeyHelp::path)->description;
+  EXPECT_THAT(help, HasSubstr("shape = plane | sphere, radius | box, size | cylinder, radius, height | mesh, file, "));
 }
 
 TEST(SceneFile, IsReadFromDisk) {

@@ -68,7 +68,7 @@ TEST(Holm, CorrectsStepByStep) {
 RunRecord run(const std::string& method) {
   RunRecord run;
   run.scene = "flag";
-  run.scene_toml = "grid.n = [20, 20]\nmaterial.damping = [50, 50]\n";
+  run.scene_keys = {{"grid.n", "[20, 20]", ""}, {"material.damping", "[50, 50]", "N s/m"}};
   run.method = method;
   run.step = 0.01;
   run.until = 1;
@@ -187,7 +187,7 @@ TEST(Compare, SaysWhatMakesCellsDifferent) {
   EXPECT_THAT(texts_in(comparison.accuracy, "b")[0], HasSubstr("parameter loop_tolerance (1e-05 and 1e-06)"));
   EXPECT_EQ(exit_code(comparison), 2);
   b = a;
-  b.runs[0].scene_toml = "grid.n = [20, 20]\nmaterial.damping = [5, 5]\n";
+  b.runs[0].scene_keys[1].value = "[5, 5]";
   EXPECT_THAT(texts_in(compare(a, b).accuracy, "b"), ElementsAre("differs in scene: material.damping ([50, 50] and [5, 5])"));
   EXPECT_EQ(exit_code(compare(a, b)), 2);
   EXPECT_EQ(exit_code(compare(Recording(), Recording())), 2);

@@ -43,6 +43,7 @@ RunRecord full_record() {
   run.cell = "0123456789abcdef";
   run.scene = "Fähnchen im Wind 旗";
   run.scene_toml = "[material]\ndamping = 0.5 # \"d\"\n";
+  run.scene_keys = {{"material.damping", "[0.5, 0.5]", "N s/m"}, {"pins", "{ where = \"Fähnchen\" }", ""}, {"pins", "{ }", ""}};
   run.overrides = "material.damping=0.5";
   run.plan = "2 of 7 terms";
   run.method = "bdf2/cholesky";

@@ -69,7 +69,7 @@ TEST_F(Inspect, ShowsARunInFull) {
   EXPECT_THAT(all["work"], SizeIs(run.work.size()));
   for (const results::WorkCount& work : run.work) EXPECT_EQ(value("work", work.name), work.count);
   for (const results::Parameter& parameter : run.parameters) EXPECT_EQ(value("parameters", parameter.name), parameter.value);
-  EXPECT_THAT(all["scene"], Contains(nlohmann::json{{"key", "grid.n"}, {"value", "[5, 5]"}}));
+  EXPECT_THAT(all["scene"], Contains(nlohmann::json{{"key", "grid.n"}, {"value", "[5, 5]"}, {"unit", ""}}));
   EXPECT_EQ(all["series"][0]["series"], "t");
   EXPECT_EQ(all["series"][0]["length"], 5);
   EXPECT_EQ(all["series"][0]["least"], run.steps[0].t);

@@ -47,6 +47,20 @@ TEST(SchemaFour, IsValidAndComparesWithItself) {
   EXPECT_EQ(exit_code(compare(recording, recording, {.times = false})), 0);
 }
 
+TEST(OldScenes, AreReadKeyByKeyFromTheirText) {
+  const auto rows = [](const std::string& toml) {
+    std::vector<std::string> texts;
+    for (const auto& [key, value, unit] : keys_in(toml)) texts.push_back(key + ": " + value);
+    return texts;
+  };
+  EXPECT_THAT(rows("name = \"a = b\"\ngrid.n = [5, 3]\npins = []\n"),
+              testing::ElementsAre("name: \"a = b\"", "grid.n: [5, 3]"));
+  EXPECT_THAT(rows("pins = [{ particles = [[0, 19], [19, 19], ] }, { where = \"}, {\\\"\" }]\n"),
+              testing::ElementsAre("pins: { particles = [[0, 19], [19, 19]] }", "pins: { where = \"}, {\\\"\" }"));
+  EXPECT_THAT(rows("obstacles = [{ shape = \"plane\", motion = [{ time = 0 }, { time = 1 }] }]\n"),
+              testing::ElementsAre("obstacles: { shape = \"plane\", motion = [{ time = 0 }, { time = 1 }] }"));
+}
+
 TEST(SchemaFour, SaysWhatIsNotAsItWasWanted) {
   EXPECT_EQ(usual_verdict("NOT 4"), "missed: not 4");
   EXPECT_EQ(usual_verdict("BDF(2) is NOT nearer"), "missed: BDF(2) is not nearer");

@@ -1,6 +1,10 @@
 #include "verify/support/random_scenes.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
+
+#include "verify/support/obstacles.hpp"
 
 namespace drape::verify::random_scenes {
 namespace {
@@ -62,11 +66,11 @@ void choose_pins(Dice& dice, std::vector<model::PinRule>& pins) {
 
 void choose_obstacle(Dice& dice, Scene& scene) {
   const double gap = dice.between(0.02, 0.2);
-  model::ObstacleRule rule;
-  rule.kind = dice.one_in(2) ? model::ShapeKind::plane : model::ShapeKind::sphere;
-  rule.radius = 0.3;
+  constexpr double radius = 0.3;
+  const bool is_plane = dice.one_in(2);
+  model::ObstacleRule rule = obstacle(is_plane ? "shape = 'plane'" : fmt::format("shape = 'sphere', radius = {}", radius));
   rule.friction = dice.one_in(2) ? 0.3 : 0;
-  const double below = rule.kind == model::ShapeKind::plane ? gap : gap + rule.radius;
+  const double below = is_plane ? gap : gap + radius;
   const Eigen::Vector3d at(0.4, 0.4, -below);
   rule.motion = {{.t = 0, .position = at}};
   if (dice.one_in(2)) rule.motion.push_back({.t = scene.end, .position = at + scene.end * dice.vector(0.1, 1)});

@@ -13,11 +13,13 @@ std::string vectors_as_text(const solver::Vectors& values) {
 }  // namespace
 
 std::string as_text(const results::RunRecord& run) {
-  const auto& [cell, scene, scene_toml, overrides, plan, method, stage, linear, step, until, parameters, stiffness, to_damping,
-               outcome, message, last_good_time, steps, times_ms, work, state, error, motion_error, contact, trajectory] = run;
+  const auto& [cell, scene, scene_toml, scene_keys, overrides, plan, method, stage, linear, step, until, parameters, stiffness,
+               to_damping, outcome, message, last_good_time, steps, times_ms, work, state, error, motion_error, contact,
+               trajectory] = run;
   std::string text = fmt::format("{}\n", fmt::join({cell, scene, scene_toml, overrides, plan, method, stage, linear}, "\n"));
   text +=
       fmt::format("{} {} {} {} {}\n{}\n{}\n", step, until, stiffness, to_damping, last_good_time, to_string(outcome), message);
+  for (const auto& [key, value, unit] : scene_keys) text += fmt::format("{} {} {}\n", key, value, unit);
   for (const auto& [name, value, unit, description] : parameters)
     text += fmt::format("{} {} {} {}\n", name, value, unit, description);
   for (const auto& [t, h, updates, cg, kinetic, potential, contacts] : steps)

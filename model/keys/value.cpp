@@ -1,4 +1,4 @@
-#include "model/scene_file/toml_value.hpp"
+#include "model/keys/value.hpp"
 
 #include <fmt/format.h>
 
@@ -33,6 +33,13 @@ std::string Value::text() const {
   fail("a text in quotes");
 }
 
+std::string Value::title() const {
+  constexpr std::size_t most = 200;
+  std::string title = text();
+  if (base::characters(title) > most) fail(fmt::format("a name of at most {} characters", most));
+  return title;
+}
+
 bool Value::flag() const {
   if (node_.is_boolean()) return *node_.value<bool>();
   fail("true or false");
@@ -54,6 +61,12 @@ double Value::positive() const {
 double Value::non_negative() const {
   const double value = number();
   if (value < 0) fail("a number of at least 0");
+  return value;
+}
+
+double Value::part() const {
+  const double value = positive();
+  if (value > 1) fail("a number above 0 and at most 1");
   return value;
 }
 
@@ -86,15 +99,15 @@ std::filesystem::path Value::folder() const {
   return origin_.ends_with(".toml") ? std::filesystem::path(origin_).parent_path() : std::filesystem::path();
 }
 
-Eigen::Vector3d Value::vector() const {
-  const std::vector<Value> values = list(3);
-  return {values[0].number(), values[1].number(), values[2].number()};
+WeftWarp Value::weft_warp(double (Value::*one)() const) const {
+  if (!node_.is_array()) return {(this->*one)(), (this->*one)()};
+  const std::vector<Value> values = list(2);
+  return {(values[0].*one)(), (values[1].*one)()};
 }
 
-WeftWarp Value::weft_warp(double (Value::*part)() const) const {
-  if (!node_.is_array()) return {(this->*part)(), (this->*part)()};
-  const std::vector<Value> values = list(2);
-  return {(values[0].*part)(), (values[1].*part)()};
+Eigen::Vector3d Value::vector(double (Value::*one)() const) const {
+  const std::vector<Value> values = list(3);
+  return {(values[0].*one)(), (values[1].*one)(), (values[2].*one)()};
 }
 
 std::size_t Value::one_of(std::span<const std::string_view> names) const {

@@ -2,13 +2,15 @@
 
 #include <toml++/toml.h>
 
+#include <Eigen/Core>
 #include <filesystem>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "model/scene_file/scene_file.hpp"
+#include "model/keys/scene_error.hpp"
+#include "model/sheet/material.hpp"
 
 namespace drape::model {
 
@@ -23,12 +25,13 @@ class Value {
   [[noreturn]] void fail(const std::string& what_is_right) const;
 
   std::string text() const;
+  std::string title() const;  ///< a text of at most 200 characters
   bool flag() const;
-  double number() const;        ///< finite
-  double positive() const;      ///< > 0
-  double non_negative() const;  ///< ≥ 0
-  int count() const;            ///< a whole number ≥ 1
-  Eigen::Vector3d vector() const;
+  double number() const;                            ///< finite
+  double positive() const;                          ///< > 0
+  double non_negative() const;                      ///< ≥ 0
+  double part() const;                              ///< > 0 and ≤ 1
+  int count() const;                                ///< a whole number ≥ 1
   std::vector<Value> list(std::size_t size) const;  ///< an array of `size` values
   std::vector<Value> list() const;                  ///< an array
   const toml::table& table() const;
@@ -41,8 +44,11 @@ class Value {
   /// A node inside this one, called "key.name".
   Value child(std::string_view name, const toml::node& node) const { return {node, key_ + "." + std::string(name), origin_}; }
 
-  /// One value for weft and warp, or an array of two; each read by `part`.
-  WeftWarp weft_warp(double (Value::*part)() const) const;
+  /// One value for weft and warp, or an array of two; each read by `one`.
+  WeftWarp weft_warp(double (Value::*one)() const) const;
+
+  /// An array of three values, each read by `one`.
+  Eigen::Vector3d vector(double (Value::*one)() const) const;
 
   /// The place of a text among the names.
   std::size_t one_of(std::span<const std::string_view> names) const;

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <iosfwd>
+#include <vector>
+
+namespace drape::model {
+
+/// A mesh of polygons, for looking at.
+struct Polygons {
+  std::vector<Eigen::Vector3d> vertices;
+  std::vector<std::vector<int>> faces;  ///< corners of a polygon, or the two ends of a line
+};
+
+/// Around the origin at z = 0.
+Polygons square(double side);
+
+/// A point of a profile: distance from the z axis and height.
+struct ProfilePoint {
+  double r, z;
+};
+
+/// A profile from below to above, turned round the z axis and closed by a lid at either end.
+Polygons turned(const std::vector<ProfilePoint>& profile);
+
+/// In Wavefront's OBJ format, numbers to the last bit.
+void write_obj(std::ostream& out, const Polygons& polygons);
+
+}  // namespace drape::model
