@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <ranges>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -40,6 +41,7 @@ struct ColumnOf {
   Role role;
   Cell (*value)(const Row& row);
   std::string (*shown)(const Row& row) = nullptr;  ///< if users see something else
+  std::span<const std::string_view> classes = {};  ///< the texts that classify, the best first
 };
 
 /// What columns of several groups differ in: it stands for "{}" in their names, titles and descriptions.
@@ -59,7 +61,9 @@ Column column_of(const ColumnOf<Row>& column, const ColumnGroup& group) {
           filled(column.description, group.description),
           column.role,
           {},
-          {}};
+          {},
+          {column.classes.begin(), column.classes.end()},
+          std::string(group.name)};
 }
 
 }  // namespace detail

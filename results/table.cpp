@@ -6,16 +6,22 @@
 #include <array>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <string_view>
 
 #include "solver/base/printable.hpp"
+#include "solver/outcome.hpp"
 
 namespace drape::results {
 namespace {
 
 /// In the order of Role.
-constexpr std::array<std::string_view, 9> role_names{"key",     "quantity", "error",   "uncertainty", "order",
-                                                     "counter", "time",     "verdict", "note"};
+constexpr std::array<std::string_view, 10> role_names{"key",     "quantity", "error",   "uncertainty", "order",
+                                                      "counter", "time",     "outcome", "verdict",     "note"};
+
+/// In the order of Part.
+constexpr std::array<std::string_view, 12> part_names{"none",  "figure", "curve",  "side",    "x",      "y",
+                                                      "lower", "upper",  "colour", "outline", "detail", "caption"};
 
 /// In the order of Figure.
 constexpr std::array<std::string_view, 5> figure_names{"none", "convergence", "work-precision", "stability", "over time"};
@@ -100,9 +106,22 @@ std::string_view to_string(Role role) { return role_names[static_cast<std::size_
 
 std::optional<Role> role_named(std::string_view name) { return named<Role>(role_names, name); }
 
+std::string_view to_string(Part part) { return part_names[static_cast<std::size_t>(part)]; }
+
+std::optional<Part> part_named(std::string_view name) { return named<Part>(part_names, name); }
+
 std::string_view to_string(Figure figure) { return figure_names[static_cast<std::size_t>(figure)]; }
 
 std::optional<Figure> figure_named(std::string_view name) { return named<Figure>(figure_names, name); }
+
+void draw(Table& table, Figure figure, const std::vector<Binding>& parts) {
+  table.figure = figure;
+  for (const auto& [part, name] : parts) {
+    const auto column = std::ranges::find(table.columns, name, &Column::name);
+    if (column == table.columns.end()) throw std::invalid_argument(fmt::format("{} has no column {}", table.name, name));
+    column->part = part;
+  }
+}
 
 std::size_t rows(const Table& table) { return table.columns.empty() ? 0 : table.columns.front().cells.size(); }
 
@@ -114,6 +133,10 @@ const Column* find_column(const Table& table, std::string_view name) {
 const Column* find_column(const Table& table, Role role) {
   const auto found = std::ranges::find(table.columns, role, &Column::role);
   return found == table.columns.end() ? nullptr : &*found;
+}
+
+bool is_good(const Column& outcomes, std::string_view text) {
+  return text == (outcomes.classes.empty() ? to_string(solver::Outcome::success) : outcomes.classes.front());
 }
 
 std::string text_in(const Column* column, std::size_t row) {
@@ -135,9 +158,10 @@ std::string to_text(const Table& table) {
   for (const Column& column : table.columns) {
     const std::vector<std::string> body = shown(column);
     const bool nothing = std::ranges::all_of(body, [](const auto& cell) { return cell.empty(); });
-    if (column.title.empty() || nothing) continue;
+    if ((column.title.empty() && !table.for_file) || nothing) continue;
     const bool has_unit = !column.unit.empty() && column.unit != "1";
-    std::vector<std::string> cells{column.title, has_unit ? fmt::format("[{}]", column.unit) : ""};
+    std::vector<std::string> cells{column.title.empty() ? column.name : column.title,
+                                   has_unit ? fmt::format("[{}]", column.unit) : ""};
     cells.insert(cells.end(), body.begin(), body.end());
     for (std::string& cell : cells) cell = base::shortened(base::printable(cell), widest);
     append_column(lines, cells, column.unit.empty());

@@ -22,6 +22,7 @@ enum class Role {
   order,        ///< a fitted order of convergence
   counter,      ///< work, the same on every machine
   time,         ///< what depends on the machine and the hour
+  outcome,      ///< how a run ended, or what became of it: see is_good()
   verdict,      ///< what the row comes to: see verdict.hpp
   note,         ///< for users only
 };
@@ -32,6 +33,28 @@ std::string_view to_string(Role role);
 /// Nothing if no role has this name.
 std::optional<Role> role_named(std::string_view name);
 
+/// What the figure of a table takes a column for.
+enum class Part {
+  none,
+  figure,   ///< there is a figure for each of its values
+  curve,    ///< in the figure there is a curve, or a map, for each of its values
+  side,     ///< there is also a curve of the best for each of its values
+  x,        ///< the horizontal axis
+  y,        ///< the vertical axis; of several in a group each has an axis of its own
+  lower,    ///< end of the bars of y
+  upper,    ///< end of the bars of y
+  colour,   ///< its classes are the colours of a map
+  outline,  ///< lines go round where it is not the first of its classes
+  detail,   ///< users see it where they point
+  caption,  ///< its first value is said below the figure
+};
+
+/// The part as files name it, for example "curve".
+std::string_view to_string(Part part);
+
+/// Nothing if no part has this name.
+std::optional<Part> part_named(std::string_view name);
+
 /// A column of a table.
 struct Column {
   std::string name;         ///< in files, CSV and JSON
@@ -40,7 +63,10 @@ struct Column {
   std::string description;  ///< what the numbers are
   Role role;
   std::vector<Cell> cells;
-  std::vector<std::string> shown;  ///< what users see in place of the cells; empty: the cells, numbers with four digits
+  std::vector<std::string> shown;         ///< what users see in place of the cells; empty: the cells, numbers with four digits
+  std::vector<std::string> classes = {};  ///< the texts that classify, the best first; empty: any text
+  std::string group = {};                 ///< which of several groups of like columns it is in, for example a method
+  Part part = Part::none;                 ///< of the figure of its table
 };
 
 /// What the report draws of a table besides the table itself.
@@ -59,7 +85,18 @@ struct Table {
   std::vector<Column> columns;
   bool headline = false;  ///< whether the overview shows it whole
   Figure figure = Figure::none;
+  bool timed_rows = false;  ///< whether it depends on times which rows there are, as in a search for the quickest
+  bool for_file = false;    ///< whether users see it only where they ask for it, then with all columns
 };
+
+/// A part of a figure and the column that is taken for it.
+struct Binding {
+  Part part;
+  std::string_view column;
+};
+
+/// Has the report draw a figure of the table. Throws std::invalid_argument if there is no such column.
+void draw(Table& table, Figure figure, const std::vector<Binding>& parts);
 
 /// The number of rows.
 std::size_t rows(const Table& table);
@@ -70,11 +107,15 @@ const Column* find_column(const Table& table, std::string_view name);
 /// The first column with this role, null if there is none.
 const Column* find_column(const Table& table, Role role);
 
+/// Whether a text in a column of outcomes is the best one: the first of its classes; if it has none, success.
+bool is_good(const Column& outcomes, std::string_view text);
+
 /// A cell's text, empty if it has none; its number, NaN if it has none. Without a column there is none.
 std::string text_in(const Column* column, std::size_t row);
 double number_in(const Column* column, std::size_t row);
 
-/// One line per row, aligned for users; "no rows" without any. Columns without any value or title are left out.
+/// One line per row, aligned for users; "no rows" without any. Columns without any value are left out, and those without a
+/// title unless the table is for the file.
 std::string to_text(const Table& table);
 
 /// All columns with a header (RFC 4180, but lines end with a line feed). Numbers read back as the same numbers; a cell is

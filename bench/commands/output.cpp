@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "bench/commands/argument_checks.hpp"
 #include "results/analysis/runs_table.hpp"
 #include "results/file/xdmf.hpp"
@@ -21,8 +19,7 @@ void print_tables(const std::vector<results::Table>& tables, const std::string& 
     return;
   }
   for (const results::Table& table : tables) {
-    if (format == "table" && std::ranges::all_of(table.columns, [](const auto& column) { return column.title.empty(); }))
-      continue;  // for the file
+    if (format == "table" && table.for_file) continue;
     fmt::print("{}{}\n", format == "csv" ? "# " : "\n", base::printable(format == "csv" ? table.name : table.description));
     print_table(table, format);
   }

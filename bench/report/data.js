@@ -25,8 +25,6 @@ export function toNumber(cell) {
   return cell === "-inf" ? -Infinity : cell ?? NaN;
 }
 
-export const isNumeric = (column) => column.unit !== "";
-
 /** Four digits, as in the program's own tables. */
 export function shortNumber(value) {
   if (value === null || Number.isNaN(value)) return "";
@@ -39,16 +37,24 @@ export function shortNumber(value) {
   return Math.abs(value) < 1e-4 ? value.toExponential(3).replace(/\.?0+e/, "e") : trimmed;
 }
 
-/** The cells of a column of a table, numbers as numbers; undefined if there is none of that name. */
-export function cellsOf(table, name) {
-  const column = table.columns.find((any) => any.name === name);
-  if (!column) return undefined;
-  return isNumeric(column) ? column.cells.map(toNumber) : column.cells.map((cell) => cell ?? "");
-}
+/** The cells of a column, numbers as numbers. */
+export const cellsOf = (column) =>
+    (column.numeric ? column.cells.map(toNumber) : column.cells.map((cell) => cell ?? ""));
+
+/**
+ * The columns that the figure of a table takes for a part, the first of them, and the first with a role, if there is
+ * one.
+ */
+export const partsOf = (table, part) => table.columns.filter((column) => column.part === part);
+export const partOf = (table, part) => partsOf(table, part)[0];
+export const withRole = (table, role) => table.columns.find((column) => column.role === role);
+
+export const titleOf = (column) => column.title || column.name;
+export const unitOf = (column) => (column.numeric && column.unit !== "1" ? `[${column.unit}]` : "");
 
 /** Rows of a table as objects. */
 export function rowsOf(table) {
-  const columns = table.columns.map((column) => [column.name, cellsOf(table, column.name)]);
+  const columns = table.columns.map((column) => [column.name, cellsOf(column)]);
   const length = table.columns[0]?.cells.length ?? 0;
   return Array.from({length}, (_, k) => Object.fromEntries(columns.map(([name, cells]) => [name, cells[k]])));
 }
@@ -65,9 +71,6 @@ export function groupBy(items, key) {
 }
 
 export const unique = (items) => [...new Set(items)];
-
-/** Whether a verdict says that something is not as it was wanted (results/verdict.hpp). */
-export const isMissed = (verdict) => /^missed(:|$)/.test(verdict);
 
 /** Columns {name, unit, cells} as CSV [RFC 4180]: numbers read back as the same numbers. */
 function toCsv(columns) {

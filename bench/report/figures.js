@@ -1,11 +1,40 @@
 // Figures of tables: a table names its figure.
 
-import {cellsOf, groupBy, isNumeric, rowsOf, shortNumber, unique} from "./data.js";
+import {cellsOf, groupBy, partOf, partsOf, rowsOf, shortNumber, titleOf, unique, unitOf, withRole} from "./data.js";
 import {along, axis, baseLayout, labelled, lineStyle, logRange, logTicks} from "./plots.js";
-import {moreCurves, style, timeAxis, uncertainBand} from "./plots.js";
+import {moreCurves, style, uncertainBand} from "./plots.js";
 import {columnsWhere, exactCells} from "./tables.js";
 
 export const finitePositive = (value) => value > 0 && Number.isFinite(value);
+
+const axisTitle = (column) => `${titleOf(column)} ${unitOf(column)}`.trim();
+
+/** What a column is, for a sentence. */
+const explained = (column) => [titleOf(column), column.description].filter((text) => text).join(": ");
+
+/** A cell as users see it. */
+const cellText = (column, row) => (column.numeric ? shortNumber(row[column.name]) : row[column.name]);
+
+/** What users see of a row where they point. */
+function detailsOf(table) {
+  const columns = partsOf(table, "detail");
+  const detail = (column, row) => cellText(column, row) && `${titleOf(column)}: ${cellText(column, row)}`;
+  return (row) => columns.map((column) => detail(column, row)).filter((text) => text).join("<br>");
+}
+
+/** The figure that a row of a table is in: texts as they are, numbers by their columns' titles. */
+function figureOf(table) {
+  const value = (column, row) =>
+      (column.numeric ? `${titleOf(column)} = ${cellText(column, row)} ${unitOf(column).slice(1, -1)}`.trim() :
+                        cellText(column, row));
+  return (row) => partsOf(table, "figure").map((column) => value(column, row)).join(", ");
+}
+
+/** The largest uncertainty of the errors in some rows. */
+function largestUncertainty(table, rows) {
+  const column = withRole(table, "uncertainty");
+  return column ? Math.max(0, ...rows.map((row) => row[column.name] || 0)) : 0;
+}
 
 /** Indices of what is beaten in neither error nor time, from the smallest time on. */
 function paretoFront(rows) {
@@ -41,85 +70,79 @@ export function workPrecisionTrace(name, rows, look, text, mode = "lines+markers
   };
 }
 
-export function workPrecisionLayout(width, colours, rows, uncertainty, entries) {
+/** `titles`: of both axes. */
+export function workPrecisionLayout(width, colours, rows, uncertainty, entries, titles) {
   const range = logRange(rows.map((row) => row.error), true);
   return {
     ...baseLayout(width, colours, entries),
-    xaxis: axis("error over the scene's size", colours, {type: "log", range}),
-    yaxis: axis("solver time [ms]", colours, logTicks(rows.map((row) => row.time))),
+    xaxis: axis(titles.x, colours, {type: "log", range}),
+    yaxis: axis(titles.y, colours, logTicks(rows.map((row) => row.time))),
     shapes: uncertainBand(10 * uncertainty, 10 ** range[1], colours),
   };
 }
 
-/** The kinds of trials, in marks that black and white tell apart; the first lies below others that it consists of. */
-const kindLooks = {
-  "our best": {symbol: "circle", width: 6},
-  "automatic": {symbol: "square"},
-  "explicit": {symbol: "triangle-up"},
-  "thesis": {symbol: "triangle-down"},
-  "SUNDIALS, tuned": {symbol: "diamond", width: 2.5}
-};
+// Curves in marks that black and white tell apart; those of sides lie below others that they consist of.
+const sideLooks = [{symbol: "circle", width: 6}, {symbol: "diamond", width: 2.5}], dotSymbols = ["circle", "x"];
+const curveSymbols = ["square", "triangle-up", "triangle-down", "star", "cross", "pentagon", "hexagon"];
 
-/** A study's trials: all of them as dots, and those that no other of the same kind beats in both as curves. */
+/** A study's trials: all of them as dots, and those that no other of a side or a kind beats in both as curves. */
 function trialsFigure(file, table) {
-  const rows = rowsOf(table).filter((row) => finitePositive(row.error) && finitePositive(row.time));
+  const [x, y, lower, upper, side, kind] =
+      ["x", "y", "lower", "upper", "side", "curve"].map((part) => partOf(table, part));
+  const details = detailsOf(table), caption = partOf(table, "caption");
+  const rows =
+      rowsOf(table)
+          .map(
+              (row) =>
+                  ({...row, error: row[x.name], time: row[y.name], lower: row[lower.name], upper: row[upper.name]}))
+          .filter((row) => finitePositive(row.error) && finitePositive(row.time));
   if (!rows.length) return [];
-  const scene = table.name.replace("trials: ", ""), own = ["drape", "explicit", "thesis"];
-  const codes = groupBy(rows, (row) => row.code), ours = rows.filter((row) => own.includes(row.code)),
-        others = rows.filter((row) => !own.includes(row.code));
-  const kinds = new Map([["our best", ours], ["automatic", rows.filter((row) => row.method !== "")]]);
-  for (const code of ["explicit", "thesis"]) kinds.set(code, codes.get(code) ?? []);
-  kinds.set("SUNDIALS, tuned", others);
-  for (const [code, of] of codes)
-    if (!own.includes(code)) kinds.set(code, of);
-  const look = (name) => ({...style(name), ...kindLooks[name]});
-  const uncertainty = Math.max(...rows.map((row) => row.uncertainty || 0));
-  const text = (row) => `${row.family}<br>${row.control} ${shortNumber(row.value)}: ${row.steps} steps, ${
-      row.forces} forces, ${row.factorisations} factorisations`;
+  const sides = [...groupBy(rows, (row) => row[side.name])],
+        kinds = [...groupBy(rows.filter((row) => row[kind.name]), (row) => row[kind.name])];
+  const uncertainty = largestUncertainty(table, rows);
   const make = (width, colours) => {
-    const dots = (name, of, symbol) => ({
+    const dots = ([name, of], k) => ({
       type: "scatter",
       mode: "markers",
-      name,
+      name: `all of ${name}`,
       x: of.map((row) => row.error),
       y: of.map((row) => row.time),
-      text: of.map(text),
+      text: of.map(details),
       hovertemplate: "%{text}<br>error %{x:.3e}, %{y:.4g} ms<extra></extra>",
-      marker: {color: "#999999", size: 3, symbol}
+      marker: {color: "#999999", size: 3, symbol: dotSymbols[k % dotSymbols.length]}
     });
-    const front = ([name, of]) => workPrecisionTrace(name, paretoFront(of), look(name), text);
-    const curves = labelled([...kinds].filter(([, of]) => of.length).map(front), width, along);
-    const all = [dots("all of ours", ours, "circle"), dots("all of SUNDIALS", others, "x")];
+    const best = ([name, of], look, title = name) =>
+        workPrecisionTrace(title, paretoFront(of), {...style(name), ...look}, details);
+    const curves = labelled(
+        [
+          ...sides.map((any, k) => best(any, sideLooks[k % sideLooks.length], `best of ${any[0]}`)),
+          ...kinds.map((any, k) => best(any, {symbol: curveSymbols[k % curveSymbols.length]}))
+        ],
+        width, along);
     return {
-      data: [...all, ...curves],
-      layout: workPrecisionLayout(width, colours, rows, uncertainty, curves.length + all.length)
+      data: [...sides.map(dots), ...curves],
+      layout: workPrecisionLayout(
+          width, colours, rows, uncertainty, curves.length + sides.length, {x: axisTitle(x), y: axisTitle(y)})
     };
   };
   return [{
     file,
     make,
-    title: `Work–precision: ${scene}`,
+    title: `Work–precision: ${table.description}`,
     columns: () => table.columns.map(exactCells),
     says: "Lower is quicker, further right more accurate; curves join what no other of its kind beats in both. " +
-        "Bars are quartiles of the times; in the grey band, below 10 × the reference's uncertainty of " +
-        `${shortNumber(uncertainty)}, errors say nothing. ${rows[0].build ?? ""}`,
+        `${explained(x)}. ${explained(y)}, with quartiles as bars. In the grey band, below 10 × the reference's ` +
+        `uncertainty of ${shortNumber(uncertainty)}, errors say nothing. ${caption ? rows[0][caption.name] : ""}`,
   }];
 }
 
-/** The columns of errors, of what they are plotted over, and of the two texts that name a curve. */
-function convergenceColumns(table) {
-  const keys = table.columns.filter((column) => column.role === "key");
-  const [outer, inner] = keys.filter((column) => !isNumeric(column));
-  const [error, order] = ["error", "order"].map((role) => table.columns.find((column) => column.role === role));
-  return {over: keys.find(isNumeric), error, order, outer: outer.name, inner: inner.name};
-}
-
 /** Straight lines of the orders that were fitted, through the middle of the errors. */
-function slopeLines(orders, rows, over, resolved) {
-  const x = rows.map((row) => row[over]), low = Math.min(...x), high = Math.max(...x),
-        top = Math.max(...rows.map((row) => row.error));
+function slopeLines(orders, rows, x, y) {
+  const all = rows.map((row) => row[x.name]), low = Math.min(...all), high = Math.max(...all);
+  const largest = rows.reduce((a, b) => (b[y.name] > a[y.name] ? b : a)), top = largest[y.name];
   return unique(orders.map(Math.round)).filter((order) => order > 0).sort().map((order) => {
-    const ratio = (high / low) ** order, ends = resolved ? [top, top / ratio] : [top / ratio, top];
+    const ratio = (high / low) ** order, falls = largest[x.name] ** 2 < low * high,
+          ends = falls ? [top, top / ratio] : [top / ratio, top];
     return {
       type: "scatter",
       mode: "lines",
@@ -132,20 +155,17 @@ function slopeLines(orders, rows, over, resolved) {
   });
 }
 
-/** A figure for each scene or experiment: errors against steps or resolutions, a curve for each method or form. */
+/** Errors against steps or resolutions, a curve for each method or form. */
 function convergenceFigures(file, table) {
-  const columns = convergenceColumns(table), {outer, inner} = columns, {unit} = columns.error, over = columns.over.name;
-  const resolved = columns.over.unit === "1",
-        title = resolved ? "particles a side" : "time step h [s]";  // else over time steps
-  const fittedOf = (row) => (columns.order ? row[columns.order.name] : undefined);
-  return [...groupBy(rowsOf(table), (row) => row[outer])].flatMap(([name, all]) => {
-    const rows =
-        all.map((row) => ({...row, error: row[columns.error.name]})).filter((row) => finitePositive(row.error));
+  const [x, y, curve] = ["x", "y", "curve"].map((part) => partOf(table, part)), order = withRole(table, "order");
+  const details = detailsOf(table), figure = figureOf(table);
+  return [...groupBy(rowsOf(table), figure)].flatMap(([name, all]) => {
+    const rows = all.filter((row) => finitePositive(row[y.name]));
     if (rows.length < 2) return [];
-    const series = [...groupBy(rows, (row) => row[inner])];
-    const fits = new Map(
-        [...groupBy(all, (row) => row[inner])].map(([key, of]) => [key, of.map(fittedOf).find((order) => order > 0)]));
-    const uncertainty = Math.max(0, ...rows.map((row) => row.uncertainty || 0));
+    const series = [...groupBy(rows, (row) => row[curve.name])];
+    const fittedOf = (of) => (order ? of.map((row) => row[order.name]).find((fitted) => fitted > 0) : undefined);
+    const fits = new Map([...groupBy(all, (row) => row[curve.name])].map(([key, of]) => [key, fittedOf(of)]));
+    const uncertainty = largestUncertainty(table, rows);
     const make = (width, colours) => {
       const curves = labelled(
           series.map(([key, of]) => {
@@ -154,24 +174,21 @@ function convergenceFigures(file, table) {
               type: "scatter",
               mode: "lines+markers",
               name: fitted ? `${key}: ${fitted.toFixed(2)}` : key,
-              x: of.map((row) => row[over]),
-              y: of.map((row) => row.error),
-              text: of.map(
-                  (row) => (Number.isFinite(row.order) ? `order ${row.order.toFixed(3)} from the one before` : "")),
-              hovertemplate: `${key}<br>${resolved ? "n" : "h"} = %{x}, error %{y:.3e}<br>%{text}<extra></extra>`,
+              x: of.map((row) => row[x.name]),
+              y: of.map((row) => row[y.name]),
+              text: of.map(details),
+              hovertemplate: `${key}<br>${titleOf(x)} = %{x}, ${titleOf(y)} %{y:.3e}<br>%{text}<extra></extra>`,
               line: {color: look.color, dash: look.dash, width: 1.5},
               marker: {color: look.color, symbol: look.symbol, size: 7}
             };
           }),
           width, () => 0);
-      const slopes = slopeLines([...fits.values()].filter((fitted) => fitted), rows, over, resolved);
-      const range = logRange(rows.map((row) => row.error));
+      const slopes = slopeLines([...fits.values()].filter((fitted) => fitted), rows, x, y);
+      const errors = rows.map((row) => row[y.name]), range = logRange(errors);
       const layout = {
         ...baseLayout(width, colours, curves.length + slopes.length),
-        xaxis: axis(title, colours, {type: "log", dtick: undefined, exponentformat: "e", tickangle: 0}),
-        yaxis: axis(
-            unit === "1" ? "error over the scene's size" : `error [${unit}]`, colours,
-            {...logTicks(rows.map((row) => row.error)), range}),
+        xaxis: axis(axisTitle(x), colours, {type: "log", dtick: undefined, exponentformat: "e", tickangle: 0}),
+        yaxis: axis(axisTitle(y), colours, {...logTicks(errors), range}),
         shapes: uncertainBand(10 * uncertainty, 10 ** range[0], colours)
                     .map((band) => ({...band, xref: "paper", yref: "y", x0: 0, x1: 1, y0: band.x0, y1: band.x1})),
       };
@@ -181,23 +198,20 @@ function convergenceFigures(file, table) {
       file,
       make,
       title: `Convergence: ${name}`,
-      says: `Error against ${
-                resolved ? "resolution" :
-                           "time step"}; the legend has the order fitted over the window that the program found.` +
+      says:
+          `${explained(y)}. ${explained(x)}. The legend has the order fitted over the window that the program found.` +
           (uncertainty ?
                ` In the grey band, below 10 × the uncertainty of ${shortNumber(uncertainty)}, errors say nothing.` :
                "") +
           moreCurves(series.length),
-      columns: () => columnsWhere(table, (row) => row[outer] === name),
+      columns: () => columnsWhere(table, (row) => figure(row) === name),
     }];
   });
 }
 
-// Colours of Okabe and Ito, and symbols for those who print in black and white.
-const verdicts = [
-  ["accurate", "#56B4E9", ""], ["stable but wrong", "#F0E442", "w"], ["stable, error unknown", "#CFE8F7", "?"],
-  ["unstable", "#D55E00", "U"], ["not converged", "#CC79A7", "×"], ["not finished", "#999999", "…"]
-];
+// Of classes, the best first: colours of Okabe and Ito, and marks for those who print in black and white.
+const classLooks =
+    [["#56B4E9", ""], ["#F0E442", "–"], ["#CFE8F7", "·"], ["#D55E00", "×"], ["#CC79A7", "+"], ["#999999", "…"]];
 
 const powerOfTen = (value) => (Number.isFinite(value) ? `10<sup>${Math.round(Math.log10(value))}</sup>` : "∞");
 
@@ -212,27 +226,25 @@ function failingBorders(failing, x, y, colour) {
   return lines;
 }
 
-/** The heat map of one method in its place k of the figure. */
-function stabilityPanel(rows, nus, ratios, k, colours) {
-  const suffix = k ? String(k + 1) : "", grid = () => nus.map(() => ratios.map(() => null));
-  const z = grid(), text = grid(), hover = grid(), failing = nus.map(() => ratios.map(() => false));
+/** The heat map of one method in its place k of the figure; xs and ys: the values that there are, from the least on. */
+function stabilityPanel(table, rows, xs, ys, k, colours) {
+  const [x, y, colour, outline] = ["x", "y", "colour", "outline"].map((part) => partOf(table, part));
+  const details = detailsOf(table), looks = colour.classes.map((_, v) => classLooks[v % classLooks.length]);
+  const suffix = k ? String(k + 1) : "", grid = () => ys.map(() => xs.map(() => null));
+  const z = grid(), text = grid(), hover = grid(), failing = ys.map(() => xs.map(() => false));
   for (const row of rows) {
-    const i = nus.indexOf(row.nu), j = ratios.indexOf(row.to_damping),
-          at = verdicts.findIndex(([name]) => name === row.verdict);
-    z[i][j] = at, text[i][j] = verdicts[at]?.[2] ?? "", failing[i][j] = row.predicted !== "stable";
-    hover[i][j] = `ν<sub>h</sub> = ${shortNumber(row.nu)}, h k/d = ${shortNumber(row.to_damping)}<br><b>${
-                      row.verdict}</b>; predicted: ${row.predicted}` +
-        (Number.isFinite(row.error) ? `<br>error ${shortNumber(row.error)} ± ${shortNumber(row.uncertainty)}` : "") +
-        (row.reason ? `<br>${row.reason}` : "");
+    const i = ys.indexOf(row[y.name]), j = xs.indexOf(row[x.name]), at = colour.classes.indexOf(row[colour.name]);
+    z[i][j] = at, text[i][j] = looks[at]?.[1] ?? "", failing[i][j] = outline.classes.indexOf(row[outline.name]) > 0;
+    hover[i][j] = `${titleOf(y)} = ${cellText(y, row)}, ${titleOf(x)} = ${cellText(x, row)}<br><b>${
+        row[colour.name]}</b>; ${titleOf(outline)}: ${row[outline.name]}<br>${details(row)}`;
   }
-  const last = verdicts.length - 1,
-        scale = verdicts.flatMap(([, colour], v) => [[v / (last + 1), colour], [(v + 1) / (last + 1), colour]]);
+  const last = looks.length - 1, scale = looks.flatMap(([of], v) => [[v / (last + 1), of], [(v + 1) / (last + 1), of]]);
   const map = {
     type: "heatmap",
     z,
     text,
     customdata: hover,
-    hovertemplate: `${rows[0].method}<br>%{customdata}<extra></extra>`,
+    hovertemplate: `${rows[0][partOf(table, "curve").name]}<br>%{customdata}<extra></extra>`,
     colorscale: scale,
     zmin: -0.5,
     zmax: last + 0.5,
@@ -271,29 +283,31 @@ function stabilityPanel(rows, nus, ratios, k, colours) {
     traces: [map, letters],
     failing,
     shapes: failingBorders(failing, `x${suffix}`, `y${suffix}`, "#000000"),
-    axes: {[`xaxis${suffix}`]: ticks(ratios), [`yaxis${suffix}`]: ticks(nus)}
+    axes: {[`xaxis${suffix}`]: ticks(xs), [`yaxis${suffix}`]: ticks(ys)}
   };
 }
 
 function stabilityFigures(file, table) {
-  const sheetOf = (row) => `${row.n} × ${row.n} particles, h = ${shortNumber(row.step)} s`;
+  const [x, y, curve, colour] = ["x", "y", "curve", "colour"].map((part) => partOf(table, part));
+  const sheetOf = figureOf(table),
+        valuesOf = (column, rows) => unique(rows.map((row) => row[column.name])).sort((a, b) => a - b);
   return [...groupBy(rowsOf(table), sheetOf)].map(([sheet, rows]) => {
-    const methods = [...groupBy(rows, (row) => row.method)];
-    const nus = unique(rows.map((row) => row.nu)).sort((a, b) => a - b),
-          ratios = unique(rows.map((row) => row.to_damping)).sort((a, b) => a - b);
+    const methods = [...groupBy(rows, (row) => row[curve.name])], xs = valuesOf(x, rows), ys = valuesOf(y, rows);
     const make = (width, colours) => {
       const columns = Math.min(methods.length, Math.max(1, Math.min(4, Math.floor(width / 180)))),
             lines = Math.ceil(methods.length / columns);
-      const panels = methods.map(([, of], k) => stabilityPanel(of, nus, ratios, k, colours));
-      const legend =
-          verdicts.map(([name, colour, symbol]) => ({
-                         type: "scatter",
-                         mode: "markers",
-                         name: symbol ? `${symbol} ${name}` : name,
-                         x: [null],
-                         y: [null],
-                         marker: {symbol: "square", size: 12, color: colour, line: {color: "#555555", width: 1}}
-                       }));
+      const panels = methods.map(([, of], k) => stabilityPanel(table, of, xs, ys, k, colours));
+      const legend = colour.classes.map((name, v) => {
+        const [color, mark] = classLooks[v % classLooks.length];
+        return {
+          type: "scatter",
+          mode: "markers",
+          name: `${mark} ${name}`.trim(),
+          x: [null],
+          y: [null],
+          marker: {symbol: "square", size: 12, color, line: {color: "#555555", width: 1}}
+        };
+      });
       const height = 190 * lines + 110;
       const titles =
           methods.map(([name, of], k) => ({
@@ -308,7 +322,7 @@ function stabilityFigures(file, table) {
                         font: {size: 11, color: colours.text}
                       }));
       const notes = [{
-        text: "across: h k/d (∞: undamped); up: ν<sub>h</sub> = h² k/(ρ l²)",
+        text: `across: ${explained(x)}; up: ${explained(y)}`,
         showarrow: false,
         xref: "paper",
         yref: "paper",
@@ -341,36 +355,34 @@ function stabilityFigures(file, table) {
   });
 }
 
-/** What a table of figure 4.3 has of each method over time: its columns are <method>_<curve>. */
-const curvesOverTime =
-    [["CG", "CG iterations a step"], ["updates", "updates a step"], ["contacts", "particles in contact"]];
-const methodsOverTime = (table) => table.columns.map(({name}) => name)
-                                       .filter((name) => name.endsWith("_contacts"))
-                                       .map((name) => name.replace(/_contacts$/, ""));
-
-/** The three of them below each other over one time. */
+/** The columns of each group, a curve for each group and an axis for each of its columns, below each other. */
 function overTimeFigure(file, table) {
-  const t = cellsOf(table, "t"), methods = methodsOverTime(table);
+  const x = partOf(table, "x"), groups = [...groupBy(partsOf(table, "y"), (column) => column.group)];
+  const count = Math.max(...groups.map(([, columns]) => columns.length)), suffix = (k) => (k ? String(k + 1) : "");
   const make = (width, colours) => {
-    const trace = (method, [curve, label], row) => ({
+    const trace = (name, column, k) => ({
       type: "scatter",
       mode: "lines",
-      name: method,
-      legendgroup: method,
-      showlegend: row === 0,
-      x: t,
-      y: cellsOf(table, `${method}_${curve}`),
-      yaxis: `y${row ? row + 1 : ""}`,
-      hovertemplate: `${method}<br>t = %{x:.4g} s: %{y:.4g} ${label}<extra></extra>`,
-      line: lineStyle(method)
+      name,
+      legendgroup: name,
+      showlegend: k === 0,
+      x: cellsOf(x),
+      y: cellsOf(column),
+      yaxis: `y${suffix(k)}`,
+      hovertemplate: `${name}<br>${titleOf(x)} = %{x:.4g} ${x.unit}: %{y:.4g} ${column.description}<extra></extra>`,
+      line: lineStyle(name)
     });
-    const curves = methods.flatMap((method) => curvesOverTime.map((curve, row) => trace(method, curve, row)));
-    const rows = Object.fromEntries(curvesOverTime.map(
-        ([, label], row) =>
-            [`yaxis${row ? row + 1 : ""}`,
-             axis(label, colours, {domain: [(2 - row) * 0.35, (2 - row) * 0.35 + 0.3], rangemode: "tozero"})]));
-    const layout =
-        {...baseLayout(width, colours, methods.length), height: 660, ...rows, xaxis: timeAxis(colours, {anchor: "y3"})};
+    const curves = groups.flatMap(([name, columns]) => columns.map((column, k) => trace(name, column, k)));
+    const below = (k) => (count - 1 - k) / count, domain = (k) => [below(k), below(k) + 0.85 / count];
+    const axes = Object.fromEntries(groups[0][1].map(
+        (column,
+         k) => [`yaxis${suffix(k)}`, axis(column.description, colours, {domain: domain(k), rangemode: "tozero"})]));
+    const layout = {
+      ...baseLayout(width, colours, groups.length),
+      height: 220 * count,
+      ...axes,
+      xaxis: axis(axisTitle(x), colours, {rangemode: "tozero", anchor: `y${suffix(count - 1)}`})
+    };
     return {data: curves, layout};
   };
   return [{

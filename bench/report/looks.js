@@ -22,11 +22,11 @@ export const looks = {
     "arkode-imex": "#9E9D24",
     "arkode-erk": "#558B2F",
     "ida-bdf": "#607D8B",
-    "our best": "#7A7A7A",
+    "ours": "#7A7A7A",
     "automatic": "#1F77B4",
     "explicit": "#009E73",
     "thesis": "#D62728",
-    "SUNDIALS, tuned": "#AA4499"
+    "SUNDIALS": "#AA4499"
   },
   "solvers": {
     "": ["circle", "solid"],

@@ -8,7 +8,9 @@
 #include "bench/report/base64.hpp"
 #include "bench/report/obstacles.hpp"
 #include "results/analysis/runs_table.hpp"
+#include "results/analysis/work_precision.hpp"
 #include "results/file/schema.hpp"
+#include "results/verdict.hpp"
 
 namespace drape::bench {
 namespace {
@@ -37,6 +39,14 @@ void put_fields(Json& object, const Fields& fields, const Record& record) {
   results::for_each(fields, [&](const auto& field) { object[field.name] = json_value(record.*field.member); });
 }
 
+/// Whether each cell of a column of verdicts says that something is not as it was wanted.
+Json page_missed(const results::Column& verdicts) {
+  Json missed = Json::array();
+  for (std::size_t row = 0; row < verdicts.cells.size(); ++row)
+    missed.push_back(results::standing(text_in(&verdicts, row)) == results::Standing::missed);
+  return missed;
+}
+
 Json page_column(const results::Column& column) {
   Json cells = Json::array();
   for (const results::Cell& cell : column.cells)
@@ -45,9 +55,14 @@ Json page_column(const results::Column& column) {
               {"title", column.title},
               {"unit", column.unit},
               {"description", column.description},
-              {"role", std::string(to_string(column.role))}};
+              {"numeric", !column.unit.empty()},
+              {"role", std::string(to_string(column.role))},
+              {"group", column.group},
+              {"part", std::string(to_string(column.part))},
+              {"classes", column.classes}};
   object["cells"] = std::move(cells);
   if (!column.shown.empty()) object["shown"] = column.shown;
+  if (column.role == results::Role::verdict) object["missed"] = page_missed(column);
   return object;
 }
 
@@ -95,6 +110,11 @@ Json page_trajectory(const results::RunRecord& run, Json& surfaces) {
 Json page_run(const results::RunRecord& run, Json& surfaces) {
   Json object;
   put_fields(object, results::run_fields, run);
+  object["succeeded"] = run.outcome == solver::Outcome::success;
+  if (!run.times_ms.empty()) {
+    const auto [lower, median, upper] = results::quartiles(run.times_ms);
+    object["time"] = {{"lower", lower}, {"median", median}, {"upper", upper}};
+  }
   for (const results::WorkCount& work : run.work) object["work"][work.name] = work.count;
   object["steps"] = page_steps(run.steps);
   if (run.error) {
@@ -123,6 +143,7 @@ nlohmann::ordered_json page_table(const results::Table& table) {
   return {{"name", table.name},
           {"description", table.description},
           {"figure", std::string(to_string(table.figure))},
+          {"for_file", table.for_file},
           {"columns", std::move(columns)}};
 }
 

@@ -11,13 +11,7 @@ export const comparedRuns = (file) => [...groupBy(file.runs, runTitle)];
 
 /** A run as a row of time against error, with the quartiles of its times; undefined if it cannot be one. */
 function workPrecisionRow(run) {
-  const times = (run.times_ms ?? []).map(toNumber).filter(finitePositive).sort((a, b) => a - b);
-  if (run.outcome !== "success" || !run.error?.comparable || !finitePositive(run.error.rms) || !times.length)
-    return undefined;
-  const share = (part) => {
-    const at = part * (times.length - 1), below = Math.floor(at);
-    return times[below] + (at - below) * ((times[below + 1] ?? times[below]) - times[below]);
-  };
+  if (!run.succeeded || !run.error?.comparable || !finitePositive(run.error.rms) || !run.time) return undefined;
   return {
     method: run.method,
     step: run.step,
@@ -25,9 +19,9 @@ function workPrecisionRow(run) {
     error: run.error.rms,
     uncertainty: run.error.reference_error,
     unresolved: !run.error.resolved,
-    lower: share(0.25),
-    time: share(0.5),
-    upper: share(0.75)
+    lower: run.time.lower,
+    time: run.time.median,
+    upper: run.time.upper
   };
 }
 
@@ -52,7 +46,8 @@ function runWorkPrecision(file, name, runs) {
                 method, rows.filter((row) => row.method === method).sort((a, b) => b.step - a.step), style(method),
                 (row) => `${method}, h = ${shortNumber(row.step)} s`)),
         width);
-    return {data: curves, layout: workPrecisionLayout(width, colours, rows, uncertainty, curves.length)};
+    const titles = {x: "error over the scene's size", y: "solver time [ms]"};
+    return {data: curves, layout: workPrecisionLayout(width, colours, rows, uncertainty, curves.length, titles)};
   };
   return [{
     file,
@@ -77,7 +72,11 @@ function stepChoice(runs) {
   return select;
 }
 
-/** What is drawn over time: of(run) gives {t, value}, two lists; undefined if the run has none. */
+/**
+ * What is drawn over time: of(run) gives {t, value}, two lists; undefined if the run has none. `ofFrames`: one value
+ * for each frame rather than each step. `constant`: nothing is to be seen where it is the same in all steps but the
+ * last, rather than where it is zero.
+ */
 const ofSteps = (value) => ({steps}) => (steps.t.length ? {t: steps.t, value: value(steps)} : undefined);
 const fromZero = {
   rangemode: "tozero"
@@ -117,6 +116,7 @@ const quantities = [
     says: "Least distance of a particle from an obstacle in each recorded frame, negative inside.",
     label: "clearance [mm]",
     axis: fromZero,
+    ofFrames: true,
     of: frameClearance
   },
   {
@@ -124,6 +124,7 @@ const quantities = [
     says: "Size of the steps that were taken: where it falls the method was cut short.",
     label: "h [s]",
     axis: fromZero,
+    constant: true,
     of: ofSteps((steps) => steps.h.map(toNumber))
   },
 ];
@@ -133,25 +134,23 @@ function frameClearance({trajectory}) {
   return clearance && {t: trajectory.times, value: clearance.map((metres) => 1000 * toNumber(metres))};
 }
 
-/** Whether there is anything to see in a quantity: step sizes must vary, others not be all zero. */
+/** Whether there is anything to see in a quantity. */
 function worthSeeing(quantity, runs) {
   const lists = runs.map((run) => quantity.of(run).value);
-  if (quantity.title !== "Step size") return lists.some((values) => values.some((value) => value !== 0));
+  if (!quantity.constant) return lists.some((values) => values.some((value) => value !== 0));
   return lists.some((values) => Math.min(...values.slice(0, -1)) < 0.99 * Math.max(...values));
 }
 
 function timeFigure(file, name, runs, quantity) {
-  const rank = (run) => (run.outcome === "success" ? toNumber(run.error?.rms) || 0 : Infinity),
-        choice = stepChoice(runs);
+  const rank = (run) => (run.succeeded ? toNumber(run.error?.rms) || 0 : Infinity), choice = stepChoice(runs);
   const chosen = () => runs.filter((run) => run.step === Number(choice.value)).sort((a, b) => rank(a) - rank(b));
   const make = (width, colours) => {
     const curves = labelled(
         chosen().map((run) => {
-          const failed = run.outcome !== "success";
           return {
             type: "scatter",
             mode: "lines",
-            name: failed ? `${run.method}: ${run.outcome}` : run.method,
+            name: run.succeeded ? run.method : `${run.method}: ${run.outcome}`,
             x: quantity.of(run).t,
             y: quantity.of(run).value,
             hovertemplate: `${run.method}, h = ${shortNumber(run.step)} s<br>t = %{x:.4g} s: %{y:.6g}<extra></extra>`,
@@ -176,7 +175,7 @@ function timeFigure(file, name, runs, quantity) {
   };
   const every = Math.max(...runs.map((run) => run.steps.every));
   const says = quantity.says +
-      (every > 1 && quantity.title !== "Clearance" ? ` Of long runs every ${every}th step is shown.` : "") +
+      (every > 1 && !quantity.ofFrames ? ` Of long runs every ${every}th step is shown.` : "") +
       moreCurves(chosen().length);
   return {file, make, columns, says, title: `${quantity.title}: ${name}`, controls: [choice]};
 }
@@ -186,6 +185,7 @@ function clearanceFigure(file, name, runs) {
   const rows = runs.map((run) => ({
                           method: run.method,
                           step: run.step,
+                          succeeded: run.succeeded,
                           outcome: run.outcome,
                           clearance: 1000 * toNumber(run.contact.clearance),
                           energy_rise: toNumber(run.contact.energy_rise),
@@ -194,7 +194,7 @@ function clearanceFigure(file, name, runs) {
                         }))
                    .filter((row) => Number.isFinite(row.clearance));
   if (!rows.length) return [];
-  const label = (row) => runLabel(row) + (row.outcome === "success" ? "" : `: ${row.outcome}`);
+  const label = (row) => runLabel(row) + (row.succeeded ? "" : `: ${row.outcome}`);
   const make = (width, colours) => {
     const dots = [...groupBy(rows, (row) => row.method)].map(
         ([method, of]) => ({

@@ -1,6 +1,6 @@
 // Tables that sort by a click on a column's head.
 
-import {commandLine, csvLink, element, isMissed, isNumeric, rowsOf, shortNumber, toNumber} from "./data.js";
+import {cellsOf, commandLine, csvLink, element, rowsOf, shortNumber, titleOf, unitOf} from "./data.js";
 
 function compareCells(a, b) {
   const number = (value) => typeof value === "number";
@@ -12,16 +12,12 @@ function compareCells(a, b) {
 /** What users see of a column: its title, unit and cells as texts. */
 function shownCells(column) {
   if (column.shown) return column.shown;
-  return isNumeric(column) ? column.cells.map((cell) => shortNumber(toNumber(cell))) :
-                             column.cells.map((cell) => cell ?? "");
+  return column.numeric ? cellsOf(column).map(shortNumber) : cellsOf(column);
 }
 
-/** Those with a title and a value; all, if none has a title: such a table is for the file rather than for users. */
-function visibleColumns(table) {
-  const titled = table.columns.filter((column) => column.title !== "");
-  const columns = titled.length ? titled : table.columns;
-  return columns.filter((column) => shownCells(column).some((text) => text !== ""));
-}
+/** Those with a value, and with a title unless the table is for the file. */
+const visibleColumns = (table) => table.columns.filter(
+    (column) => (column.title || table.for_file) && shownCells(column).some((text) => text !== ""));
 
 function sortBy(head, body, values) {
   const down = head.getAttribute("aria-sort") === "ascending";
@@ -35,14 +31,11 @@ function sortBy(head, body, values) {
 }
 
 function columnHead(column, body) {
-  const values = column.shown && !isNumeric(column) ?
-      column.shown :
-      column.cells.map((cell) => (isNumeric(column) ? toNumber(cell) : cell ?? ""));
-  const head = element("th", {scope: "col", className: isNumeric(column) ? "number" : "", title: column.description});
-  const unit = isNumeric(column) && column.unit !== "1" ? element("small", {}, `[${column.unit}]`) : null;
+  const values = column.shown && !column.numeric ? column.shown : cellsOf(column);
+  const head = element("th", {scope: "col", className: column.numeric ? "number" : "", title: column.description});
   head.append(
-      element("button", {type: "button", on: {click: () => sortBy(head, body, values)}}, column.title || column.name),
-      unit ?? "");
+      element("button", {type: "button", on: {click: () => sortBy(head, body, values)}}, titleOf(column)),
+      unitOf(column) && element("small", {}, unitOf(column)));
   return head;
 }
 
@@ -54,8 +47,7 @@ export function tableElement(table) {
   for (let k = 0; k < (columns[0]?.cells.length ?? 0); ++k) {
     const row = element("tr", {"data-row": k});
     columns.forEach((column, c) => {
-      const bad = column.role === "verdict" && isMissed(texts[c][k]);
-      const className = [isNumeric(column) ? "number" : "", bad ? "bad" : ""].join(" ").trim();
+      const className = [column.numeric ? "number" : "", column.missed?.[k] ? "bad" : ""].join(" ").trim();
       row.append(
           c === 0 ? element("th", {scope: "row", className, title: texts[c][k]}, texts[c][k]) :
                     element("td", {className}, texts[c][k]));

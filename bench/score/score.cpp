@@ -203,7 +203,7 @@ constexpr ColumnOf<Trial> trial_columns[] = {
     {"method", "", "", "time integrator, with what controls it", Role::key,
      [](const Trial& trial) -> Cell { return trial.family->name; }},
     {"value", "", "1", of_value, Role::key, [](const Trial& trial) -> Cell { return trial.configuration().value; }},
-    {"outcome", "", "", "success, or why there is none", Role::verdict, field<&Trial::outcome>},
+    {"outcome", "", "", "success, or why there is none", Role::outcome, field<&Trial::outcome>},
     {"steps", "", "1", "steps", Role::counter, field<&Trial::steps>},
 };
 
@@ -221,6 +221,7 @@ Table trials(const Scoring& s) {
   Table table = make_table("score-trials", "All that was tried of our methods", trial_columns, s.ours.trials);
   add_columns(table, measured_columns, s.ours.trials,
               [](const Trial& trial) { return trial.measured.times.empty() ? nullptr : &trial.measured; });
+  table.timed_rows = table.for_file = true;
   return table;
 }
 

@@ -256,7 +256,9 @@ results::Table figure(const std::string& name, const std::string& title, const s
     std::ranges::move(curve(experiment, resolutions, checkpoint), std::back_inserter(rows));
   results::Table table = results::make_table(name, title, equilibrium_columns, rows);
   results::add_columns(table, results::fit_columns, rows, std::mem_fn(&Equilibrium::curve));
-  table.figure = results::Figure::convergence;
+  using results::Part;
+  draw(table, results::Figure::convergence,
+       {{Part::figure, "experiment"}, {Part::curve, "form"}, {Part::x, "n"}, {Part::y, "rms"}, {Part::detail, "order"}});
   return table;
 }
 

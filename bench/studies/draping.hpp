@@ -35,7 +35,7 @@ inline constexpr results::ColumnOf<Draping> draping_columns[] = {
      results::field<&Draping::sunk>},
     {"contacts", "in contact", "1", "particles that touched something in the last step", results::Role::quantity,
      results::field<&Draping::contacts>},
-    {"outcome", "outcome", "", "how the run ended", results::Role::verdict, results::field<&Draping::outcome>},
+    {"outcome", "outcome", "", "how the run ended", results::Role::outcome, results::field<&Draping::outcome>},
     {"thesis_updates", "thesis: updates", "1", "printed in the thesis", results::Role::note,
      [](const Draping& run) { return run.thesis ? results::to_cell(run.thesis->updates) : results::Cell(); }},
     {"thesis_cg_iterations", "thesis: CG", "1", "printed in the thesis", results::Role::note,

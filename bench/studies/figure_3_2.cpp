@@ -162,7 +162,7 @@ constexpr results::ColumnOf<Swing> swing_columns[] = {
     {"kinetic", "kinetic", "J", "energy of all waves along u, mean over time", Role::quantity,
      [](const Swing& row) -> Cell { return row.seen->kinetic.sum(); }},
     {"verdict", "verdict", "", "whether Euler swings less than the truth", Role::verdict, field<&Swing::verdict>},
-    {"outcome", "outcome", "", "how the run ended", Role::verdict,
+    {"outcome", "outcome", "", "how the run ended", Role::outcome,
      [](const Swing& row) { return results::to_cell(row.seen->run.outcome); }},
 };
 

@@ -72,9 +72,9 @@ constexpr results::ColumnOf<Window> time_column[] = {
     {"t", "until", "s", "end of the last of these steps", Role::key, field<&Window::until>},
 };
 constexpr results::ColumnOf<Means> curves[] = {
-    {"{}_updates", "{}: updates", "1", "of the fixed-point loop a step", Role::counter, field<&Means::updates>},
-    {"{}_CG", "{}: CG", "1", "iterations a step", Role::counter, field<&Means::cg_iterations>},
-    {"{}_contacts", "{}: contacts", "1", "constrained particles", Role::quantity, field<&Means::contacts>},
+    {"{}_updates", "{}: updates", "1", "updates of the fixed-point loop a step", Role::counter, field<&Means::updates>},
+    {"{}_CG", "{}: CG", "1", "CG iterations a step", Role::counter, field<&Means::cg_iterations>},
+    {"{}_contacts", "{}: contacts", "1", "particles in contact", Role::quantity, field<&Means::contacts>},
 };
 
 /// The means of `length` steps from one on, if the run has them.
@@ -95,7 +95,7 @@ std::vector<Window> windows(const std::vector<RunRecord>& runs, std::size_t leng
   return all;
 }
 
-/// Means of `length` steps a row. Single ones are for the file: without titles users do not see them.
+/// Means of `length` steps a row. Single ones are for the file.
 results::Table over_time(const char* name, const char* title, const std::vector<RunRecord>& runs, std::size_t length) {
   const std::vector<Window> rows = windows(runs, length);
   results::Table table = results::make_table(name, title, time_column, rows);
@@ -104,9 +104,10 @@ results::Table over_time(const char* name, const char* title, const std::vector<
     results::add_columns(table, curves, rows, [&](const Window& row) -> const auto& { return row.runs[k]; },
                          {method, method, ""});
   }
-  table.figure = results::Figure::over_time;
-  if (length == 1)
-    for (results::Column& column : table.columns) column.title.clear();
+  table.for_file = length == 1;
+  draw(table, results::Figure::over_time, {{results::Part::x, "t"}});
+  for (results::Column& column : table.columns)
+    if (!column.group.empty()) column.part = results::Part::y;
   return table;
 }
 

@@ -117,7 +117,7 @@ std::string energy_verdict(const EnergyChange& row) {
 
 constexpr results::ColumnOf<EnergyChange> energy_columns[] = {
     {"step", "h", "s", "step", Role::key, results::field<&EnergyChange::step>},
-    {"outcome", "outcome", "", "how the run ended", Role::note, results::field<&EnergyChange::outcome>},
+    {"outcome", "outcome", "", "how the run ended", Role::outcome, results::field<&EnergyChange::outcome>},
     {"change", "change", "1", "of the energy up to the end, over the largest kinetic energy", Role::quantity,
      results::field<&EnergyChange::change>},
     {"gain", "gain", "1", "the most that it was above that of the start", Role::quantity, results::field<&EnergyChange::gain>},

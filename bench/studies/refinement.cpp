@@ -80,7 +80,7 @@ class Refinement {
 constexpr results::ColumnOf<RefinedRun> refined_columns[] = {
     {"scene", "scene", "", "its name", results::Role::key, results::field<&RefinedRun::scene>},
     {"method", "method", "", "time integrator", results::Role::key, results::field<&RefinedRun::method>},
-    {"step", "h", "s", "step", results::Role::key, results::field<&RefinedRun::step>},
+    {"step", "h", "s", "time step", results::Role::key, results::field<&RefinedRun::step>},
     {"error", "rms error", "1", "distance from the reference at the end, over the size of the scene", results::Role::error,
      results::field<&RefinedRun::error>},
     {"uncertainty", "", "1", "of the reference", results::Role::uncertainty, results::field<&RefinedRun::uncertainty>},
@@ -131,7 +131,9 @@ void fit_curve(std::vector<RefinedRun>& runs, int declared_order) {
 results::Table refinement_table(std::string name, std::string description, const std::vector<RefinedRun>& runs) {
   results::Table table = results::make_table(std::move(name), std::move(description), refined_columns, runs);
   results::add_columns(table, results::fit_columns, runs, std::mem_fn(&RefinedRun::curve));
-  table.figure = results::Figure::convergence;
+  using results::Part;
+  draw(table, results::Figure::convergence,
+       {{Part::figure, "scene"}, {Part::curve, "method"}, {Part::x, "step"}, {Part::y, "error"}, {Part::detail, "order"}});
   return table;
 }
 

@@ -150,7 +150,7 @@ constexpr ColumnOf<Controlled> controlled_columns[] = {
     {"forces", "forces", "1", "evaluations, those of pilot runs among them", Role::counter, field<&Controlled::forces>},
     {"verdict", "verdict", "", "whether the error is within ten times of the tolerance, to both sides", Role::verdict,
      field<&Controlled::verdict>},
-    {"outcome", "outcome", "", "how the run ended", Role::verdict, field<&Controlled::outcome>},
+    {"outcome", "outcome", "", "how the run ended", Role::outcome, field<&Controlled::outcome>},
     {"note", "", "", "what the run says of itself", Role::note, field<&Controlled::note>},
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <limits>
 #include <string_view>
 
@@ -30,6 +31,13 @@ constexpr std::string_view to_string(Verdict verdict) {
   }
   return "unknown";
 }
+
+/// In the order of Verdict: the best first.
+inline constexpr auto verdict_names = [] {
+  std::array<std::string_view, verdicts> names;
+  for (int k = 0; k < verdicts; ++k) names[k] = to_string(static_cast<Verdict>(k));
+  return names;
+}();
 
 /// An error known up to an uncertainty; NaN: not known.
 struct UncertainError {

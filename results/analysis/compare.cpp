@@ -292,6 +292,7 @@ std::string to_string(Judgement judgement) {
   switch (judgement) {
     case Judgement::same: return "same";
     case Judgement::better: return "better";
+    case Judgement::changed: return "changed";
     case Judgement::regression: return "REGRESSION";
     case Judgement::not_comparable: return "not comparable";
   }

@@ -7,7 +7,7 @@
 
 namespace drape::results {
 
-enum class Judgement { same, better, regression, not_comparable };
+enum class Judgement { same, better, changed, regression, not_comparable };  ///< changed: neither better nor worse
 
 /// The judgement of one kind, why, and the cells that speak most for it.
 struct Judged {
@@ -31,8 +31,8 @@ struct CompareOptions {
 };
 
 /// Compares b with a. Cells are matched by scene, method, parameters, step and end; tables by name, rows by their keys.
-/// - accuracy: outcomes; errors (where positions are not comparable, of energy and centre); errors, orders, verdicts and
-///   quantities in tables
+/// - accuracy: outcomes; errors (where positions are not comparable, of energy and centre); errors, orders, outcomes,
+///   verdicts and quantities in tables; how a run failed may change, and rows be missing where times decide which there are
 /// - work: counters, which are the same whenever the same program does the same; any more is a regression
 /// - time: the repetitions' times by rank tests with Holm's correction. They are interleaved within a file, so cells of a file
 ///   compare with each other whatever the machine does meanwhile, but not with those of another hour: the ratio that all cells

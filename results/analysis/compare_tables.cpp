@@ -100,6 +100,13 @@ Judgement judge_verdict(const std::string& a, const std::string& b) {
   return a == b ? Judgement::same : standing(b) < standing(a) ? Judgement::better : Judgement::regression;
 }
 
+/// How a run failed may differ.
+Judgement judge_outcome(const Column& a, const std::string& before, const Column& b, const std::string& after) {
+  if (before == after) return Judgement::same;
+  const bool was_good = is_good(a, before), good = is_good(b, after);
+  return was_good == good ? Judgement::changed : good ? Judgement::better : Judgement::regression;
+}
+
 struct Judge {
   const CompareOptions& options;
   Findings &accuracy, &work;
@@ -115,6 +122,10 @@ struct Judge {
       case Role::uncertainty:
       case Role::time:
       case Role::note: return;
+      case Role::outcome: {
+        const std::string before = text_in(column.a, row), after = text_in(column.b, other);
+        return note(accuracy, judge_outcome(*column.a, before, *column.b, after), name, *column.a, before, after, 0);
+      }
       case Role::verdict: {
         const std::string before = text_in(column.a, row), after = text_in(column.b, other);
         return note(accuracy, judge_verdict(before, after), name, *column.a, before, after, 0);
@@ -177,7 +188,7 @@ void compare_tables(const std::vector<Table>& a, const std::vector<Table>& b, co
     const std::vector<Matched> columns = matched(table, *other);
     const MatchedRows found = matched_rows(table, *other, columns);
     compare_rows(table, *other, found, columns, {options, accuracy, work});
-    if (has(columns, Role::time)) continue;  // rows of a search for the quickest depend on times
+    if (table.timed_rows || other->timed_rows) continue;
     const double noise = std::max(largest_uncertainty(table), largest_uncertainty(*other));
     const std::size_t lost = resolved_rows(table, found.only_a, noise), gained = resolved_rows(*other, found.only_b, noise);
     if (lost + gained > 0)

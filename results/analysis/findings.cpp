@@ -17,7 +17,7 @@ constexpr ColumnOf<Finding> finding_columns[] = {
     {"quantity", "quantity", "", "what differs", Role::key, field<&Finding::quantity>},
     {"a", "a", "", "in the first file", Role::note, field<&Finding::a>},
     {"b", "b", "", "in the second file", Role::note, field<&Finding::b>},
-    {"judgement", "judgement", "", "what that means", Role::verdict,
+    {"judgement", "judgement", "", "what that means", Role::note,
      [](const Finding& finding) { return to_cell(to_string(finding.judgement)); }},
 };
 
@@ -36,14 +36,15 @@ Judged summary(const Findings& findings, const std::string& name) {
   std::ranges::stable_sort(sorted, std::ranges::greater(), &Finding::change);
   const auto count = [&](Judgement judgement) { return std::ranges::count(sorted, judgement, &Finding::judgement); };
   const auto regressions = count(Judgement::regression), unknown = count(Judgement::not_comparable),
-             improvements = count(Judgement::better);
+             changes = count(Judgement::changed), improvements = count(Judgement::better);
   Judged judged;
   judged.judgement = regressions > 0    ? Judgement::regression
                      : unknown > 0      ? Judgement::not_comparable
+                     : changes > 0      ? Judgement::changed
                      : improvements > 0 ? Judgement::better
                                         : Judgement::same;
-  judged.reason =
-      fmt::format("{} cells: {} worse, {} better, {} not comparable", findings.cells, regressions, improvements, unknown);
+  judged.reason = fmt::format("{} cells: {} worse, {} better, {} changed, {} not comparable", findings.cells, regressions,
+                              improvements, changes, unknown);
   std::string description = fmt::format("the worst of {} differences in {}", sorted.size(), name);
   judged.worst = make_table(name, std::move(description), finding_columns,
                             std::span(sorted).first(std::min<std::size_t>(most, sorted.size())));

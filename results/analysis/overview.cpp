@@ -101,13 +101,13 @@ constexpr ColumnOf<Failure> failure_columns[] = {
     {"scene", "scene", "", "its name, and what is set in it", Role::key, field<&Failure::scene>},
     {"method", "method", "", "time integrator", Role::key, [](const Failure& row) -> Cell { return row.run->method; }},
     {"step", "step", "s", "time step h", Role::key, [](const Failure& row) -> Cell { return row.run->step; }},
-    {"outcome", "outcome", "", "how it failed", Role::verdict, [](const Failure& row) { return to_cell(row.run->outcome); }},
+    {"outcome", "outcome", "", "how it failed", Role::outcome, [](const Failure& row) { return to_cell(row.run->outcome); }},
     {"reached", "reached", "s", "last good time", Role::quantity,
      [](const Failure& row) -> Cell { return row.run->last_good_time; }},
     {"message", "why", "", "what the program says", Role::note, [](const Failure& row) -> Cell { return row.run->message; }},
 };
 
-// --- Other verdicts ------------------------------------------------------------------------------------------------------
+// --- Other verdicts and outcomes ------------------------------------------------------------------------------------------
 
 struct Missed {
   std::string table, row, verdict;
@@ -119,11 +119,18 @@ constexpr ColumnOf<Missed> missed_columns[] = {
     {"verdict", "verdict", "", "what the program says", Role::verdict, field<&Missed::verdict>},
 };
 
+/// Whether a cell says that something is not as it was wanted. Classes only say what there is.
+bool is_missed(const Column& column, std::size_t row) {
+  const std::string text = text_in(&column, row);
+  if (column.role == Role::verdict) return standing(text) == Standing::missed;
+  return column.role == Role::outcome && column.classes.empty() && !text.empty() && !is_good(column, text);
+}
+
+/// Searches, which are for the file, try what may fail.
 void add_missed(const Table& table, std::vector<Missed>& missed) {
-  const Column* verdicts = find_column(table, Role::verdict);
-  for (std::size_t row = 0; verdicts != nullptr && row < rows(table); ++row)
-    if (const std::string verdict = text_in(verdicts, row); standing(verdict) == Standing::missed)
-      missed.push_back({table.name, row_title(table, row), verdict});
+  for (std::size_t row = 0; !table.for_file && row < rows(table); ++row)
+    for (const Column& column : table.columns)
+      if (is_missed(column, row)) missed.push_back({table.name, row_title(table, row), text_in(&column, row)});
 }
 
 /// At most `most` rows, and the number of those left out.

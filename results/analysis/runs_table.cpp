@@ -71,7 +71,7 @@ constexpr ColumnOf<RunRecord> run_columns[] = {
     {"scene", "scene", "", "", Role::key, field<&RunRecord::scene>},
     {"method", "method", "", "", Role::key, field<&RunRecord::method>, shown_method},
     {"step", "step", "s", "", Role::key, field<&RunRecord::step>},
-    {"outcome", "", "", "", Role::verdict, field<&RunRecord::outcome>},
+    {"outcome", "", "", "", Role::outcome, field<&RunRecord::outcome>},
     {"message", "", "", "", Role::note, field<&RunRecord::message>},
     {"steps", "steps", "1", "", Role::counter, [](Run run) -> Cell { return std::ssize(run.steps); }},
     {"starting_steps", "", "1", "", Role::counter, [](Run run) -> Cell { return work_count(run, "starting_steps"); }},

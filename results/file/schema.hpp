@@ -7,8 +7,8 @@
 namespace drape::results {
 
 /// The layout of a run in the file: this one list serves writing and reading. results/README.md shows it for users.
-inline constexpr int schema_version = 5;
-inline constexpr int oldest_readable_version = 4;  ///< whose columns have no roles: see schema_4.hpp
+inline constexpr int schema_version = 6;
+inline constexpr int oldest_readable_version = 4;  ///< see schema_4.hpp and schema_5.hpp
 
 /// A member of a record under its name in the file. Text has no unit; numbers have one, "1" if they have no dimension.
 template <class Record, class Value>

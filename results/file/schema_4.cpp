@@ -36,7 +36,8 @@ std::vector<std::string> entries_of(std::string_view value) {
 }  // namespace
 
 Role usual_role(std::string_view name, std::string_view unit) {
-  if (one_of(name, {"verdict", "outcome"})) return Role::verdict;
+  if (name == "outcome") return Role::outcome;
+  if (name == "verdict") return Role::verdict;
   if (one_of(name, {"spread", "remark", "detail", "residual", "order"})) return Role::note;  // follow from other numbers
   if (unit.empty() || one_of(name, {"step", "n"})) return Role::key;
   if (one_of(unit, {"ms", "ns", "s/s", "GB/s", "MB"}) || one_of(name, {"wall", "exponent", "repetitions"})) return Role::time;

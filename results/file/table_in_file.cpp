@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <sstream>
 
 #include "results/file/schema_4.hpp"
+#include "results/file/schema_5.hpp"
 
 namespace drape::results {
 namespace {
@@ -26,7 +28,7 @@ double number(const Cell& cell) {
 
 /// A column has one type in the file: text, whole numbers if all its cells are such, else real numbers, NaN for none.
 void write_column(const Handle& group, const Column& column) {
-  const auto& [name, title, unit, description, role, cells, shown] = column;
+  const auto& [name, title, unit, description, role, cells, shown, classes, in_group, part] = column;
   if (unit.empty()) {
     std::vector<std::string> texts;
     for (const Cell& cell : cells) texts.push_back(is<std::string>(cell) ? std::get<std::string>(cell) : "");
@@ -42,6 +44,9 @@ void write_column(const Handle& group, const Column& column) {
   }
   hdf5::write_text(group, name + ".title", title);
   hdf5::write_text(group, name + ".role", std::string(to_string(role)));
+  hdf5::write_text(group, name + ".group", in_group);
+  hdf5::write_text(group, name + ".part", std::string(to_string(part)));
+  if (!classes.empty()) hdf5::write_texts(group, name + ".classes", classes, "the texts that classify, the best first");
 }
 
 /// `find` gives what has this name.
@@ -53,6 +58,13 @@ auto read_named(const std::string& attribute, const std::string& name, const aut
 
 Role read_role(const Handle& group, const std::string& column) {
   return read_named(column + ".role", hdf5::read_text(group, column + ".role"), role_named);
+}
+
+/// What a column has from version 6 on.
+void read_newer(const Handle& group, Column& column) {
+  column.group = hdf5::read_text(group, column.name + ".group");
+  column.part = read_named(column.name + ".part", hdf5::read_text(group, column.name + ".part"), part_named);
+  if (hdf5::has(group, column.name + ".classes")) column.classes = hdf5::read_texts(group, column.name + ".classes");
 }
 
 std::vector<Cell> read_cells(const Handle& group, const std::string& name, const std::string& unit) {
@@ -75,17 +87,24 @@ void write_table(const Handle& tables, const Table& table) {
     write_column(group, column);
     names.push_back(column.name);
   }
-  hdf5::write_described_text(group, "columns", fmt::format("{}", fmt::join(names, " ")), "the columns in their order");
+  hdf5::write_texts(group, "columns", names, "the columns in their order");
   hdf5::write_integer(group, "headline", table.headline ? 1 : 0);
+  hdf5::write_integer(group, "timed_rows", table.timed_rows ? 1 : 0);
+  hdf5::write_integer(group, "for_file", table.for_file ? 1 : 0);
   hdf5::write_text(group, "figure", std::string(to_string(table.figure)));
+}
+
+std::vector<std::string> column_names(const Handle& group, int version) {
+  if (version > 5) return hdf5::read_texts(group, "columns");
+  std::istringstream names(hdf5::read_text(group, "columns"));
+  return {std::istream_iterator<std::string>(names), {}};
 }
 
 Table read_table(const Handle& tables, const std::string& name, int version) {
   const Handle group = hdf5::open_group(tables, name);
   Table table{name, hdf5::read_text(group, "description"), {}};
   const auto infos = hdf5::datasets(group);
-  std::istringstream names(hdf5::read_text(group, "columns"));
-  for (std::string column; names >> column;) {
+  for (const std::string& column : column_names(group, version)) {
     const auto info = std::ranges::find(infos, column, &hdf5::DatasetInfo::name);
     if (info == infos.end()) throw hdf5::Error(fmt::format("the column {} of the table {} is missing", column, name));
     table.columns.push_back({column,
@@ -97,6 +116,7 @@ Table read_table(const Handle& tables, const std::string& name, int version) {
                              {}});
     if (version == 4 && table.columns.back().role == Role::verdict)
       for (Cell& cell : table.columns.back().cells) cell = usual_verdict(std::get<std::string>(cell));
+    if (version > 5) read_newer(group, table.columns.back());
     if (table.columns.back().cells.size() != rows(table))
       throw hdf5::Error(fmt::format("the columns of the table {} are not equally long", name));
   }
@@ -106,6 +126,12 @@ Table read_table(const Handle& tables, const std::string& name, int version) {
   } else {
     table.figure = usual_figure(table);
     if (table.figure == Figure::convergence) move_to_first_rows(table);
+  }
+  if (version > 5) {
+    table.timed_rows = hdf5::read_integer(group, "timed_rows") != 0;
+    table.for_file = hdf5::read_integer(group, "for_file") != 0;
+  } else {
+    complete(table);
   }
   return table;
 }

@@ -6,12 +6,12 @@
 #include <map>
 #include <optional>
 #include <set>
-#include <sstream>
 #include <string_view>
 #include <type_traits>
 
 #include "results/file/hdf5.hpp"
 #include "results/file/schema.hpp"
+#include "results/file/table_in_file.hpp"
 #include "solver/base/atomic_file.hpp"
 
 namespace drape::results {
@@ -228,21 +228,34 @@ void check_column(Check& check, const std::string& path, SameRows& rows) {
   rows.see(path, check.numbers(path, type, 1, std::nullopt));
 }
 
-void check_table(Check& check, const Handle& file, const std::string& group, bool has_roles) {
+/// The names of a table's columns, if they are as they must be; in versions 4 and 5 they are one text.
+std::vector<std::string> checked_column_names(Check& check, const Handle& file, const std::string& group, int version) {
+  const std::string path = group + (version > 5 ? "/columns" : "@columns");
+  const bool readable = check.find(path) != nullptr && check.find(path)->type == "text";
+  if (version > 5)
+    check.numbers(path, "text", 1, "");
+  else
+    check.described_text(group, "columns");
+  return readable ? column_names(hdf5::open_group(file, group), version) : std::vector<std::string>();
+}
+
+void check_table(Check& check, const Handle& file, const std::string& group, int version) {
   if (!check.group(group)) return;
-  const bool named = check.find(group + "@columns") != nullptr && check.find(group + "@columns")->type == "text";
-  check.described_text(group, "columns");
-  if (has_roles) {
+  if (version > 4) {
     check.attribute(group, "headline", "int32");
     check.attribute(group, "figure", "text");
   }
-  if (!named) return;
+  if (version > 5)
+    for (const char* flag : {"timed_rows", "for_file"}) check.attribute(group, flag, "int32");
   SameRows rows(check, "rows");
-  std::istringstream names(hdf5::read_text(hdf5::open_group(file, group), "columns"));
-  for (std::string name; names >> name;) {
-    check_column(check, fmt::format("{}/{}", group, name), rows);
+  for (const std::string& name : checked_column_names(check, file, group, version)) {
+    const std::string path = fmt::format("{}/{}", group, name);
+    check_column(check, path, rows);
     check.attribute(group, name + ".title", "text");
-    if (has_roles) check.attribute(group, name + ".role", "text");
+    if (version > 4) check.attribute(group, name + ".role", "text");
+    if (version > 5)
+      for (const char* text : {".group", ".part"}) check.attribute(group, name + text, "text");
+    if (check.find(path + ".classes") != nullptr) check.numbers(path + ".classes", "text", 1, "");
   }
 }
 
@@ -274,7 +287,7 @@ std::vector<std::string> validate(const std::filesystem::path& path) {
         check_run(check, fmt::format("/runs/{:03}", k));
     if (check.group("/tables"))
       for (const std::string& name : check.members("/tables"))
-        check_table(check, file, "/tables/" + name, hdf5::read_integer(file, "schema_version") > 4);
+        check_table(check, file, "/tables/" + name, hdf5::read_integer(file, "schema_version"));
     return check.finish();
   } catch (const hdf5::Error& error) {
     throw base::FileError(fmt::format("{}: {}", path.string(), error.what()));

@@ -26,6 +26,7 @@ using results::Cell;
 using results::ColumnOf;
 using results::field;
 using results::Figure;
+using results::Part;
 using results::Role;
 using results::Table;
 using results::to_cell;
@@ -68,7 +69,8 @@ Table orders() {
     rows.back().verdict = order == 2 ? "met: 2 as declared" : "missed: not 1";
   }
   Table table = make_table("orders-sheet", "Order in time on a sheet", order_columns, rows);
-  table.figure = Figure::convergence;
+  draw(table, Figure::convergence,
+       {{Part::figure, "scene"}, {Part::curve, "method"}, {Part::x, "step"}, {Part::y, "error"}, {Part::detail, "order"}});
   return table;
 }
 
@@ -84,10 +86,11 @@ Cell time_of(const Trial& trial) { return trial.slowness * trial.k; }
 constexpr ColumnOf<Trial> trial_columns[] = {
     {"code", "", "", "", Role::key, field<&Trial::code>},
     {"family", "", "", "", Role::key, [](const Trial& t) -> Cell { return fmt::format("{}, \"as it is\"", t.code); }},
-    {"method", "", "", "", Role::key, [](const Trial&) { return to_cell(""); }},
+    {"side", "", "", "", Role::note, [](const Trial& t) { return to_cell(t.slowness == 1 ? "ours" : "others"); }},
+    {"kind", "", "", "", Role::note, [](const Trial& t) { return to_cell(t.slowness == 1 ? "" : t.code); }},
     {"control", "", "", "", Role::key, [](const Trial&) { return to_cell("step"); }},
     {"value", "", "1", "", Role::key, [](const Trial& t) -> Cell { return 0.1 / t.k; }},
-    {"outcome", "", "", "", Role::verdict, [](const Trial& t) { return to_cell(t.k == 3 ? "unstable" : "success"); }},
+    {"outcome", "", "", "", Role::outcome, [](const Trial& t) { return to_cell(t.k == 3 ? "unstable" : "success"); }},
     {"uncertainty", "", "1", "", Role::uncertainty, [](const Trial&) -> Cell { return 1e-9; }},
     {"steps", "", "1", "", Role::counter, [](const Trial& t) { return to_cell(10 * t.k); }},
 };
@@ -104,24 +107,46 @@ Table trials() {
     for (int k = 1; k <= 3; ++k) rows.push_back({code, slowness, k});
   Table table = make_table("trials: sheet", "All that was tried on sheet", trial_columns, rows);
   add_columns(table, measured_columns, rows, [](const Trial& trial) { return trial.k < 3 ? &trial : nullptr; });
-  table.figure = Figure::work_precision;
+  table.for_file = true;
+  draw(table, Figure::work_precision,
+       {{Part::side, "side"},
+        {Part::curve, "kind"},
+        {Part::x, "error"},
+        {Part::y, "time"},
+        {Part::lower, "lower"},
+        {Part::upper, "upper"},
+        {Part::detail, "family"}});
   return table;
 }
 
 Table atlas() {
   constexpr double infinite = std::numeric_limits<double>::infinity();
   const std::int64_t n = 6;
-  return {"stability-atlas",
-          "Verdicts",
-          {{"n", "n", "1", "", Role::key, {n, n, n, n}, {}},
-           {"step", "h", "s", "", Role::key, {0.02, 0.02, 0.02, 0.02}, {}},
-           {"method", "method", "", "", Role::key, std::vector<Cell>(4, "bdf2"), {}},
-           {"nu", "ν_h", "1", "", Role::quantity, {1.0, 1.0, 1e5, 1e5}, {}},
-           {"to_damping", "h k/d", "1", "", Role::quantity, {1.0, infinite, 1.0, infinite}, {}},
-           {"predicted", "predicted", "", "", Role::key, {"stable", "stable", "unstable", "unstable"}, {}},
-           {"verdict", "verdict", "", "", Role::verdict, {"accurate", "accurate", "unstable", "unstable"}, {}}},
-          false,
-          Figure::stability};
+  Table table{
+      "stability-atlas",
+      "Verdicts",
+      {{"n", "n", "1", "", Role::key, {n, n, n, n}, {}},
+       {"step", "h", "s", "", Role::key, {0.02, 0.02, 0.02, 0.02}, {}},
+       {"method", "method", "", "", Role::key, std::vector<Cell>(4, "bdf2"), {}},
+       {"nu", "ν_h", "1", "", Role::quantity, {1.0, 1.0, 1e5, 1e5}, {}},
+       {"to_damping", "h k/d", "1", "", Role::quantity, {1.0, infinite, 1.0, infinite}, {}},
+       {"predicted", "predicted", "", "", Role::note, {"stable", "stable", "unstable", "unstable"}, {}, {"stable", "unstable"}},
+       {"verdict",
+        "verdict",
+        "",
+        "",
+        Role::outcome,
+        {"accurate", "accurate", "unstable", "unstable"},
+        {},
+        {"accurate", "unstable"}}}};
+  draw(table, Figure::stability,
+       {{Part::figure, "n"},
+        {Part::curve, "method"},
+        {Part::x, "to_damping"},
+        {Part::y, "nu"},
+        {Part::colour, "verdict"},
+        {Part::outline, "predicted"}});
+  return table;
 }
 
 /// What would end the script that the data are in, or become an element, if the page were careless.
@@ -134,12 +159,12 @@ Table hostile() {
 /// A table like those of figure 4.3.
 Table over_time() {
   const std::vector<Cell> means{1.0, 2.0, 3.0, 4.0};
-  return {"figure-4.3",
-          "Figure 4.3: a sheet and a box",
-          {column("t", "s", Role::key, {0.05, 0.1, 0.15, 0.2}), column("bdf2_updates", "1", Role::counter, means),
-           column("bdf2_CG", "1", Role::counter, means), column("bdf2_contacts", "1", Role::quantity, means)},
-          false,
-          Figure::over_time};
+  Table table{"figure-4.3",
+              "Figure 4.3: a sheet and a box",
+              {column("t", "s", Role::key, {0.05, 0.1, 0.15, 0.2}), column("bdf2_updates", "1", Role::counter, means),
+               column("bdf2_CG", "1", Role::counter, means), column("bdf2_contacts", "1", Role::quantity, means)}};
+  draw(table, Figure::over_time, {{Part::x, "t"}, {Part::y, "bdf2_updates"}, {Part::y, "bdf2_CG"}, {Part::y, "bdf2_contacts"}});
+  return table;
 }
 
 /// A sheet on a box that rises, beside other obstacles.
@@ -227,9 +252,10 @@ void expect_marks_in_every_figure(const json& seen) {
     EXPECT_GT(marks, 0) << title;
     titles += title + "\n";
   }
-  for (const char* title : {"Distance from", "Work–precision of runs: hung-corners", "Energy: hung-corners",
-                            "Updates: hung-corners", "Convergence: sheet", "Work–precision: sheet", "Stability: 6 × 6",
-                            "Contacts: on box", "Clearance: on box", "Least clearance: on box", "Figure 4.3: a sheet"})
+  for (const char* title :
+       {"Distance from", "Work–precision of runs: hung-corners", "Energy: hung-corners", "Updates: hung-corners",
+        "Convergence: sheet", "Work–precision: All that was tried on sheet", "Stability: n = 6", "Contacts: on box",
+        "Clearance: on box", "Least clearance: on box", "Figure 4.3: a sheet"})
     EXPECT_THAT(titles, HasSubstr(title));
 }
 

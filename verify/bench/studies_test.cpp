@@ -100,14 +100,16 @@ TEST(Verdict, IsWithinATenthToBothSides) {
 /// A table with all kinds of cells, and gaps.
 Table some_table() {
   constexpr std::int64_t three = 3, four = 4;
-  return {"some",
-          "Some table",
-          {{"name", "name", "", "who", Role::key, {"Ähre", "b, c", {}}, {}},
-           {"n", "n", "1", "how many", Role::counter, {three, four, {}}, {}},
-           {"x", "x", "m", "where", Role::quantity, {{}, 0.1 + 0.2, {}}, {}},
-           {"hidden", "", "1", "not shown", Role::note, {{}, {}, 7.0}, {}}},
-          false,
-          results::Figure::convergence};
+  return {
+      "some",
+      "Some table",
+      {{"name", "name", "", "who", Role::key, {"Ähre", "b, c", {}}, {}},
+       {"n", "n", "1", "how many", Role::counter, {three, four, {}}, {}},
+       {"x", "x", "m", "where", Role::quantity, {{}, 0.1 + 0.2, {}}, {}},
+       {"not shown", "", "1", "not shown", Role::note, {{}, {}, 7.0}, {}, {"seven", "eight"}, "some", results::Part::detail}},
+      false,
+      results::Figure::convergence,
+      true};
 }
 
 TEST(StudyTable, IsShownWithoutItsHiddenColumns) {
@@ -120,9 +122,23 @@ TEST(StudyTable, IsShownWithoutItsHiddenColumns) {
             "            \n");
 }
 
+TEST(StudyTable, ForTheFileIsShownWithAllItsColumns) {
+  Table table = some_table();
+  table.for_file = true;
+  EXPECT_THAT(to_text(table), testing::HasSubstr("name  n    x  not shown\n"));
+}
+
+TEST(StudyTable, IsDrawnFromColumnsThatItHas) {
+  Table table = some_table();
+  draw(table, results::Figure::stability, {{results::Part::x, "n"}});
+  EXPECT_EQ(find_column(table, "n")->part, results::Part::x);
+  EXPECT_EQ(table.figure, results::Figure::stability);
+  EXPECT_THROW(draw(table, results::Figure::stability, {{results::Part::y, "m"}}), std::invalid_argument);
+}
+
 TEST(StudyTable, HasAllColumnsInCsv) {
   EXPECT_EQ(to_csv(some_table()),
-            "name,n,x,hidden\n"
+            "name,n,x,not shown\n"
             "Ähre,3,,\n"
             "\"b, c\",4,0.30000000000000004,\n"
             ",,,7\n");
@@ -143,6 +159,8 @@ TEST(StudyTable, IsReadBackFromItsFile) {
   const Table &read = tables[1], written = some_table();
   EXPECT_EQ(read.description, written.description);
   EXPECT_EQ(read.figure, written.figure);
+  EXPECT_TRUE(read.timed_rows);
+  EXPECT_FALSE(read.for_file);
   ASSERT_EQ(read.columns.size(), written.columns.size());
   for (std::size_t k = 0; k < read.columns.size(); ++k) {
     EXPECT_EQ(read.columns[k].name, written.columns[k].name);
@@ -150,6 +168,9 @@ TEST(StudyTable, IsReadBackFromItsFile) {
     EXPECT_EQ(read.columns[k].unit, written.columns[k].unit);
     EXPECT_EQ(read.columns[k].description, written.columns[k].description);
     EXPECT_EQ(read.columns[k].role, written.columns[k].role);
+    EXPECT_EQ(read.columns[k].classes, written.columns[k].classes);
+    EXPECT_EQ(read.columns[k].group, written.columns[k].group);
+    EXPECT_EQ(read.columns[k].part, written.columns[k].part);
   }
   EXPECT_EQ(to_text(read), to_text(written));
   EXPECT_EQ(to_csv(read), to_csv(written));

@@ -289,6 +289,31 @@ TEST(CompareTables, JudgeOrdersErrorsAndCountersButNoTimes) {
   EXPECT_EQ(compare({{}, {}, {good}}, {{}, {}, {}}).accuracy.judgement, Judgement::not_comparable);
 }
 
+/// A row with an outcome.
+Table ending(const std::string& outcome, std::vector<std::string> classes = {}) {
+  Table table{"endings", "", {column("outcome", "", Role::outcome, {outcome})}};
+  table.columns[0].classes = std::move(classes);
+  return table;
+}
+
+TEST(CompareTables, JudgeOutcomesByWhetherTheyAreGood) {
+  const auto judged = [](const Table& a, const Table& b) { return compare({{}, {}, {a}}, {{}, {}, {b}}); };
+  const Table good = ending("success"), bad = ending("not converged"), other = ending("unstable");
+  EXPECT_EQ(judged(bad, good).accuracy.judgement, Judgement::better);
+  EXPECT_EQ(judged(good, bad).accuracy.judgement, Judgement::regression);
+  EXPECT_EQ(judged(bad, other).accuracy.judgement, Judgement::changed);
+  EXPECT_EQ(exit_code(judged(bad, other)), 0);
+  EXPECT_THAT(judged(bad, other).accuracy.reason, HasSubstr("0 worse, 0 better, 1 changed"));
+  EXPECT_THAT(texts_in(judged(bad, other).accuracy, "b"), ElementsAre("unstable"));
+  const std::vector<std::string> classes{"accurate", "stable but wrong", "unstable"};
+  const auto between = [&](const char* a, const char* b) {
+    return judged(ending(a, classes), ending(b, classes)).accuracy.judgement;
+  };
+  EXPECT_EQ(between("unstable", "accurate"), Judgement::better);
+  EXPECT_EQ(between("accurate", "stable but wrong"), Judgement::regression);
+  EXPECT_EQ(between("stable but wrong", "unstable"), Judgement::changed);
+}
+
 /// A row with one number, and what the reference of its error is uncertain by.
 Table one_number(Role role, double value, double uncertainty) {
   return {"numbers", "", {column("number", "1", role, {value}), column("uncertainty", "1", Role::uncertainty, {uncertainty})}};
@@ -323,6 +348,15 @@ TEST(CompareTables, MatchRowsByTheirKeys) {
   EXPECT_EQ(judged(whole, curve({0.1, 0.025}, {1e-3, 5e-9})).judgement, Judgement::not_comparable);
   EXPECT_EQ(judged(curve({0.1}, {1e-3}), curve({0.1, 0.05}, {1e-3, 1e-4})).judgement, Judgement::not_comparable);
   EXPECT_EQ(judged(whole, curve({0.1, 0.05}, {1e-3, 2e-4})).judgement, Judgement::regression);
+}
+
+TEST(CompareTables, MayLackRowsOnlyWhereTimesDecideWhichThereAre) {
+  Table both{"times", "", {column("method", "", Role::key, {"a", "b"}), column("time", "ms", Role::time, {1.0, 2.0})}};
+  Table one{"times", "", {column("method", "", Role::key, {"a"}), column("time", "ms", Role::time, {1.0})}};
+  const auto judgement = [&] { return compare({{}, {}, {both}}, {{}, {}, {one}}).accuracy.judgement; };
+  EXPECT_EQ(judgement(), Judgement::not_comparable);
+  both.timed_rows = one.timed_rows = true;
+  EXPECT_EQ(judgement(), Judgement::same);
 }
 
 }  // namespace

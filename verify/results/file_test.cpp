@@ -359,7 +359,7 @@ TEST(ReadRuns, RefusesForeignHdf5AndOtherVersions) {
   const hdf5::Handle file = hdf5::create_in_memory();
   EXPECT_THAT(publish_image(folder / "external.h5", file), HasSubstr("external.h5: schema_version: can't locate attribute"));
   hdf5::write_integer(file, "schema_version", schema_version + 1);
-  EXPECT_THAT(publish_image(folder / "newer.h5", file), HasSubstr("schema_version is 6, this program reads 4 to 5"));
+  EXPECT_THAT(publish_image(folder / "newer.h5", file), HasSubstr("schema_version is 7, this program reads 4 to 6"));
 }
 
 }  // namespace

@@ -109,6 +109,22 @@ TEST(Overview, ShowsTenOfWhatIsNotAsItWasWanted) {
   EXPECT_EQ(text_in(find_column(not_met, "row"), 9), "faster error 0.1");
 }
 
+TEST(Overview, ShowsWhatIsNotAsItWasWantedInAnyColumnOfATableForUsers) {
+  Table table{
+      "table",
+      "",
+      {column("method", "", Role::key, {"a", "b", "c"}), column("first", "", Role::verdict, {"met", "met", "missed: one"}),
+       column("second", "", Role::verdict, {"met", "missed: two", "met"}),
+       column("outcome", "", Role::outcome, {"unstable", "success", {}}),
+       column("class", "", Role::outcome, {"wrong", "wrong", "right"})}};
+  table.columns.back().classes = {"right", "wrong"};
+  EXPECT_EQ(shown(recording(table), "not-met"),
+            "table,row,verdict\ntable,a,unstable\ntable,b,missed: two\ntable,c,missed: one\n");
+  table.for_file = true;
+  const Recording all = recording(table);
+  EXPECT_THAT(results::overview({&all, 1}), IsEmpty());
+}
+
 TEST(Conclusion, SaysOfRunsWhoIsQuickWhoIsWrongAndWhoFails) {
   RunRecord failed = run("unlucky", 0, 1);
   failed.error.reset();

@@ -130,12 +130,14 @@ class Predictions {
   std::map<std::tuple<const Method*, double, double>, std::optional<reference::LinearPrediction>> known_;
 };
 
+constexpr std::string_view expectations[] = {"stable", "unstable", "loop too slow"};
+
 std::string_view describe(const std::optional<Expected>& expected) {
   if (!expected) return "no theory known";
-  if (!expected->stable) return "unstable";
-  return expected->converges ? "stable" : "loop too slow";
+  return expectations[!expected->stable ? 1 : expected->converges ? 0 : 2];
 }
 
+using results::Part;
 using results::Role;
 using results::to_cell;
 
@@ -147,7 +149,7 @@ constexpr results::ColumnOf<AtlasCell> cell_columns[] = {
     {"nu", "ν_h", "1", "numerical stiffness h² k/(ρ l²)", Role::key, results::field<&AtlasCell::stiffness>},
     {"to_damping", "h k/d", "1", "infinite without damping", Role::key, results::field<&AtlasCell::ratio>},
     {"predicted", "predicted", "", "by the amplification of linear modes and the contraction of the thesis' loop", Role::note,
-     [](const AtlasCell& cell) { return to_cell(describe(cell.expected)); }},
+     [](const AtlasCell& cell) { return to_cell(describe(cell.expected)); }, nullptr, expectations},
 };
 
 constexpr results::ColumnOf<Expected> expected_columns[] = {
@@ -176,7 +178,7 @@ std::vector<Judged> try_rows(const std::vector<Row>& rows, const Sheet& sheet, d
   return runs;
 }
 
-/// All runs: for the file, so without titles.
+/// All runs, for the file.
 results::Table explore(Atlas& atlas, Checkpoint& checkpoint) {
   Predictions predictions;
   for (const Sheet& sheet : atlas.sheets)
@@ -193,8 +195,18 @@ results::Table explore(Atlas& atlas, Checkpoint& checkpoint) {
         checkpoint.advance();
       }
   results::Table table = cells_table("stability-atlas", "Every run of the atlas", atlas.cells);
-  for (results::Column& column : table.columns) column.title.clear();
-  table.figure = results::Figure::stability;
+  table.for_file = true;
+  draw(table, results::Figure::stability,
+       {{Part::figure, "n"},
+        {Part::figure, "step"},
+        {Part::curve, "method"},
+        {Part::x, "to_damping"},
+        {Part::y, "nu"},
+        {Part::colour, "verdict"},
+        {Part::outline, "predicted"},
+        {Part::detail, "error"},
+        {Part::detail, "uncertainty"},
+        {Part::detail, "reason"}});
   return table;
 }
 

@@ -31,8 +31,8 @@ Specimen hung_by_corners(int n, double k, double d);
 
 /// What became of a run.
 inline constexpr results::ColumnOf<Judged> judged_columns[] = {
-    {"verdict", "verdict", "", "what became of the run", results::Role::verdict,
-     [](const Judged& run) -> results::Cell { return std::string(to_string(run.verdict)); }},
+    {"verdict", "verdict", "", "what became of the run", results::Role::outcome,
+     [](const Judged& run) -> results::Cell { return std::string(to_string(run.verdict)); }, nullptr, verdict_names},
     {"error", "error", "1", "of the end over the size, positions or centre of mass; none: not known", results::Role::error,
      [](const Judged& run) { return std::isnan(run.error.error) ? results::Cell() : run.error.error; }},
     {"uncertainty", "±", "1", "of the error: how far two reference methods differ", results::Role::uncertainty,

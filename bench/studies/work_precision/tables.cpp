@@ -27,6 +27,11 @@ struct TrialRow {
   double uncertainty;  ///< of the reference
 };
 
+Cell kind(const TrialRow& row) {
+  const Family& family = *row.trial.family;
+  return !family.method.empty() ? "automatic" : family.code == "drape" ? "" : family.code;
+}
+
 constexpr ColumnOf<TrialRow> tried_columns[] = {
     {"code", "", "", "whose it is", Role::key, [](const TrialRow& row) -> Cell { return row.trial.family->code; }},
     {"family", "", "", "ways that differ in one number", Role::key,
@@ -38,8 +43,11 @@ constexpr ColumnOf<TrialRow> tried_columns[] = {
     {"control", "", "", "the number: step [s], tolerance, or fraction of the stability limit", Role::key,
      [](const TrialRow& row) -> Cell { return row.trial.family->control; }},
     {"value", "", "1", "its value", Role::key, [](const TrialRow& row) -> Cell { return row.trial.configuration().value; }},
-    {"outcome", "", "", "success, or why there is none", Role::verdict,
+    {"outcome", "", "", "success, or why there is none", Role::outcome,
      [](const TrialRow& row) -> Cell { return row.trial.outcome; }},
+    {"side", "", "", "whose search it is of", Role::note,
+     [](const TrialRow& row) -> Cell { return is_ours(row.trial.family->code) ? "ours" : "SUNDIALS"; }},
+    {"kind", "", "", "what it is compared as beside its side; none: as that only", Role::note, kind},
     {"uncertainty", "", "1", "of the reference, as the error", Role::uncertainty, field<&TrialRow::uncertainty>},
     {"steps", "", "1", "steps", Role::counter, [](const TrialRow& row) -> Cell { return row.trial.steps; }},
     {"forces", "", "1", "evaluations of forces", Role::counter, [](const TrialRow& row) -> Cell { return row.trial.forces; }},
@@ -250,7 +258,22 @@ results::Table trials_table(const SceneTrials& scene) {
       results::make_table("trials: " + scene.problem.name, "All that was tried on " + scene.problem.name, tried_columns, rows);
   results::add_columns(table, times_columns, rows,
                        [](const TrialRow& row) { return row.trial.measured.times.empty() ? nullptr : &row.trial.measured; });
-  table.figure = results::Figure::work_precision;
+  table.timed_rows = table.for_file = true;
+  using results::Part;
+  draw(table, results::Figure::work_precision,
+       {{Part::side, "side"},
+        {Part::curve, "kind"},
+        {Part::x, "error"},
+        {Part::y, "time"},
+        {Part::lower, "lower"},
+        {Part::upper, "upper"},
+        {Part::detail, "family"},
+        {Part::detail, "control"},
+        {Part::detail, "value"},
+        {Part::detail, "steps"},
+        {Part::detail, "forces"},
+        {Part::detail, "factorisations"},
+        {Part::caption, "build"}});
   return table;
 }
 
