@@ -10,6 +10,8 @@ namespace drape::reference {
 
 using solver::Vectors;
 
+double rms(const Vectors& field) { return std::sqrt(field.squaredNorm() / static_cast<double>(field.rows())); }
+
 double rms_distance(const Vectors& a, const Vectors& b) {
   return std::sqrt((a - b).squaredNorm() / static_cast<double>(a.rows()));
 }
@@ -25,6 +27,10 @@ double largest_rms_distance(std::span<const Vectors> a, std::span<const Vectors>
 
 Eigen::RowVector3d centre_of_mass(const Eigen::VectorXd& mass, const Vectors& x) {
   return (mass.asDiagonal() * x).colwise().sum() / mass.sum();
+}
+
+double centre_distance(const Eigen::VectorXd& mass, const Vectors& a, const Vectors& b) {
+  return centre_of_mass(mass, a - b).norm();
 }
 
 std::vector<Vectors> positions_of(std::vector<solver::State> states) {

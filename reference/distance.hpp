@@ -8,6 +8,9 @@
 /// How far motions are apart: the measures of every error.
 namespace drape::reference {
 
+/// Root mean square over the particles of a field, N × 3.
+double rms(const solver::Vectors& field);
+
 /// Root mean square over the particles of the distance [m] between two sets of positions, each N × 3.
 double rms_distance(const solver::Vectors& a, const solver::Vectors& b);
 
@@ -20,6 +23,9 @@ double largest_rms_distance(std::span<const solver::Vectors> a, std::span<const 
 
 /// Centre of mass [m]. `mass`: of each particle [kg].
 Eigen::RowVector3d centre_of_mass(const Eigen::VectorXd& mass, const solver::Vectors& x);
+
+/// Distance of the centres of mass [m] of two sets of positions.
+double centre_distance(const Eigen::VectorXd& mass, const solver::Vectors& a, const solver::Vectors& b);
 
 /// Positions of states.
 std::vector<solver::Vectors> positions_of(std::vector<solver::State> states);

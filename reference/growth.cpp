@@ -5,6 +5,7 @@
 #include <random>
 #include <utility>
 
+#include "reference/distance.hpp"
 #include "reference/linear_motion.hpp"
 #include "reference/sundials/peer_solvers.hpp"
 #include "solver/base/largest.hpp"
@@ -22,8 +23,6 @@ constexpr int fewest_steps = 30;       ///< of the linearised motion: enough to 
 constexpr int most_steps = 240;
 constexpr double alike = 1.5;       ///< factor between what steps and half of them predict, if they are short enough
 constexpr double worthwhile = 1.1;  ///< factor by which a round of the power method has to gain
-
-double rms(const Vectors& field) { return field.norm() / std::sqrt(static_cast<double>(field.rows())); }
 
 State scaled(const State& y, double factor) { return {factor * y.x, factor * y.v}; }
 State sum(const State& a, const State& b) { return {a.x + b.x, a.v + b.v}; }

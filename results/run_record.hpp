@@ -138,6 +138,8 @@ struct RunRecord {
   std::optional<MotionErrorRecord> motion_error;  ///< absent in files of programs that did not measure it
   std::optional<ContactRecord> contact;           ///< if the scene has obstacles
   std::optional<TrajectoryRecord> trajectory;     ///< if it was asked for
+
+  bool succeeded() const { return outcome == solver::Outcome::success; }
 };
 
 /// The count of a kind of work, 0 if the run knows no such kind.

@@ -16,10 +16,6 @@ namespace {
 
 using solver::State;
 
-double centre_distance(const model::Cloth& cloth, const State& a, const State& b) {
-  return reference::centre_of_mass(cloth.ode.mass, a.x - b.x).norm();
-}
-
 constexpr double reference_tolerances[] = {1e-9, 1e-10, 1e-11, 1e-12};  ///< of references
 
 /// The loosest of them that promises an uncertainty, as it falls with the tolerance; at least the next.
@@ -114,8 +110,8 @@ results::ErrorRecord distance(const results::RunRecord& run, const reference::Re
           .growth = base::largest(reference.growth),
           .energy = std::abs(total_energy(cloth, end, run.final_state) - energy) / scale,
           .energy_spread = std::abs(total_energy(cloth, end, perturbed) - energy) / scale,
-          .centre = centre_distance(cloth, run.final_state, y) / size,
-          .centre_spread = centre_distance(cloth, perturbed, y) / size};
+          .centre = reference::centre_distance(cloth.ode.mass, run.final_state.x, y.x) / size,
+          .centre_spread = reference::centre_distance(cloth.ode.mass, perturbed.x, y.x) / size};
 }
 
 }  // namespace drape::bench

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "bench/runs/run.hpp"
 #include "results/file/run_file.hpp"
 
 /// How units of work keep what nlohmann/json does not know by itself.
@@ -50,3 +51,16 @@ struct adl_serializer<drape::results::RunRecord> {
 };
 
 }  // namespace nlohmann
+
+namespace drape::solver {
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RunResult, outcome, message, last_good_time, steps, rejected_steps)
+
+}  // namespace drape::solver
+
+namespace drape::bench {
+
+/// Without the state at its end.
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RunEnd, result, evaluations, newton_matrices, cpu_ms)
+
+}  // namespace drape::bench

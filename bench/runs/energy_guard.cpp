@@ -36,14 +36,15 @@ double fall_of(const model::Sheet& sheet, const Vectors& weight) {
 
 }  // namespace
 
-EnergyGuard::Work::Work(const solver::SplitOde::Force& given, const State& start, bool jumps) : given_(given), jumps_(jumps) {
+EnergyGuard::GivenWork::GivenWork(const solver::SplitOde::Force& given, const State& start, bool jumps)
+    : given_(given), jumps_(jumps) {
   if (!given_) return;
   last_.x = start.x;
   given_(0, start.x, start.v, last_.f);
   pair_ = last_;
 }
 
-void EnergyGuard::Work::go_on(double t, const State& y) {
+void EnergyGuard::GivenWork::go_on(double t, const State& y) {
   if (!given_) return;
   now_.x = y.x;
   given_(t, y.x, y.v, now_.f);
@@ -115,6 +116,12 @@ void EnergyGuardObserver::observe(const solver::StepReport& step) {
 
 std::string EnergyGuardObserver::remark() const {
   return guard_->judges() ? "" : "energy cannot be judged: work is too uncertain with such steps";
+}
+
+RunEnd run_guarded(const RunSpec& spec, const model::Cloth& cloth, const Limits& limits) {
+  EnergyGuardObserver guard;
+  Observer* const observers[] = {&guard};
+  return run(spec, cloth, observers, limits);
 }
 
 }  // namespace drape::bench

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "bench/runs/observer.hpp"
+#include "bench/runs/run.hpp"
 
 namespace drape::bench {
 
@@ -44,10 +44,10 @@ class EnergyGuard {
 
  private:
   /// The work of model::Cloth::given.
-  class Work {
+  class GivenWork {
    public:
     /// `jumps`: whether forces are switched on and off within steps, whose work then stays uncertain.
-    Work(const solver::SplitOde::Force& given, const solver::State& start, bool jumps);
+    GivenWork(const solver::SplitOde::Force& given, const solver::State& start, bool jumps);
     void go_on(double t, const solver::State& y);
     double value() const { return fine_; }
     double doubt() const { return doubt_ + pending_; }
@@ -80,7 +80,7 @@ class EnergyGuard {
   double fall_, end_;       ///< [J/s²], [s]
   double most_given_;       ///< [J]
   double damped_ = 0, contact_work_ = 0, unresolved_ = 0, energy_ = 0, limit_ = 0;
-  Work work_;
+  GivenWork work_;
   bool judges_ = true;
 };
 
@@ -100,5 +100,8 @@ class EnergyGuardObserver : public Observer {
   std::optional<EnergyGuard> guard_;
   double good_ = 0;  ///< [s]
 };
+
+/// A run under the energy guard alone.
+RunEnd run_guarded(const RunSpec& spec, const model::Cloth& cloth, const Limits& limits);
 
 }  // namespace drape::bench

@@ -28,17 +28,19 @@ void limit_data(rlim_t bytes) {
 
 Meter::Meter(const Limits& limits) : limits_(limits) {}
 
-void Meter::check() const {
+void Meter::end(solver::Outcome outcome, const std::string& message) { throw reached_.emplace(outcome, message); }
+
+void Meter::check() {
   check_interruption();
   if (!std::isfinite(limits_.seconds)) return;
   if (std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count() > limits_.seconds)
-    throw LimitReached(solver::Outcome::out_of_time, fmt::format("longer than {:g} s", limits_.seconds));
+    end(solver::Outcome::out_of_time, fmt::format("longer than {:g} s", limits_.seconds));
 }
 
 void Meter::count() {
   check();
   if (++evaluations_ > limits_.evaluations)
-    throw LimitReached(solver::Outcome::out_of_evaluations, fmt::format("more than {} evaluations", limits_.evaluations));
+    end(solver::Outcome::out_of_evaluations, fmt::format("more than {} evaluations", limits_.evaluations));
 }
 
 void Meter::watch(solver::SplitOde& ode) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -44,16 +45,21 @@ class Meter {
   /// is exceeded and Interrupted when the sweep is to end. The meter must outlive them.
   void watch(solver::SplitOde& ode);
 
+  /// The limit that was exceeded, if one was: solvers of SUNDIALS make LimitReached an error of theirs.
+  const std::optional<LimitReached>& reached() const { return reached_; }
+
   std::int64_t evaluations() const { return evaluations_; }  ///< of forces and Newton matrices
   std::int64_t newton_matrices() const { return newton_matrices_; }
 
  private:
-  void check() const;
+  void check();
   void count();
+  [[noreturn]] void end(solver::Outcome outcome, const std::string& message);
 
   const Limits limits_;
   const std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   std::int64_t evaluations_ = 0, newton_matrices_ = 0;
+  std::optional<LimitReached> reached_;
 };
 
 /// As long as it lives the process may take this much more memory; beyond that operator new throws std::bad_alloc.

@@ -36,7 +36,7 @@ MotionScale motion_scale(const model::Cloth& cloth, const reference::Trajectory&
     const State& y = trajectory.states[k];
     const double change = cloth.ode.potential_energy(trajectory.times[k], y.x) - potential;
     scale.distance = base::larger(scale.distance, rms_distance(y.x, cloth.start.x));
-    scale.velocity = base::larger(scale.velocity, rms_distance(y.v, Vectors::Zero(y.v.rows(), 3)));
+    scale.velocity = base::larger(scale.velocity, reference::rms(y.v));
     scale.energy = base::larger(scale.energy, solver::kinetic_energy(cloth.ode, y.v) + std::abs(change));
   }
   return scale;

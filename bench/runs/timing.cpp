@@ -73,9 +73,20 @@ std::vector<std::vector<double>> time_runs(const std::vector<Repeated>& runs, co
   return times;
 }
 
-/// A run that the energy guard ended went one step further than it has recorded.
 std::size_t steps_to_time(const results::RunRecord& run) {
-  return run.steps.size() + (run.outcome == solver::Outcome::unstable ? 1 : 0);
+  switch (run.outcome) {
+    case solver::Outcome::success:
+    case solver::Outcome::out_of_time:
+    case solver::Outcome::out_of_memory:
+    case solver::Outcome::out_of_evaluations: return run.steps.size();
+    case solver::Outcome::unstable: return run.steps.size() + 1;  // the step at which the energy guard ended it
+    case solver::Outcome::not_converged:
+    case solver::Outcome::breakdown:
+    case solver::Outcome::not_finite:
+    case solver::Outcome::inaccurate:
+    case solver::Outcome::failed: break;
+  }
+  return Limits().steps;  // it ends by itself, in a step whose work is counted
 }
 
 std::vector<std::vector<double>> time_group(const Group& group, const std::vector<std::size_t>& most_steps, int repetitions,

@@ -25,7 +25,7 @@ struct Repeated {
 std::vector<std::vector<double>> time_runs(const std::vector<Repeated>& runs, const std::function<void()>& done,
                                            TimeOf time_of = TimeOf::wall);
 
-/// How many steps of a run are timed: as far as it went.
+/// At most this number of steps of a run are timed, so that times and counters are of the same work.
 std::size_t steps_to_time(const results::RunRecord& run);
 
 /// Wall times [ms] of the solver for every run of a group, as time_runs() has them, each up to its most steps. Compiling the

@@ -13,8 +13,6 @@ double depth(const TrueMotion& truth, double t, const solver::Vectors& x) {
   return std::max(0.0, -truth.cloth.contacts->distances(t, x).minCoeff());
 }
 
-double centre_distance(const Observables& a, const Observables& b) { return (a.centre - b.centre).norm(); }
-
 /// Squares of distances from a reference that is late by τ, over the frames that it has.
 struct Misfit {
   double square = 0;  ///< mean of |x(t) − x_ref(t − τ)|² over frames and particles [m²]
@@ -80,7 +78,7 @@ std::vector<FrameScore> frame_scores(const ExternalMotion& external, const TrueM
                      0,
                      observe(truth.scene, truth.cloth, t, y),
                      expected[k]};
-    frame.centre = centre_distance(frame.own, frame.truth.value);
+    frame.centre = (frame.own.centre - frame.truth.value.centre).norm();
     if (truth.cloth.contacts) frame.depth = depth(truth, t, y.x), frame.true_depth = depth(truth, t, truly.x);
     all.push_back(frame);
   }

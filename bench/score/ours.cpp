@@ -26,24 +26,24 @@ Problem problem_of(const TrueMotion& truth, const std::vector<FrameScore>& frame
   return problem;
 }
 
-double time_of(const Trial& trial) {
-  return trial.measured.times.empty() ? INFINITY : results::quartiles(trial.measured.times).median;
+double time_of(const ComparedRun& run) {
+  return run.measured.times.empty() ? INFINITY : results::quartiles(run.measured.times).median;
 }
 
 /// `longest` [ms]: NaN if it is not known.
-void take_in(Answers& answers, const Trial& trial, double error, double longest) {
-  if (trial.measured.error <= error && (answers.as_right == nullptr || time_of(trial) < time_of(*answers.as_right)))
-    answers.as_right = &trial;
-  if (time_of(trial) <= longest && (answers.at_cost == nullptr || trial.measured.error < answers.at_cost->measured.error))
-    answers.at_cost = &trial;
+void update(Answers& answers, const ComparedRun& run, double error, double longest) {
+  if (run.measured.error <= error && (answers.as_right == nullptr || time_of(run) < time_of(*answers.as_right)))
+    answers.as_right = &run;
+  if (time_of(run) <= longest && (answers.at_cost == nullptr || run.measured.error < answers.at_cost->measured.error))
+    answers.at_cost = &run;
 }
 
 std::vector<Answers> answers_of(const Ours& ours, double error, double longest) {
   std::vector<Answers> all;
-  for (const Family& family : ours.families) {
+  for (const Configuration& configuration : ours.configurations) {
     Answers& answers = all.emplace_back();
-    for (const Trial& trial : ours.trials)
-      if (trial.family == &family) take_in(answers, trial, error, longest);
+    for (const ComparedRun& run : ours.runs)
+      if (run.configuration == &configuration) update(answers, run, error, longest);
   }
   return all;
 }
@@ -61,20 +61,20 @@ Ours try_ours(const TrueMotion& truth, const std::vector<FrameScore>& frames, co
   const double error = known_error(frames) / problem.length;
   Effort effort{.repetitions = repetitions, .time_of = TimeOf::wall};  // as the other simulator's
   if (cost)
-    effort.cap = std::max(effort.cap, well * *cost);
+    effort.limits.seconds = std::max(effort.limits.seconds, well * *cost);
   else
     problem.enough = error / well;
   Ours ours;
-  for (const std::string& method : methods) ours.families.push_back(ladder(problem.scene, method));
-  ours.trials = try_all(problem, ours.families, effort, checkpoint);
+  for (const std::string& method : methods) ours.configurations.push_back(ladder(problem.scene, method));
+  ours.runs = run_all(problem, ours.configurations, effort, checkpoint);
   const double longest = cost ? 1e3 * *cost : NAN;
   problem.asked = {error};
   for (const Answers& answers : answers_of(ours, error, longest))  // by a first run each, to know what to time
     if (answers.at_cost != nullptr) problem.asked.push_back(answers.at_cost->measured.error);
   checkpoint.show("timing " + problem.name);
-  time_fronts(problem, ours.trials, effort, {}, checkpoint);
+  time_fronts(problem, ours.runs, effort, {}, checkpoint);
   ours.answers = answers_of(ours, error, longest);
-  for (const Trial& trial : ours.trials) take_in(ours.best, trial, error, longest);
+  for (const ComparedRun& run : ours.runs) update(ours.best, run, error, longest);
   return ours;
 }
 

@@ -12,17 +12,17 @@ namespace drape::bench {
 /// Those of our methods that stand beside another simulator unless others are asked for.
 inline const std::vector<std::string> usual_methods{"imex-euler", "implicit-euler", "sbdf2", "bdf2", "midpoint", "verlet"};
 
-/// The trials of one method that answer two questions; null where none does.
+/// The runs of one method that answer two questions; null where none does.
 struct Answers {
-  const Trial* as_right = nullptr;  ///< the quickest that is at most as wrong
-  const Trial* at_cost = nullptr;   ///< the least wrong one that takes at most as long, if that is known
+  const ComparedRun* as_right = nullptr;  ///< the quickest that is at most as wrong
+  const ComparedRun* at_cost = nullptr;   ///< the least wrong one that takes at most as long, if that is known
 };
 
 /// Our methods with many steps on the scene of another simulator, to its last frame.
 struct Ours {
-  std::vector<Family> families;
-  std::vector<Trial> trials;
-  std::vector<Answers> answers;  ///< of each family
+  std::vector<Configuration> configurations;
+  std::vector<ComparedRun> runs;
+  std::vector<Answers> answers;  ///< of each configuration
   Answers best;                  ///< of all
 };
 

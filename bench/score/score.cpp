@@ -199,12 +199,13 @@ constexpr const char* of_value = "step [s], or fraction of the stability limit";
 constexpr const char* of_error = "largest of the frames' rms distances, over the size";
 constexpr const char* of_time = "median wall time to the last frame";
 
-constexpr ColumnOf<Trial> trial_columns[] = {
+constexpr ColumnOf<ComparedRun> run_columns[] = {
     {"method", "", "", "time integrator, with what controls it", Role::key,
-     [](const Trial& trial) -> Cell { return trial.family->name; }},
-    {"value", "", "1", of_value, Role::key, [](const Trial& trial) -> Cell { return trial.configuration().value; }},
-    {"outcome", "", "", "success, or why there is none", Role::outcome, field<&Trial::outcome>},
-    {"steps", "", "1", "steps", Role::counter, field<&Trial::steps>},
+     [](const ComparedRun& run) -> Cell { return run.configuration->name; }},
+    {"value", "", "1", of_value, Role::key, [](const ComparedRun& run) -> Cell { return run.variant().value; }},
+    {"outcome", "", "", "success, or why there is none", Role::outcome,
+     [](const ComparedRun& run) -> Cell { return run.counts() ? "success" : run.reason; }},
+    {"steps", "", "1", "steps", Role::counter, field<&ComparedRun::steps>},
 };
 
 constexpr ColumnOf<Measured> measured_columns[] = {
@@ -218,48 +219,49 @@ constexpr ColumnOf<Measured> measured_columns[] = {
 
 /// All that was tried, for files.
 Table trials(const Scoring& s) {
-  Table table = make_table("score-trials", "All that was tried of our methods", trial_columns, s.ours.trials);
-  add_columns(table, measured_columns, s.ours.trials,
-              [](const Trial& trial) { return trial.measured.times.empty() ? nullptr : &trial.measured; });
+  Table table = make_table("score-trials", "All that was tried of our methods", run_columns, s.ours.runs);
+  add_columns(table, measured_columns, s.ours.runs,
+              [](const ComparedRun& run) { return run.measured.times.empty() ? nullptr : &run.measured; });
   table.timed_rows = table.for_file = true;
   return table;
 }
 
-/// A trial that answers a question, and whether no other method answers it better.
+/// A run that answers a question, and whether no other method answers it better.
 struct Answer {
-  const Trial* trial;
+  const ComparedRun* run;
   bool best;
 };
 
-/// What our methods with a family answer.
-struct OfFamily {
+/// What one of our configurations answers.
+struct OfConfiguration {
   std::string method;
   std::optional<Answer> as_right, at_cost;
 };
 
-constexpr ColumnOf<OfFamily> family_columns[] = {
-    {"method", "method", "", "time integrator, with what controls it", Role::key, field<&OfFamily::method>},
+constexpr ColumnOf<OfConfiguration> configuration_columns[] = {
+    {"method", "method", "", "time integrator, with what controls it", Role::key, field<&OfConfiguration::method>},
 };
 
-/// Which trial it is depends on times.
+/// Which run it is depends on times.
 constexpr ColumnOf<Answer> answer_columns[] = {
-    {"{}value", "{}", "1", of_value, Role::time, [](const Answer& a) -> Cell { return a.trial->configuration().value; }},
-    {"{}error", "rms error", "1", of_error, Role::time, [](const Answer& a) -> Cell { return a.trial->measured.error; }},
+    {"{}value", "{}", "1", of_value, Role::time, [](const Answer& a) -> Cell { return a.run->variant().value; }},
+    {"{}error", "rms error", "1", of_error, Role::time, [](const Answer& a) -> Cell { return a.run->measured.error; }},
     {"{}time", "time", "ms", of_time, Role::time,
-     [](const Answer& a) -> Cell { return quartiles(a.trial->measured.times).median; }},
+     [](const Answer& a) -> Cell { return quartiles(a.run->measured.times).median; }},
     {"{}best", "best", "", "which method it is", Role::note, [](const Answer& a) { return a.best ? to_cell("best") : Cell(); }},
 };
 
-std::optional<Answer> answer(const Trial* trial, const Trial* best) {
-  if (trial == nullptr) return std::nullopt;
-  return Answer{trial, trial == best};
+std::optional<Answer> answer(const ComparedRun* run, const ComparedRun* best) {
+  if (run == nullptr) return std::nullopt;
+  return Answer{run, run == best};
 }
 
 Table answers_table(const Scoring& s) {
-  std::vector<OfFamily> rows;
-  for (std::size_t k = 0; k < s.ours.families.size(); ++k) {
+  std::vector<OfConfiguration> rows;
+  for (std::size_t k = 0; k < s.ours.configurations.size(); ++k) {
     const Answers &answers = s.ours.answers[k], &best = s.ours.best;
-    rows.push_back({s.ours.families[k].name, answer(answers.as_right, best.as_right), answer(answers.at_cost, best.at_cost)});
+    rows.push_back(
+        {s.ours.configurations[k].name, answer(answers.as_right, best.as_right), answer(answers.at_cost, best.at_cost)});
   }
   const std::optional<double> cost = s.options.cost;
   Table table =
@@ -267,9 +269,9 @@ Table answers_table(const Scoring& s) {
                  fmt::format("Our methods on {} to {:g} s: the quickest at most as wrong as {} (rms error {:.3g}){}",
                              s.scene.name, s.frames.back().t, s.external.name, known_error(s.frames) / s.size(),
                              cost ? fmt::format(", and the least wrong that take no longer ({:g} ms)", 1e3 * *cost) : ""),
-                 family_columns, rows);
-  add_columns(table, answer_columns, rows, std::mem_fn(&OfFamily::as_right), {"", "as right with", ""});
-  if (cost) add_columns(table, answer_columns, rows, std::mem_fn(&OfFamily::at_cost), {"cost_", "no longer with", ""});
+                 configuration_columns, rows);
+  add_columns(table, answer_columns, rows, std::mem_fn(&OfConfiguration::as_right), {"", "as right with", ""});
+  if (cost) add_columns(table, answer_columns, rows, std::mem_fn(&OfConfiguration::at_cost), {"cost_", "no longer with", ""});
   return table;
 }
 

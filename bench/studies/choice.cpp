@@ -28,7 +28,7 @@ struct HungSheet {
   bool quick;
 
   Search search() const { return quick ? Search::quick : Search::usual; }
-  Effort effort() const { return quick ? Effort{.cap = 0.1, .repetitions = 3} : Effort{}; }
+  Effort effort() const { return quick ? Effort{.limits = {.seconds = 0.1}, .repetitions = 3} : Effort{}; }
 };
 
 std::string name_of_sheet(const HungSheet& sheet) { return fmt::format("hung-corners d={:g} n={}", sheet.damping, sheet.n); }
@@ -49,28 +49,28 @@ model::Scene hung_scene(const HungSheet& sheet) {
 }
 
 /// Our methods with automatic stages and linear solvers.
-std::vector<Family> default_families(const HungSheet& sheet) {
-  std::vector<Family> all = families(hung_scene(sheet), sheet.search(), {});
-  std::erase_if(all, [](const Family& family) { return family.method.empty(); });
+std::vector<Configuration> default_configurations(const HungSheet& sheet) {
+  std::vector<Configuration> all = configurations(hung_scene(sheet), sheet.search(), {});
+  std::erase_if(all, [](const Configuration& one) { return !one.is_default(); });
   return all;
 }
 
-/// A sheet with all that was tried on it.
-struct TriedSheet {
+/// A sheet with all that was run on it.
+struct SheetRuns {
   HungSheet sheet;
-  SceneTrials scene;
+  SceneRuns scene;
 };
 
-void try_defaults(TriedSheet& tried, Checkpoint& checkpoint) {
-  SceneTrials& scene = tried.scene;
-  const std::string name = name_of_sheet(tried.sheet);
+void run_defaults(SheetRuns& runs, Checkpoint& checkpoint) {
+  SceneRuns& scene = runs.scene;
+  const std::string name = name_of_sheet(runs.sheet);
   checkpoint.show("reference of " + name);
-  scene.problem = certified_problem(name, hung_scene(tried.sheet), checkpoint);
+  scene.problem = certified_problem(name, hung_scene(runs.sheet), checkpoint);
   scene.problem.enough = std::ranges::min(choice_errors);
-  scene.families = default_families(tried.sheet);
-  scene.trials = try_all(scene.problem, scene.families, tried.sheet.effort(), checkpoint);
+  scene.configurations = default_configurations(runs.sheet);
+  scene.runs = run_all(scene.problem, scene.configurations, runs.sheet.effort(), checkpoint);
   checkpoint.show("timing " + name);
-  time_fronts(scene.problem, scene.trials, tried.sheet.effort(), {}, checkpoint);
+  time_fronts(scene.problem, scene.runs, runs.sheet.effort(), {}, checkpoint);
 }
 
 /// The quickest at an error, and the quickest of the other methods.
@@ -80,24 +80,20 @@ struct Choice {
   Winner best, runner_up;
 
   std::optional<results::Quartiles> times() const {
-    return best ? std::optional(results::quartiles(best.trial->measured.times)) : std::nullopt;
+    return best ? std::optional(results::quartiles(best.run->measured.times)) : std::nullopt;
   }
   std::optional<results::Interval> ratio_interval() const {
     if (!runner_up) return std::nullopt;
-    return results::ratio_of_medians(runner_up.trial->measured, best.trial->measured);
+    return results::ratio_of_medians(runner_up.run->measured, best.run->measured);
   }
 };
 
-Choice choose(const TriedSheet& tried, double error) {
-  const Winners winners(tried.scene);
-  Choice choice{tried.sheet, error, winners.of("defaults", error), {}};
+Choice choose(const SheetRuns& runs, double error) {
+  Choice choice{runs.sheet, error, winner(runs.scene, &Configuration::is_default, error), {}};
   if (!choice.best) return choice;
-  for (const Contender& contender : contenders(tried.scene.trials)) {
-    if (!contender.name.starts_with("default ")) continue;
-    const Winner other = winners.of(contender.name, error);
-    if (!other || other.trial->family->method == choice.best.trial->family->method) continue;
-    if (!choice.runner_up || other.time < choice.runner_up.time) choice.runner_up = other;
-  }
+  const solver::Method* best = choice.best.run->configuration->by_default;
+  const auto other = [best](const Configuration& one) { return one.is_default() && one.by_default != best; };
+  choice.runner_up = winner(runs.scene, other, error);
   return choice;
 }
 
@@ -126,10 +122,10 @@ constexpr results::ColumnOf<Choice> choice_columns[] = {
      [](ChoiceRow row) { return row.runner_up ? Cell(row.ratio_interval()->upper) : Cell(); }},
 };
 
-results::Table choice_table(const std::vector<TriedSheet>& all) {
+results::Table choice_table(const std::vector<SheetRuns>& all) {
   std::vector<Choice> rows;
-  for (const TriedSheet& tried : all)
-    for (const double error : choice_errors) rows.push_back(choose(tried, error));
+  for (const SheetRuns& runs : all)
+    for (const double error : choice_errors) rows.push_back(choose(runs, error));
   return results::make_table("choice", "The quickest of our methods with automatic stages and linear solvers", choice_columns,
                              rows);
 }
@@ -137,15 +133,15 @@ results::Table choice_table(const std::vector<TriedSheet>& all) {
 }  // namespace
 
 std::vector<TableJob> choice(bool quick) {
-  const auto all = std::make_shared<std::vector<TriedSheet>>();
+  const auto all = std::make_shared<std::vector<SheetRuns>>();
   const std::vector<HungSheet> list = hung_sheets_to_choose_on(quick);
-  all->reserve(list.size());  // trials point into what is in it
+  all->reserve(list.size());  // runs point into what is in it
   std::vector<TableJob> jobs;
   for (const HungSheet& sheet : list)
-    jobs.push_back({static_cast<int>(default_families(sheet).size()), [=](Checkpoint& checkpoint) {
-                      TriedSheet& tried = all->emplace_back(TriedSheet{sheet, {}});
-                      try_defaults(tried, checkpoint);
-                      return trials_table(tried.scene);
+    jobs.push_back({static_cast<int>(default_configurations(sheet).size()), [=](Checkpoint& checkpoint) {
+                      SheetRuns& runs = all->emplace_back(SheetRuns{sheet, {}});
+                      run_defaults(runs, checkpoint);
+                      return runs_table(runs.scene);
                     }});
   jobs.push_back({0, [=](Checkpoint&) { return choice_table(*all); }});
   return jobs;

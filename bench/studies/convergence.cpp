@@ -16,6 +16,7 @@
 #include "reference/sundials/kinsol.hpp"
 #include "results/analysis/order_fit.hpp"
 #include "results/verdict.hpp"
+#include "solver/base/statistics.hpp"
 
 namespace drape::bench {
 namespace {
@@ -25,7 +26,7 @@ using solver::Vectors;
 
 /// One line of figure 2.11: a scene, the form of its forces, and where its particles should come to rest.
 struct Experiment {
-  std::string name, form;
+  std::string scene, name, form;
   double order;  ///< declared; 0: exact at the nodes; NaN: none
   std::vector<Override> overrides;
   bool strip;  ///< all is constant across: three lines of the sheet are enough
@@ -46,8 +47,16 @@ std::vector<Override> operator+(std::vector<Override> a, const std::vector<Overr
 std::vector<Experiment> tension() {
   const auto exact = [](double u, double v) { return Eigen::Vector3d(1 - reference::pulled_position({}, 1 - u), v, 0); };
   const auto still = 2;
-  return {{.name = "tension", .form = "consistent", .order = 0, .overrides = {}, .strip = true, .still = still, .exact = exact},
-          {.name = "tension",
+  return {{.scene = "tension",
+           .name = "tension",
+           .form = "consistent",
+           .order = 0,
+           .overrides = {},
+           .strip = true,
+           .still = still,
+           .exact = exact},
+          {.scene = "tension",
+           .name = "tension",
            .form = "printed",
            .order = 1,
            .overrides = as_printed,
@@ -70,7 +79,8 @@ std::vector<Experiment> shear() {
   const std::vector<Override> printed{{"material.shear_form", "printed"}};
   const std::vector<Override> thesis{{"material.tension", "1e9"}, {"forces.gravity", "[0, 10, 0]"}};
   const double none = std::numeric_limits<double>::quiet_NaN();
-  return {{.name = "shear",
+  return {{.scene = "shear",
+           .name = "shear",
            .form = "consistent",
            .order = 2,
            .overrides = {},
@@ -78,7 +88,8 @@ std::vector<Experiment> shear() {
            .still = 2,
            .exact = exact,
            .uncertainty = sheet->error()},
-          {.name = "shear",
+          {.scene = "shear",
+           .name = "shear",
            .form = "printed",
            .order = none,
            .overrides = as_printed + printed,
@@ -86,7 +97,8 @@ std::vector<Experiment> shear() {
            .still = 2,
            .exact = exact,
            .uncertainty = sheet->error()},
-          {.name = "shear, f = 10, k = 1e9",
+          {.scene = "shear",
+           .name = "shear, f = 10, k = 1e9",
            .form = "consistent",
            .order = none,
            .overrides = thesis,
@@ -94,7 +106,8 @@ std::vector<Experiment> shear() {
            .still = 2,
            .finest = 40,
            .exact = limit},
-          {.name = "shear, f = 10, k = 1e9",
+          {.scene = "shear",
+           .name = "shear, f = 10, k = 1e9",
            .form = "printed",
            .order = none,
            .overrides = thesis + as_printed + printed,
@@ -112,7 +125,8 @@ Experiment bending(double B, reference::BendingForce force, const std::string& f
     return Eigen::Vector3d(xz[0], v, xz[1]);
   };
   overrides.push_back({"material.bend", fmt::format("{}", B)});
-  return {.name = fmt::format("bending, B = {:g}", B),
+  return {.scene = "bending",
+          .name = fmt::format("bending, B = {:g}", B),
           .form = form,
           .order = order,
           .overrides = overrides,
@@ -140,7 +154,7 @@ model::Scene scene_of(const Experiment& experiment, int n) {
   std::vector<Override> overrides = experiment.overrides;
   overrides.push_back({"grid.n", experiment.strip ? fmt::format("[{}, 3]", n) : std::to_string(n)});
   if (experiment.strip) overrides.push_back({"grid.size", fmt::format("[1, {}]", 2.0 / (n - 1))});
-  return model::load_scene(experiment.name.substr(0, experiment.name.find(',')), overrides);
+  return model::load_scene(experiment.scene, overrides);
 }
 
 /// Pins one coordinate of all particles.
@@ -238,7 +252,7 @@ std::vector<Equilibrium> curve(const Experiment& experiment, const std::vector<i
       row.errors =
           checkpoint.once(fmt::format("{} {} {}", experiment.name, experiment.form, n), [&] { return errors(experiment, n); });
     if (row.errors.rms) {
-      if (!rms.empty()) row.order = std::log(rms.back() / *row.errors.rms) / std::log(spacings.back() * (n - 1));
+      if (!rms.empty()) row.order = base::exponent(spacings.back(), rms.back(), 1.0 / (n - 1), *row.errors.rms);
       rms.push_back(*row.errors.rms);
       spacings.push_back(1.0 / (n - 1));
     }

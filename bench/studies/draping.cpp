@@ -18,14 +18,18 @@ double sunk_corners(const model::Scene& scene, const results::RunRecord& run) {
 
 }  // namespace
 
-Draping draping(const model::Scene& scene, const results::RunRecord& run, const std::optional<Printed>& thesis) {
-  const bool succeeded = run.outcome == solver::Outcome::success;
+std::string Draping::ending() const {
+  return outcome == solver::Outcome::success ? "success" : fmt::format("{} at {:.4g} s", to_string(outcome), last_good_time);
+}
+
+Draping draping(const model::Scene& scene, const results::RunRecord& run, const std::optional<PublishedWork>& as_published) {
   return {work_count(run, "updates"),
           work_count(run, "cg_iterations"),
           sunk_corners(scene, run),
           run.steps.empty() ? 0 : run.steps.back().contacts,
-          succeeded ? "success" : fmt::format("{} at {:.4g} s", to_string(run.outcome), run.last_good_time),
-          thesis};
+          run.outcome,
+          run.last_good_time,
+          as_published};
 }
 
 }  // namespace drape::bench

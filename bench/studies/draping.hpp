@@ -10,21 +10,25 @@
 
 namespace drape::bench {
 
-/// What the thesis printed of a run: of a cloth whose scale of d it leaves open.
-struct Printed {
+/// The work of a run as the thesis prints it: of a cloth whose scale of d it leaves open.
+struct PublishedWork {
   std::int64_t updates, cg_iterations;
 };
 
-/// What became of a falling sheet, beside what the thesis printed of it.
+/// What became of a falling sheet, beside what the thesis prints of it.
 struct Draping {
   std::int64_t updates = 0, cg_iterations = 0;
-  double sunk = 0;      ///< by which the four corners have sunk, their mean [m]
-  int contacts = 0;     ///< in the last step
-  std::string outcome;  ///< "success", or what else and when
-  std::optional<Printed> thesis;
+  double sunk = 0;   ///< by which the four corners have sunk, their mean [m]
+  int contacts = 0;  ///< in the last step
+  solver::Outcome outcome = solver::Outcome::success;
+  double last_good_time = 0;  ///< [s]
+  std::optional<PublishedWork> as_published;
+
+  /// "success", or what else and when.
+  std::string ending() const;
 };
 
-Draping draping(const model::Scene& scene, const results::RunRecord& run, const std::optional<Printed>& thesis);
+Draping draping(const model::Scene& scene, const results::RunRecord& run, const std::optional<PublishedWork>& as_published);
 
 inline constexpr results::ColumnOf<Draping> draping_columns[] = {
     {"updates", "updates", "1", "of the fixed-point loop; of IMEX methods one a step, more in contact", results::Role::counter,
@@ -35,11 +39,12 @@ inline constexpr results::ColumnOf<Draping> draping_columns[] = {
      results::field<&Draping::sunk>},
     {"contacts", "in contact", "1", "particles that touched something in the last step", results::Role::quantity,
      results::field<&Draping::contacts>},
-    {"outcome", "outcome", "", "how the run ended", results::Role::outcome, results::field<&Draping::outcome>},
+    {"outcome", "outcome", "", "how the run ended", results::Role::outcome,
+     [](const Draping& run) { return results::to_cell(run.ending()); }},
     {"thesis_updates", "thesis: updates", "1", "printed in the thesis", results::Role::note,
-     [](const Draping& run) { return run.thesis ? results::to_cell(run.thesis->updates) : results::Cell(); }},
+     [](const Draping& run) { return run.as_published ? results::to_cell(run.as_published->updates) : results::Cell(); }},
     {"thesis_cg_iterations", "thesis: CG", "1", "printed in the thesis", results::Role::note,
-     [](const Draping& run) { return run.thesis ? results::to_cell(run.thesis->cg_iterations) : results::Cell(); }},
+     [](const Draping& run) { return run.as_published ? results::to_cell(run.as_published->cg_iterations) : results::Cell(); }},
 };
 
 }  // namespace drape::bench

@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "bench/runs/run.hpp"
+#include "bench/studies/cross_checked_reference.hpp"
 #include "bench/studies/studies.hpp"
-#include "bench/studies/trial.hpp"
 #include "model/scene_file/scene_file.hpp"
 #include "results/columns.hpp"
 #include "results/verdict.hpp"
@@ -39,7 +39,7 @@ struct Fall {
 };
 
 /// `substeps` make a step.
-Fall fall(const Specimen& sheet, const char* method, double end, int substeps = 1) {
+Fall fall(const CompiledScene& sheet, const char* method, double end, int substeps = 1) {
   const Eigen::VectorXd& mass = sheet.cloth.ode.mass;
   RunSpec spec{sheet.scene, "", &solver::method(method), lag_step / substeps, solver::thesis_options()};
   spec.scene.end = end;
@@ -66,7 +66,7 @@ double lag(const Fall& reference, const Fall& late) {
 }
 
 /// A strip of the sheet, two particles wide: along the pinned edge all is constant.
-Specimen strip(const model::Grid& sheet, double k, double damping) {
+CompiledScene strip(const model::Grid& sheet, double k, double damping) {
   const model::Override overrides[] = {{"grid.n", fmt::format("[2, {}]", sheet.nv)},
                                        {"grid.size", fmt::format("[{}, {}]", sheet.spacing_u(), sheet.size_v)},
                                        {"material.tension", fmt::format("{}", k)},
@@ -94,7 +94,7 @@ Eigen::SparseMatrix<double> slow_inertia(const solver::SplitOde& ode) {
 /// itself changes slowly that is −h² K x'', so (M − h² K) dv/dt = f: mode by mode the artificial inertia
 /// (1 − ω²/κ) ν of reference/theory/amplification.hpp with ω² ≪ κ. Its first step is one of IMEX midpoint, which goes ahead
 /// with the true inertia: summing (3.29) from there gives the momentum −h K (x1 − x0) that the slow motion starts with.
-Specimen predicted_sbdf2(Specimen sheet) {
+CompiledScene predicted_sbdf2(CompiledScene sheet) {
   model::Cloth& cloth = sheet.cloth;
   solver::SplitOde& ode = cloth.ode;
   const auto reduce = [mass = ode.mass, pins = ode.pins, inverse = base::lu_inverse(slow_inertia(ode))](Vectors& f) {
@@ -181,7 +181,7 @@ Lags lags(double nu, double ratio) {
   const model::Grid& grid = sheet.grid;
   const double rho = sheet.material.density, l = grid.spacing_v(), L = grid.size_v, h = lag_step;
   const double k = nu * rho * l * l / (h * h), d = h * k / ratio;
-  const Specimen cloth = strip(grid, k, d);
+  const CompiledScene cloth = strip(grid, k, d);
   Fall bdf2 = fall(cloth, "bdf2", longest);
   const double end = h * std::ceil(bdf2.time_of(L / 4) / h - 1e-9);
   bdf2.sunk.resize(static_cast<std::size_t>(std::lround(end / h)) + 1);

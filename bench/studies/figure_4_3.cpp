@@ -32,9 +32,6 @@ RunSpec cell(const model::Scene& scene, std::string_view method) {
   return {scene, "", &solver::method(method), box_step, solver::thesis_options()};
 }
 
-/// The method alone: all runs have the thesis' solvers.
-std::string method_of(const results::RunRecord& run) { return run.method.substr(0, run.method.find('/')); }
-
 using results::field;
 using results::Role;
 using results::RunRecord;
@@ -42,6 +39,12 @@ using results::Standing;
 using results::StepRecord;
 using results::verdict;
 using Steps = std::span<const StepRecord>;
+
+/// A run against the box. The method is named alone: all runs have the thesis' solvers.
+struct BoxRun {
+  std::string method;
+  RunRecord run;
+};
 
 /// The steps before the first contact.
 Steps before_contact(const RunRecord& run) {
@@ -84,23 +87,23 @@ std::optional<Means> means(const RunRecord& run, std::size_t first, std::size_t 
   return Means{mean(steps, &StepRecord::updates), iterations(steps), mean(steps, &StepRecord::contacts)};
 }
 
-std::vector<Window> windows(const std::vector<RunRecord>& runs, std::size_t length) {
+std::vector<Window> windows(const std::vector<BoxRun>& runs, std::size_t length) {
   std::size_t steps = 0;
-  for (const RunRecord& run : runs) steps = std::max(steps, run.steps.size());
+  for (const auto& [method, run] : runs) steps = std::max(steps, run.steps.size());
   std::vector<Window> all;
   for (std::size_t first = 0; first + length <= steps; first += length) {
     Window& next = all.emplace_back(Window{box_step * static_cast<double>(first + length), {}});
-    for (const RunRecord& run : runs) next.runs.push_back(means(run, first, length));
+    for (const auto& [method, run] : runs) next.runs.push_back(means(run, first, length));
   }
   return all;
 }
 
 /// Means of `length` steps a row. Single ones are for the file.
-results::Table over_time(const char* name, const char* title, const std::vector<RunRecord>& runs, std::size_t length) {
+results::Table over_time(const char* name, const char* title, const std::vector<BoxRun>& runs, std::size_t length) {
   const std::vector<Window> rows = windows(runs, length);
   results::Table table = results::make_table(name, title, time_column, rows);
   for (std::size_t k = 0; k < runs.size(); ++k) {
-    const std::string method = method_of(runs[k]);
+    const std::string& method = runs[k].method;
     results::add_columns(table, curves, rows, [&](const Window& row) -> const auto& { return row.runs[k]; },
                          {method, method, ""});
   }
@@ -131,17 +134,17 @@ constexpr results::ColumnOf<Ratio> ratio_columns[] = {
 };
 
 std::string verdict_of(const RunRecord& run, double value, double most) {
-  if (run.outcome != solver::Outcome::success) return std::string(to_string(run.outcome));
+  if (!run.succeeded()) return std::string(to_string(run.outcome));
   const bool touched = before_contact(run).size() < run.steps.size();
   if (!touched) return verdict(Standing::open, "no contact");
   return value <= most ? verdict(Standing::met, "below") : verdict(Standing::missed, "not below");
 }
 
-Ratio ratio(const RunRecord& run, const char* what, double value, double most) {
+Ratio ratio(std::string_view method, const RunRecord& run, const char* what, double value, double most) {
   std::optional<double> motion;
   if (!run.steps.empty())
     motion = run.steps.back().kinetic_energy / std::ranges::max(run.steps, {}, &StepRecord::kinetic_energy).kinetic_energy;
-  return {method_of(run), what, value, most, motion, verdict_of(run, value, most)};
+  return {std::string(method), what, value, most, motion, verdict_of(run, value, most)};
 }
 
 /// All ratios of a method, from its cells with and without box.
@@ -149,12 +152,13 @@ std::vector<Ratio> ratios(const Group& group, int repetitions) {
   const RunRecord with = record(group[0]), without = record(group[1]);
   const auto times = time_group(group, {steps_to_time(with), steps_to_time(without)}, repetitions, [] {});
   const double time = base::quantile(times[0], 0.5) / base::quantile(times[1], 0.5);
+  const std::string_view method = group[0].method->name;
   const Steps all = with.steps, rest = all.last(std::min(all.size(), at_rest));
-  return {
-      ratio(with, "CG iterations a step, at rest over before the first contact",
-            iterations(rest) / iterations(before_contact(with)), most_iterations),
-      ratio(with, "time, with over without box", time, most_time),
-      ratio(with, "time a CG iteration, with over without box", time * iterations(without.steps) / iterations(all), most_time)};
+  return {ratio(method, with, "CG iterations a step, at rest over before the first contact",
+                iterations(rest) / iterations(before_contact(with)), most_iterations),
+          ratio(method, with, "time, with over without box", time, most_time),
+          ratio(method, with, "time a CG iteration, with over without box", time * iterations(without.steps) / iterations(all),
+                most_time)};
 }
 
 results::Table bars(bool quick, Checkpoint& checkpoint) {
@@ -177,13 +181,13 @@ results::Table bars(bool quick, Checkpoint& checkpoint) {
 }  // namespace
 
 std::vector<TableJob> figure_4_3(bool quick) {
-  const auto runs = std::make_shared<std::vector<RunRecord>>();  // of the first table, for the last
+  const auto runs = std::make_shared<std::vector<BoxRun>>();  // of the first table, for the last
   const auto implicit = std::ranges::count_if(solver::thesis_methods(), [](const solver::Method& m) { return m.implicit(); });
   return {{2,
            [=](Checkpoint& checkpoint) {
              for (const char* method : {"bdf2", "sbdf2"}) {
                checkpoint.show(fmt::format("{} against the box", method));
-               runs->push_back(checkpoint.once(method, [&] { return record(cell(swing(quick), method)); }));
+               runs->push_back({method, checkpoint.once(method, [&] { return record(cell(swing(quick), method)); })});
                checkpoint.advance();
              }
              return over_time("figure-4.3", "Figure 4.3: a sheet swings against a box; means over five steps", *runs, window);

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "bench/runs/certified_reference.hpp"
+#include "bench/runs/motion_error.hpp"
 #include "bench/runs/record.hpp"
 #include "bench/studies/refinement.hpp"
 #include "bench/studies/stability/stability.hpp"
@@ -75,8 +76,8 @@ results::Table stability_of(const std::string& method, Checkpoint& checkpoint) {
   for (const double d : {50.0, 0.5}) {
     checkpoint.show(fmt::format("largest steps of {}, d = {:g}", method, d));
     rows.push_back(checkpoint.once(fmt::format("{:g}", d), [&] {
-      const Specimen specimen = hung_by_corners(10, k, d);
-      return Usable{d, largest_steps(specimen, CrossCheckedReference(specimen, horizon), *cell.method, cell.options),
+      const CompiledScene sheet = hung_by_corners(10, k, d);
+      return Usable{d, largest_steps(sheet, CrossCheckedReference(sheet), *cell.method, cell.options),
                     theory_of(*cell.method, horizon, k, d)};
     }));
     checkpoint.advance();
@@ -92,7 +93,7 @@ results::Table stability_of(const std::string& method, Checkpoint& checkpoint) {
 
 /// Energies along a run over the largest kinetic one, less that at the start.
 std::vector<double> energy_changes(const results::RunRecord& run, const model::Cloth& cloth) {
-  const double start = solver::kinetic_energy(cloth.ode, cloth.start.v) + cloth.ode.potential_energy(0, cloth.start.x);
+  const double start = total_energy(cloth, 0, cloth.start);
   double scale = 0;
   for (const auto& step : run.steps) scale = std::max(scale, step.kinetic_energy);
   std::vector<double> changes;
@@ -137,7 +138,7 @@ results::Table energy(const std::string& method, Checkpoint& checkpoint) {
       choose_method(cell, method);
       const results::RunRecord run = record(cell);
       EnergyChange row{h, run.outcome, {}, {}};
-      if (run.outcome != solver::Outcome::success) return row;
+      if (!run.succeeded()) return row;
       const std::vector<double> changes = energy_changes(run, cloth);
       row.gain = std::ranges::max(changes);
       row.change = changes.back();
@@ -149,41 +150,32 @@ results::Table energy(const std::string& method, Checkpoint& checkpoint) {
                              energy_columns, rows);
 }
 
-/// Trials of all that are compared, timed near their fronts.
+/// A method and those that it is compared with: a ladder of steps each, timed near its front.
 struct Compared {
   Problem problem;
-  std::vector<Family> families;
-  std::vector<Contender> contenders;
-  std::vector<Trial> trials;
+  std::vector<std::string> methods;
+  std::vector<Configuration> configurations;  ///< of each method
+  std::vector<ComparedRun> runs;
 };
 
 void compare(Compared& all, const std::string& method, Checkpoint& checkpoint) {
-  constexpr Effort effort{.cap = 1, .repetitions = 5};
-  std::vector<std::string> names{method};
+  constexpr Effort effort{.repetitions = 5};
+  all.methods = {method};
   for (const char* neighbour : neighbours)
-    if (neighbour != method) names.emplace_back(neighbour);
-  for (const std::string& name : names) {
-    all.families.push_back(ladder(all.problem.scene, name));
-    all.contenders.push_back({name, {}});
-  }
-  all.trials = try_all(all.problem, all.families, effort, checkpoint);
-  for (std::size_t k = 0; k < all.trials.size(); ++k)
-    all.contenders[static_cast<std::size_t>(all.trials[k].family - all.families.data())].members.push_back(k);
+    if (neighbour != method) all.methods.emplace_back(neighbour);
+  for (const std::string& name : all.methods) all.configurations.push_back(ladder(all.problem.scene, name));
+  all.runs = run_all(all.problem, all.configurations, effort, checkpoint);
+  std::vector<Contender> who;
+  for (const Configuration& configuration : all.configurations) who.push_back(only(configuration));
   checkpoint.show("timing");
-  time_fronts(all.problem, all.contenders, all.trials, effort, checkpoint);
-}
-
-/// The quickest of a contender at an error; null if none reaches it.
-const Trial* quickest_of(const Contender& contender, const std::vector<Trial>& trials, double error) {
-  const auto best = results::quickest(timed(contender, trials), error);
-  return best ? &trials[contender.members[*best]] : nullptr;
+  time_fronts(all.problem, who, all.runs, effort, checkpoint);
 }
 
 /// What an error costs at least.
 struct Cost {
   std::string method;
   double wanted;
-  const Trial* best;  ///< null if the method does not reach the error
+  const ComparedRun* best;  ///< null if the method does not reach the error
 
   double quartile(double results::Quartiles::*which) const { return results::quartiles(best->measured.times).*which; }
 };
@@ -196,7 +188,7 @@ constexpr results::ColumnOf<Cost> cost_columns[] = {
 /// Of those that reach it. Who is the quickest depends on times, and so does all that is said of him.
 constexpr results::ColumnOf<Cost> best_columns[] = {
     {"control", "h", "s", "step, or fraction of the stability limit, that is the quickest", Role::time,
-     [](const Cost& row) { return results::to_cell(row.best->configuration().value); }},
+     [](const Cost& row) { return results::to_cell(row.best->variant().value); }},
     {"error", "", "1", "its error", Role::time, [](const Cost& row) { return results::to_cell(row.best->measured.error); }},
     {"time", "time", "ms", "median wall time", Role::time,
      [](const Cost& row) { return results::to_cell(row.quartile(&results::Quartiles::median)); }},
@@ -216,9 +208,9 @@ results::Table cost(const std::string& method, Checkpoint& checkpoint) {
   all.problem.enough = 5e-5;
   compare(all, method, checkpoint);
   std::vector<Cost> rows;
-  for (const Contender& contender : all.contenders)
+  for (std::size_t k = 0; k < all.methods.size(); ++k)
     for (const double error : all.problem.asked)
-      rows.push_back({contender.name, error, quickest_of(contender, all.trials, error)});
+      rows.push_back({all.methods[k], error, quickest(only(all.configurations[k]), all.runs, error)});
   results::Table table = results::make_table(
       "check-cost",
       fmt::format("Cost of {} beside others on 10 x 10 particles hung by two corners, d = 5, {:g} s", method, scene.end),

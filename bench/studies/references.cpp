@@ -5,6 +5,7 @@
 #include <iterator>
 #include <optional>
 
+#include "bench/runs/certified_reference.hpp"
 #include "bench/studies/references_growth.hpp"
 #include "bench/studies/studies.hpp"
 #include "model/cloth.hpp"
@@ -19,13 +20,16 @@ namespace {
 
 constexpr double reference_rtol = 1e-10;
 constexpr double closest = 1e-8;  ///< of the size of the scene
-constexpr int outputs = 10;
 
-const std::vector<std::string> family_names{"cvode-bdf", "arkode-esdirk", "ida-bdf"};
+/// A peer solver, and what the names of its counters begin with.
+struct Peer {
+  std::string solver, package;
+};
+const std::vector<Peer> compared_peers{{"cvode-bdf", "cvode"}, {"arkode-esdirk", "arkode"}, {"ida-bdf", "ida"}};
 const std::vector<std::string> reference_dampings{"50", "5", "0.5"};
 const std::vector<std::string> reference_scenes{"hung-edge", "hung-corners"};
 
-/// What a family computes of a scene, what it counted, and how long it took [s].
+/// What a peer solver computes of a scene, what it counted, and how long it took [s].
 struct Solution {
   std::vector<solver::Vectors> positions;
   std::int64_t steps = 0, factorisations = 0;
@@ -33,18 +37,16 @@ struct Solution {
 };
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Solution, positions, steps, factorisations, seconds)
 
-Solution solve(const std::string& family, const model::Scene& scene) {
+Solution solve(const Peer& peer, const model::Scene& scene) {
   const model::Cloth cloth = model::compile(scene);
-  std::vector<double> times;
-  for (int k = 1; k <= outputs; ++k) times.push_back(scene.end * k / outputs);
   const auto begin = std::chrono::steady_clock::now();
-  const reference::Trajectory trajectory = reference::peer_solver(family).solve(
-      cloth.ode, cloth.start, 0, times, {.rtol = reference_rtol, .size = model::size(scene)});
+  const reference::Trajectory trajectory =
+      reference::peer_solver(peer.solver)
+          .solve(cloth.ode, cloth.start, 0, compared_times(scene), {.rtol = reference_rtol, .size = model::size(scene)});
   Solution solution;
   solution.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  const std::string prefix = family.substr(0, family.find('-'));
-  solution.steps = cloth.ode.work->count(prefix + "/steps");
-  solution.factorisations = cloth.ode.work->count(prefix + "/factorisations");
+  solution.steps = cloth.ode.work->count(peer.package + "/steps");
+  solution.factorisations = cloth.ode.work->count(peer.package + "/factorisations");
   solution.positions = reference::positions_of(trajectory.states);
   return solution;
 }
@@ -54,11 +56,11 @@ double largest_distance(const Solution& a, const Solution& b, double size) {
   return reference::largest_rms_distance(a.positions, b.positions) / size;
 }
 
-/// What a family has computed of a scene, and how far that is from what CVODE has; it is the first.
-struct FamilySolution {
+/// What a peer solver has computed of a scene, and how far that is from what CVODE has; it is the first.
+struct PeerSolution {
   std::string scene;
   double damping;
-  std::string family;
+  std::string peer;
   Solution solution;
   std::optional<double> distance;
 };
@@ -74,42 +76,41 @@ std::string agreement(double distance) {
                              : results::verdict(Standing::missed, "not in agreement");
 }
 
-constexpr ColumnOf<FamilySolution> compared_columns[] = {
-    {"scene", "scene", "", "its name", Role::key, field<&FamilySolution::scene>},
-    {"damping", "d", "N s/m", "linear damping", Role::key, field<&FamilySolution::damping>},
-    {"family", "family", "", "the solver and its methods", Role::key, field<&FamilySolution::family>},
+constexpr ColumnOf<PeerSolution> compared_columns[] = {
+    {"scene", "scene", "", "its name", Role::key, field<&PeerSolution::scene>},
+    {"damping", "d", "N s/m", "linear damping", Role::key, field<&PeerSolution::damping>},
+    {"family", "family", "", "the solver and its methods", Role::key, field<&PeerSolution::peer>},
     {"steps", "steps", "1", "steps of the solver", Role::counter,
-     [](const FamilySolution& row) -> Cell { return row.solution.steps; }},
+     [](const PeerSolution& row) -> Cell { return row.solution.steps; }},
     {"factorisations", "LU", "1", "factorisations of the sparse Newton matrix", Role::counter,
-     [](const FamilySolution& row) -> Cell { return row.solution.factorisations; }},
-    {"wall", "wall", "s", "wall time, once", Role::time,
-     [](const FamilySolution& row) -> Cell { return row.solution.seconds; }},
+     [](const PeerSolution& row) -> Cell { return row.solution.factorisations; }},
+    {"wall", "wall", "s", "wall time, once", Role::time, [](const PeerSolution& row) -> Cell { return row.solution.seconds; }},
     {"distance", "from CVODE", "1", "largest distance of positions at ten times, over the size of the scene", Role::error,
-     field<&FamilySolution::distance>},
+     field<&PeerSolution::distance>},
     {"verdict", "verdict", "", "whether it agrees with CVODE to 1e-8", Role::verdict,
-     [](const FamilySolution& row) { return row.distance ? Cell(agreement(*row.distance)) : Cell(); }},
+     [](const PeerSolution& row) { return row.distance ? Cell(agreement(*row.distance)) : Cell(); }},
 };
 
-/// The solutions of all families on a scene.
-std::vector<FamilySolution> compared_on(const std::string& name, const std::string& damping, bool quick,
-                                        Checkpoint& checkpoint) {
+/// The solutions of all peer solvers on a scene.
+std::vector<PeerSolution> compared_on(const std::string& name, const std::string& damping, bool quick, Checkpoint& checkpoint) {
   std::vector<model::Override> overrides{{"material.damping", damping}};
   if (quick) overrides.insert(overrides.end(), {{"grid.n", "6"}, {"end.time", "0.2"}});
   const model::Scene scene = model::load_scene(name, overrides);
-  std::vector<FamilySolution> rows;
-  for (const std::string& family : family_names) {
-    checkpoint.show(fmt::format("{}, d = {}, {}", name, damping, family));
-    Solution solution = checkpoint.once(fmt::format("{} {} {}", name, damping, family), [&] { return solve(family, scene); });
+  std::vector<PeerSolution> rows;
+  for (const Peer& peer : compared_peers) {
+    checkpoint.show(fmt::format("{}, d = {}, {}", name, damping, peer.solver));
+    Solution solution =
+        checkpoint.once(fmt::format("{} {} {}", name, damping, peer.solver), [&] { return solve(peer, scene); });
     checkpoint.advance();
     std::optional<double> distance;
     if (!rows.empty()) distance = largest_distance(solution, rows.front().solution, model::size(scene));
-    rows.push_back({scene.name, scene.sheet.material.damping.weft, family, std::move(solution), distance});
+    rows.push_back({scene.name, scene.sheet.material.damping.weft, peer.solver, std::move(solution), distance});
   }
   return rows;
 }
 
 results::Table compare(bool quick, Checkpoint& checkpoint) {
-  std::vector<FamilySolution> rows;
+  std::vector<PeerSolution> rows;
   for (const std::string& name : reference_scenes)
     for (const std::string& damping : reference_dampings)
       std::ranges::move(compared_on(name, damping, quick, checkpoint), std::back_inserter(rows));
@@ -121,7 +122,7 @@ results::Table compare(bool quick, Checkpoint& checkpoint) {
 }  // namespace
 
 std::vector<TableJob> references(bool quick) {
-  const auto parts = static_cast<int>(reference_scenes.size() * reference_dampings.size() * family_names.size());
+  const auto parts = static_cast<int>(reference_scenes.size() * reference_dampings.size() * compared_peers.size());
   return {{parts, [quick](Checkpoint& checkpoint) { return compare(quick, checkpoint); }},
           {growth_parts, [quick](Checkpoint& checkpoint) { return growth_of_perturbations(quick, checkpoint); }}};
 }

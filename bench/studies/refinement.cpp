@@ -9,6 +9,7 @@
 #include "bench/runs/certified_reference.hpp"
 #include "bench/runs/record.hpp"
 #include "model/scene_file/scene_file.hpp"
+#include "solver/base/statistics.hpp"
 
 namespace drape::bench {
 namespace {
@@ -54,16 +55,13 @@ class Refinement {
 
   /// False where it makes no sense to go on.
   bool add(std::vector<RefinedRun>& runs, const results::RunRecord& run) {
-    RefinedRun& refined = runs.emplace_back(RefinedRun{cell_.scene.name, name_, run.step, {}, {}, {}, {}, {}});
-    if (run.outcome != solver::Outcome::success) {
-      refined.outcome = to_string(run.outcome);
-      if (run.outcome == solver::Outcome::failed) refined.reason = run.message;
-      return true;
-    }
+    RefinedRun& refined = runs.emplace_back(RefinedRun{cell_.scene.name, name_, run.step, run.outcome});
+    if (run.outcome == solver::Outcome::failed) refined.reason = run.message;
+    if (!run.succeeded()) return true;
     const results::ErrorRecord error = distance(run, reference_, cell_.scene, cloth_);
     refined.error = error.rms;
     refined.uncertainty = error.reference_error;
-    if (last_error_) refined.order = std::log(*last_error_ / error.rms) / std::log(last_step_ / run.step);
+    if (last_error_) refined.order = base::exponent(last_step_, *last_error_, run.step, error.rms);
     last_error_ = error.rms;
     last_step_ = run.step;
     return resolved(error);
@@ -85,7 +83,10 @@ constexpr results::ColumnOf<RefinedRun> refined_columns[] = {
      results::field<&RefinedRun::error>},
     {"uncertainty", "", "1", "of the reference", results::Role::uncertainty, results::field<&RefinedRun::uncertainty>},
     {"order", "order", "1", "between this step and the one before", results::Role::note, results::field<&RefinedRun::order>},
-    {"outcome", "outcome", "", "how the run failed", results::Role::note, results::field<&RefinedRun::outcome>},
+    {"outcome", "outcome", "", "how the run failed", results::Role::note,
+     [](const RefinedRun& run) {
+       return run.outcome == solver::Outcome::success ? results::Cell() : results::to_cell(run.outcome);
+     }},
     {"reason", "reason", "", "what was thrown", results::Role::note, results::field<&RefinedRun::reason>},
 };
 

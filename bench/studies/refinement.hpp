@@ -22,9 +22,10 @@ RunSpec tight(const model::Scene& scene, const std::string& name);
 /// A run of one method with one step.
 struct RefinedRun {
   std::string scene, method;
-  double step;                                 ///< [s]
-  std::optional<std::string> outcome, reason;  ///< how it failed, and what was thrown
-  std::optional<double> error, uncertainty, order;
+  double step;  ///< [s]
+  solver::Outcome outcome = solver::Outcome::success;
+  std::optional<std::string> reason = {};  ///< what was thrown
+  std::optional<double> error = {}, uncertainty = {}, order = {};
   std::optional<results::FittedCurve> curve = {};  ///< of all steps, with the first, which is the same everywhere
 };
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RefinedRun, scene, method, step, outcome, reason, error, uncertainty, order)

@@ -24,14 +24,16 @@ constexpr double draping_step = 0.01;  ///< [s]
 struct Block {
   std::string name;
   std::array<double, 2> k, d;  ///< ascending [N/m], [N s/m]
-  std::array<std::array<std::optional<Printed>, 2>, 2> thesis;
+  std::array<std::array<std::optional<PublishedWork>, 2>, 2> as_published;
 };
 
 std::vector<Block> blocks() {
   const double d = model::load_scene("tablecloth").sheet.material.damping.weft;  // such that it drapes
-  return {
-      {"thesis", {1e3, 1e5}, {160, 1600}, {{{Printed{377, 566}, Printed{52, 52}}, {Printed{803, 1160}, Printed{198, 538}}}}},
-      {"drapes", {1e3, 1e5}, {d, 10 * d}, {}}};
+  return {{"thesis",
+           {1e3, 1e5},
+           {160, 1600},
+           {{{PublishedWork{377, 566}, PublishedWork{52, 52}}, {PublishedWork{803, 1160}, PublishedWork{198, 538}}}}},
+          {"drapes", {1e3, 1e5}, {d, 10 * d}, {}}};
 }
 
 model::Scene scene(double k, double d, bool quick) {
@@ -97,7 +99,7 @@ std::vector<BlockRun> rows_of(const Block& block, bool quick, Checkpoint& checkp
       checkpoint.show(fmt::format("tablecloth, k = {}, d = {}", block.k[i], block.d[j]));
       const model::Scene cloth = scene(block.k[i], block.d[j], quick);
       runs[i][j] = checkpoint.once(fmt::format("{} {} {}", block.name, i, j), [&] { return run_bdf2(cloth); });
-      rows.push_back({block.name, block.k[i], block.d[j], draping(cloth, runs[i][j], block.thesis[i][j]), {}});
+      rows.push_back({block.name, block.k[i], block.d[j], draping(cloth, runs[i][j], block.as_published[i][j]), {}});
       checkpoint.advance();
     }
   rows.back().verdict = verdict(runs);

@@ -15,17 +15,17 @@ namespace {
 using results::field;
 using results::Role;
 
-/// What the thesis printed of a method: its work, and the time on another machine [s].
-struct PrintedRun {
-  Printed work;
+/// A method as the thesis prints it: its work, and the time on another machine [s].
+struct PublishedRun {
+  PublishedWork work;
   double seconds;
 };
 
-const std::map<std::string_view, PrintedRun> thesis_runs{{"imex-euler", {{100, 745}, 1.69}},
-                                                         {"implicit-euler", {{206, 1038}, 3.06}},
-                                                         {"sbdf2", {{100, 304}, 1.57}},
-                                                         {"bdf2", {{122, 857}, 2.57}},
-                                                         {"midpoint", {{494, 813}, 4.39}}};
+const std::map<std::string_view, PublishedRun> thesis_runs{{"imex-euler", {{100, 745}, 1.69}},
+                                                           {"implicit-euler", {{206, 1038}, 3.06}},
+                                                           {"sbdf2", {{100, 304}, 1.57}},
+                                                           {"bdf2", {{122, 857}, 2.57}},
+                                                           {"midpoint", {{494, 813}, 4.39}}};
 
 /// All methods with the same cloth and the same tolerances.
 struct TableclothBlock {
@@ -92,10 +92,10 @@ MethodRun row_of(const TableclothBlock& block, const RunSpec& cell, const result
                 {},
                 {},
                 {}};
-  const auto printed = thesis_runs.find(cell.method->name);
-  const bool known = block.of_thesis && printed != thesis_runs.end();
-  row.run = draping(cell.scene, run, known ? std::optional(printed->second.work) : std::nullopt);
-  if (known) row.thesis_seconds = printed->second.seconds;
+  const auto published = thesis_runs.find(cell.method->name);
+  const bool known = block.of_thesis && published != thesis_runs.end();
+  row.run = draping(cell.scene, run, known ? std::optional(published->second.work) : std::nullopt);
+  if (known) row.thesis_seconds = published->second.seconds;
   if (!run.times_ms.empty()) row.solver_ms = base::quantile(run.times_ms, 0.5);
   return row;
 }

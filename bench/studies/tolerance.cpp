@@ -37,8 +37,13 @@ struct Setting {
   int most_steps = 20'000;  ///< a run that would take more is not begun
 };
 
-/// All built-in scenes without obstacles. The large one has fewer particles and motions that lose their memory end earlier, so
-/// that references are certain.
+/// The large scene has fewer particles, and motions that lose their memory end earlier, so that references are certain.
+struct Shortened {
+  const char *scene, *key, *value;
+};
+constexpr Shortened shortened[] = {{"peer-edge", "grid.n", "20"}, {"wind", "end.time", "0.5"}, {"curtain", "end.time", "0.5"}};
+
+/// All built-in scenes without obstacles.
 std::vector<Setting> settings(bool quick) {
   if (quick)
     return {{"hung-edge", "hung-edge", {{"grid.n", "6"}, {"material.damping", "0.5"}, {"end.time", "0.2"}}, 3, 2000},
@@ -49,35 +54,63 @@ std::vector<Setting> settings(bool quick) {
   for (const model::BuiltinScene& scene : model::builtin_scenes()) {
     if (!model::parse_scene(scene.toml, scene.name).obstacles.empty()) continue;
     Setting& setting = all.emplace_back(Setting{std::string(scene.name), std::string(scene.name), {}});
-    if (scene.name == "peer-edge") setting.overrides = {{"grid.n", "20"}};
-    if (scene.name == "wind" || scene.name == "curtain") setting.overrides = {{"end.time", "0.5"}};
+    for (const auto& [name, key, value] : shortened)
+      if (scene.name == name) setting.overrides.push_back({key, value});
   }
   return all;
 }
 
-/// What becomes of one method with one tolerance.
-struct Controlled {
+/// How an error and its tolerance go together.
+enum class Proportion {
+  within,    ///< of the band
+  over,      ///< the error is larger,
+  under,     ///< or smaller
+  explodes,  ///< the run would take too many steps
+  fails,     ///< it ended early
+};
+
+/// A run of one method with one tolerance.
+struct ControlledRun {
   std::string scene, set, method;
   double tolerance = 0, error = NAN, uncertainty = 0;
   std::int64_t steps = 0, rejected = 0, pilots = 0, forces = 0;
   bool largest_steps = false;  ///< whether some steps are as long as allowed
-  std::string outcome, note, verdict;
+  solver::Outcome outcome = solver::Outcome::success;
+  std::string note;
+  Proportion proportion = Proportion::within;
+
+  double ratio() const { return error / tolerance; }
 };
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Controlled, scene, set, method, tolerance, error, uncertainty, steps, rejected, pilots,
-                                   forces, largest_steps, outcome, note, verdict)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ControlledRun, scene, set, method, tolerance, error, uncertainty, steps, rejected, pilots,
+                                   forces, largest_steps, outcome, note, proportion)
 
 /// Of all scenes.
-using ControlledRuns = std::vector<Controlled>;
+using ControlledRuns = std::vector<ControlledRun>;
 
-std::string judge(const Controlled& run) {
-  if (run.outcome != to_string(solver::Outcome::success)) return run.steps == 0 ? "cost explodes" : "fails";
-  const double ratio = run.error / run.tolerance;
-  if (ratio > band) return results::verdict(Standing::missed, fmt::format("not within {:g}: over by {:.2g}", band, ratio));
-  if (ratio * band >= 1) return results::verdict(Standing::met, fmt::format("within {:g}", band));
+Proportion proportion(const ControlledRun& run) {
+  if (run.outcome != solver::Outcome::success) return run.steps == 0 ? Proportion::explodes : Proportion::fails;
+  if (run.ratio() > band) return Proportion::over;
+  return run.ratio() * band >= 1 ? Proportion::within : Proportion::under;
+}
+
+std::string verdict_under(const ControlledRun& run) {
+  const double factor = 1 / run.ratio();
   if (run.error < results::resolution * run.uncertainty) return "under: not resolved";
-  if (run.largest_steps) return fmt::format("under by {:.2g}: largest steps", 1 / ratio);
-  if (!run.note.empty()) return fmt::format("under by {:.2g}: stability", 1 / ratio);
-  return results::verdict(Standing::missed, fmt::format("not within {:g}: under by {:.2g}", band, 1 / ratio));
+  if (run.largest_steps) return fmt::format("under by {:.2g}: largest steps", factor);
+  if (!run.note.empty()) return fmt::format("under by {:.2g}: stability", factor);
+  return results::verdict(Standing::missed, fmt::format("not within {:g}: under by {:.2g}", band, factor));
+}
+
+std::string verdict_on(const ControlledRun& run) {
+  switch (run.proportion) {
+    case Proportion::within: return results::verdict(Standing::met, fmt::format("within {:g}", band));
+    case Proportion::over:
+      return results::verdict(Standing::missed, fmt::format("not within {:g}: over by {:.2g}", band, run.ratio()));
+    case Proportion::under: return verdict_under(run);
+    case Proportion::explodes: return "cost explodes";
+    case Proportion::fails: return "fails";
+  }
+  return "";
 }
 
 /// Runs of a scene, measured at all tenths of its time.
@@ -86,31 +119,31 @@ class Measurement {
   Measurement(const Setting& setting, const model::Scene& scene, reference::Reference reference)
       : setting_(setting), scene_(scene), reference_(std::move(reference)) {}
 
-  Controlled operator()(const Method& method, double tolerance) const {
-    RunSpec cell{scene_, "", &method, scene_.end / 5, {}};
-    cell.options.error_control = {tolerance, model::size(scene_), scene_.end, true, setting_.most_steps};
+  ControlledRun operator()(const Method& method, double tolerance) const {
+    RunSpec spec{scene_, "", &method, scene_.end / 5, {}};
+    spec.options.error_control = {tolerance, model::size(scene_), scene_.end, true, setting_.most_steps};
     std::optional<solver::SmoothOutput> output;
     FunctionObserver sample([&](const solver::StepReport& step) {
       if (!output) return (void)output.emplace(reference_.trajectory.times, step.t, step.y);
       output->observe(step.t, step.y);
     });
     Observer* const observers[] = {&sample};
-    const results::RunRecord run = record(cell, observers);
-    Controlled result;
+    const results::RunRecord run = record(spec, observers);
+    ControlledRun result;
     result.scene = scene_.name;
     result.set = set();
     result.method = method.name;
     result.tolerance = tolerance;
     result.uncertainty = std::ranges::max(reference_.error) / model::size(scene_);
-    result.outcome = to_string(run.outcome);
+    result.outcome = run.outcome;
     result.note = run.message;
     result.steps = std::ssize(run.steps);
     result.rejected = results::work_count(run, "rejected_steps");
     result.pilots = results::work_count(run, "pilot_steps");
     result.forces = results::work_count(run, "forces") + results::work_count(run, "explicit_forces");
-    result.largest_steps = std::ranges::any_of(run.steps, [&](const auto& step) { return step.h > 0.99 * cell.step; });
-    if (run.outcome == solver::Outcome::success) result.error = error(output->positions);
-    result.verdict = judge(result);
+    result.largest_steps = std::ranges::any_of(run.steps, [&](const auto& step) { return step.h > 0.99 * spec.step; });
+    if (run.succeeded()) result.error = error(output->positions);
+    result.proportion = proportion(result);
     return result;
   }
 
@@ -132,26 +165,26 @@ class Measurement {
   const reference::Reference reference_;
 };
 
-constexpr ColumnOf<Controlled> controlled_columns[] = {
-    {"scene", "scene", "", "its name", Role::key, field<&Controlled::scene>},
-    {"set", "set", "", "what differs from its file", Role::key, field<&Controlled::set>},
-    {"method", "method", "", "time integrator", Role::key, field<&Controlled::method>},
-    {"tolerance", "tolerance", "1", "of the error over the size of the scene", Role::key, field<&Controlled::tolerance>},
+constexpr ColumnOf<ControlledRun> controlled_columns[] = {
+    {"scene", "scene", "", "its name", Role::key, field<&ControlledRun::scene>},
+    {"set", "set", "", "what differs from its file", Role::key, field<&ControlledRun::set>},
+    {"method", "method", "", "time integrator", Role::key, field<&ControlledRun::method>},
+    {"tolerance", "tolerance", "1", "of the error over the size of the scene", Role::key, field<&ControlledRun::tolerance>},
     {"error", "error", "1", "largest RMS distance from the reference at ten times, over the size", Role::error,
-     [](const Controlled& run) { return std::isfinite(run.error) ? Cell(run.error) : Cell(); }},
+     [](const ControlledRun& run) { return std::isfinite(run.error) ? Cell(run.error) : Cell(); }},
     {"ratio", "error/tolerance", "1", "error over tolerance", Role::note,
-     [](const Controlled& run) { return std::isfinite(run.error) ? Cell(run.error / run.tolerance) : Cell(); }},
+     [](const ControlledRun& run) { return std::isfinite(run.error) ? Cell(run.ratio()) : Cell(); }},
     {"uncertainty", "±", "1", "of the reference, in the measure of the error", Role::uncertainty,
-     field<&Controlled::uncertainty>},
-    {"steps", "steps", "1", "accepted steps", Role::counter, field<&Controlled::steps>},
-    {"rejected", "rejected", "1", "steps that were not", Role::counter, field<&Controlled::rejected>},
+     field<&ControlledRun::uncertainty>},
+    {"steps", "steps", "1", "accepted steps", Role::counter, field<&ControlledRun::steps>},
+    {"rejected", "rejected", "1", "steps that were not", Role::counter, field<&ControlledRun::rejected>},
     {"pilot_steps", "pilot steps", "1", "steps of the runs that measured the error before", Role::counter,
-     field<&Controlled::pilots>},
-    {"forces", "forces", "1", "evaluations, those of pilot runs among them", Role::counter, field<&Controlled::forces>},
+     field<&ControlledRun::pilots>},
+    {"forces", "forces", "1", "evaluations, those of pilot runs among them", Role::counter, field<&ControlledRun::forces>},
     {"verdict", "verdict", "", "whether the error is within ten times of the tolerance, to both sides", Role::verdict,
-     field<&Controlled::verdict>},
-    {"outcome", "outcome", "", "how the run ended", Role::outcome, field<&Controlled::outcome>},
-    {"note", "", "", "what the run says of itself", Role::note, field<&Controlled::note>},
+     [](const ControlledRun& run) { return results::to_cell(verdict_on(run)); }},
+    {"outcome", "outcome", "", "how the run ended", Role::outcome, field<&ControlledRun::outcome>},
+    {"note", "", "", "what the run says of itself", Role::note, field<&ControlledRun::note>},
 };
 
 results::Table tolerances_on(const Setting& setting, const Methods& methods, ControlledRuns& all, Checkpoint& checkpoint) {
@@ -180,17 +213,18 @@ struct MethodSummary {
   std::int64_t runs = 0, within = 0, over = 0, under = 0, explodes = 0, fails = 0;
   double lowest = INFINITY, highest = 0;  ///< of error to tolerance
 
-  void count(const Controlled& run) {
-    const auto says = [&](std::string_view text) { return run.verdict.find(text) != std::string::npos ? 1 : 0; };
+  void count(const ControlledRun& run) {
     ++runs;
-    within += results::standing(run.verdict) == Standing::met ? 1 : 0;
-    over += says("over by");
-    under += says("under");
-    explodes += says("cost explodes");
-    fails += says("fails");
+    switch (run.proportion) {
+      case Proportion::within: ++within; break;
+      case Proportion::over: ++over; break;
+      case Proportion::under: ++under; break;
+      case Proportion::explodes: ++explodes; break;
+      case Proportion::fails: ++fails; break;
+    }
     if (!std::isfinite(run.error)) return;
-    lowest = std::min(lowest, run.error / run.tolerance);
-    highest = std::max(highest, run.error / run.tolerance);
+    lowest = std::min(lowest, run.ratio());
+    highest = std::max(highest, run.ratio());
   }
 
   std::string verdict() const {
@@ -219,7 +253,7 @@ results::Table tolerance_summary(const ControlledRuns& all, const Methods& metho
   std::vector<MethodSummary> rows;
   for (const Method* const method : methods) {
     MethodSummary& row = rows.emplace_back(MethodSummary{std::string(method->name)});
-    for (const Controlled& run : all)
+    for (const ControlledRun& run : all)
       if (run.method == method->name) row.count(run);
   }
   return results::make_table("tolerance-summary", "Error over tolerance, all scenes and tolerances", method_summary_columns,

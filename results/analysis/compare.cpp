@@ -90,8 +90,6 @@ Matching match(const std::vector<RunRecord>& a, const std::vector<RunRecord>& b)
 
 // --- Accuracy ------------------------------------------------------------------------------------------------------------
 
-bool succeeded(const RunRecord& run) { return run.outcome == solver::Outcome::success; }
-
 void compare_error(const Pair& pair, const std::string& quantity, double ErrorRecord::*error, double ErrorRecord::*uncertainty,
                    const CompareOptions& options, Findings& findings) {
   const double a = (*pair.a->error).*error, b = (*pair.b->error).*error;
@@ -105,15 +103,15 @@ void compare_error(const Pair& pair, const std::string& quantity, double ErrorRe
 
 /// How far runs came of which at least one failed.
 void compare_outcomes(const Pair& pair, const CompareOptions& options, Findings& findings) {
-  const double a = succeeded(*pair.a) ? INFINITY : pair.a->last_good_time,
-               b = succeeded(*pair.b) ? INFINITY : pair.b->last_good_time;
+  const double a = pair.a->succeeded() ? INFINITY : pair.a->last_good_time,
+               b = pair.b->succeeded() ? INFINITY : pair.b->last_good_time;
   const Judgement judgement = b * options.error_factor < a   ? Judgement::regression
                               : a * options.error_factor < b ? Judgement::better
                                                              : Judgement::same;
   if (judgement == Judgement::same) return;
   const auto text = [](const RunRecord& run) {
     const std::string_view outcome = to_string(run.outcome);
-    return succeeded(run) ? std::string(outcome) : fmt::format("{} at {} s", outcome, shown(run.last_good_time));
+    return run.succeeded() ? std::string(outcome) : fmt::format("{} at {} s", outcome, shown(run.last_good_time));
   };
   findings.add({title(*pair.a), "outcome", text(*pair.a), text(*pair.b), judgement == Judgement::better ? -INFINITY : INFINITY,
                 judgement});
@@ -121,7 +119,7 @@ void compare_outcomes(const Pair& pair, const CompareOptions& options, Findings&
 
 void compare_accuracy(const Pair& pair, const CompareOptions& options, Findings& findings) {
   ++findings.cells;
-  if (!succeeded(*pair.a) || !succeeded(*pair.b)) return compare_outcomes(pair, options, findings);
+  if (!pair.a->succeeded() || !pair.b->succeeded()) return compare_outcomes(pair, options, findings);
   if (pair.a->error.has_value() != pair.b->error.has_value()) {
     const auto text = [](const RunRecord& run) { return run.error ? "measured" : "not measured"; };
     return findings.add({title(*pair.a), "error", text(*pair.a), text(*pair.b), 0, Judgement::not_comparable});

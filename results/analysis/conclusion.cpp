@@ -13,7 +13,7 @@ namespace {
 
 using Runs = RunsOfScene::mapped_type;
 
-bool has_error(const RunRecord& run) { return ended_well(run) && run.error && comparable(*run.error); }
+bool has_error(const RunRecord& run) { return run.succeeded() && run.error && comparable(*run.error); }
 
 /// The quickest of a scene's runs at a coarse and a fine error.
 std::string quickest_in_words(const Runs& runs) {
@@ -43,7 +43,7 @@ std::string worst_in_words(const Runs& runs) {
 std::string failures_in_words(const Runs& runs) {
   std::set<std::string> outcomes;
   for (const RunRecord* run : runs)
-    if (!ended_well(*run)) outcomes.insert(fmt::format("{} {}", run->method, to_string(run->outcome)));
+    if (!run->succeeded()) outcomes.insert(fmt::format("{} {}", run->method, to_string(run->outcome)));
   return outcomes.empty() ? "" : fmt::format("fails: {}", fmt::join(outcomes, ", "));
 }
 

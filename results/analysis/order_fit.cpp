@@ -8,23 +8,13 @@
 
 #include "results/run_record.hpp"
 #include "results/verdict.hpp"
+#include "solver/base/statistics.hpp"
 
 namespace drape::results {
 namespace {
 
 constexpr int fewest = 4;
 constexpr double steadiness = 0.1, tolerance = 0.1;
-
-/// Least squares on logarithms of the places first … last.
-double slope(std::span<const double> h, std::span<const double> errors, int first, int last) {
-  const double n = last - first + 1;
-  double x = 0, y = 0, xx = 0, xy = 0;
-  for (int k = first; k <= last; ++k) {
-    const double p = std::log(h[k]), q = std::log(errors[k]);
-    x += p, y += q, xx += p * p, xy += p * q;
-  }
-  return (n * xy - x * y) / (n * xx - x * x);
-}
 
 }  // namespace
 
@@ -36,12 +26,12 @@ std::optional<OrderFit> fit_order(std::span<const double> h, std::span<const dou
     double lowest = INFINITY, highest = -INFINITY;
     for (int last = first; last < n && usable(last); ++last) {
       if (last == first) continue;
-      const double local = std::log(errors[last - 1] / errors[last]) / std::log(h[last - 1] / h[last]);
+      const double local = base::exponent(h[last - 1], errors[last - 1], h[last], errors[last]);
       lowest = std::min(lowest, local), highest = std::max(highest, local);
       if (!(highest - lowest <= steadiness)) break;
       const int count = last - first + 1;
       if (count >= fewest && (!best || count >= best->last - best->first + 1))
-        best = OrderFit{slope(h, errors, first, last), lowest, highest, first, last};
+        best = OrderFit{base::exponent(h.subspan(first, count), errors.subspan(first, count)), lowest, highest, first, last};
     }
   }
   return best;

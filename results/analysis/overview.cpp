@@ -161,7 +161,7 @@ std::vector<Table> overview(std::span<const Recording> recordings) {
   for (const auto& [scene, runs] : by_scene(recordings)) {
     if (auto row = quickest_runs(scene, runs)) quickest.push_back(std::move(*row));
     for (const RunRecord* run : runs)
-      if (!ended_well(*run)) failures.push_back({scene, run});
+      if (!run->succeeded()) failures.push_back({scene, run});
   }
   const auto add = [&](Table table) { tables.push_back(shortened(std::move(table), 10)); };
   add(make_table("orders", "Orders of convergence", order_columns, orders));

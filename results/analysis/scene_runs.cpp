@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "results/verdict.hpp"
-#include "solver/outcome.hpp"
 
 namespace drape::results {
 
@@ -18,10 +17,8 @@ RunsOfScene by_scene(std::span<const Recording> recordings) {
   return scenes;
 }
 
-bool ended_well(const RunRecord& run) { return run.outcome == solver::Outcome::success; }
-
 Measured measured(const RunRecord& run) {
-  if (!ended_well(run) || !run.error || !comparable(*run.error) || run.times_ms.empty()) return {NAN, {}};
+  if (!run.succeeded() || !run.error || !comparable(*run.error) || run.times_ms.empty()) return {NAN, {}};
   return {std::max(run.error->rms, resolution * run.error->reference_error), run.times_ms};
 }
 

@@ -14,8 +14,6 @@ namespace drape::results {
 using RunsOfScene = std::map<std::string, std::vector<const RunRecord*>>;
 RunsOfScene by_scene(std::span<const Recording> recordings);
 
-bool ended_well(const RunRecord& run);
-
 /// Times and error of a run, no smaller than its reference resolves; NaN where it has no error that can be compared.
 Measured measured(const RunRecord& run);
 

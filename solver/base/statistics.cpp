@@ -61,6 +61,24 @@ double quantile(std::vector<double> numbers, double share) {
   return std::lerp(numbers[below], numbers[above], position - static_cast<double>(below));
 }
 
+double exponent(double x0, double y0, double x1, double y1) { return std::log(y0 / y1) / std::log(x0 / x1); }
+
+double exponent(std::span<const double> x, std::span<const double> y) {
+  const auto n = static_cast<double>(x.size());
+  double sum_p = 0, sum_q = 0, pp = 0, pq = 0;
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    const double p = std::log(x[k]), q = std::log(y[k]);
+    sum_p += p, sum_q += q, pp += p * p, pq += p * q;
+  }
+  return (n * pq - sum_p * sum_q) / (n * pp - sum_p * sum_p);
+}
+
+double geometric_mean(std::span<const double> numbers) {
+  double sum = 0;
+  for (const double number : numbers) sum += std::log(number);
+  return std::exp(sum / static_cast<double>(numbers.size()));
+}
+
 RankTest rank_test(std::span<const double> a, std::span<const double> b) {
   if (a.empty() || b.empty()) throw std::invalid_argument("a rank test needs samples");
   const double u = rank_statistic(a, b), pairs = static_cast<double>(a.size() * b.size());

@@ -8,6 +8,15 @@ namespace drape::base {
 /// The number below which a share of the numbers is: 0 least, 0.5 median, 1 largest; interpolated between two. At least one.
 double quantile(std::vector<double> numbers, double share);
 
+/// p in y ~ x^p from one point to the next.
+double exponent(double x0, double y0, double x1, double y1);
+
+/// The same through all points, by least squares on logarithms. At least two points with different x.
+double exponent(std::span<const double> x, std::span<const double> y);
+
+/// NaN of nothing.
+double geometric_mean(std::span<const double> numbers);
+
 /// Two samples of times by their ranks: nothing is assumed of how times are distributed   [Mann, Whitney 1947].
 struct RankTest {
   double slower = 1;       ///< probability that samples of one distribution look at least as much as if b took longer

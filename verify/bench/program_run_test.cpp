@@ -3,7 +3,11 @@
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
+#include <utility>
 
+#include "bench/runs/record.hpp"
+#include "bench/runs/timing.hpp"
+#include "model/scene_file/scene_file.hpp"
 #include "verify/support/bench_integrators.hpp"
 #include "verify/support/slow.hpp"
 
@@ -262,6 +266,31 @@ TEST(ProgramFailure, IsTimedNoFurtherThanItCame) {
       h5py(program, "for run in files[0]['runs'].values(): print(int(run['work/timed_steps'][()] - run['work/steps'][()]))",
            {"a.h5"}),
       "0\n0\n");
+}
+
+int steps_begun = 0;
+
+/// Rests, until steps from the fourth on find no solution, however short they are.
+void stall_in_the_fourth(solver::Step& step) {
+  ++steps_begun;
+  step.next.y = step.y0();
+  step.result.outcome = step.t > 0.025 ? solver::Outcome::not_converged : solver::Outcome::success;
+}
+
+TEST(ProgramFailure, IsTimedWithTheStepThatFailed) {
+  constexpr solver::Method stalling{.name = "stalling",
+                                    .description = "for tests",
+                                    .order = 1,
+                                    .stages = solver::Method::Stages::none,
+                                    .step = stall_in_the_fourth};
+  const bench::Group group{{model::load_scene("chain"), "", &stalling, 0.01, {}}};
+  const results::RunRecord run = bench::record(group.front());
+  EXPECT_EQ(run.outcome, solver::Outcome::not_converged);
+  EXPECT_THAT(run.steps, SizeIs(3));
+  const int begun = std::exchange(steps_begun, 0);
+  EXPECT_GT(begun, 3);
+  bench::time_group(group, {bench::steps_to_time(run)}, 1, [] {});
+  EXPECT_EQ(steps_begun, begun);
 }
 
 // --- The record ----------------------------------------------------------------------------------------------------------

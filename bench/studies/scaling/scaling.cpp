@@ -10,6 +10,7 @@
 
 #include "model/scene_file/scene_file.hpp"
 #include "results/columns.hpp"
+#include "solver/base/statistics.hpp"
 #include "solver/base/threads.hpp"
 
 namespace drape::bench {
@@ -61,17 +62,6 @@ double peak_memory_mb() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return static_cast<double>(usage.ru_maxrss) / 1024;
-}
-
-/// The exponent p in time ~ particles^p by least squares; sizes are particles a side.
-double exponent(const std::vector<int>& sides, const std::vector<double>& times) {
-  Eigen::ArrayXd x(sides.size()), y(sides.size());
-  for (std::size_t k = 0; k < sides.size(); ++k) {
-    x[k] = 2 * std::log(sides[k]);
-    y[k] = std::log(times[k]);
-  }
-  x -= x.mean();
-  return (x * y).sum() / x.square().sum();
 }
 
 std::string_view linear_solver_of(const solver::Counters& work) {
@@ -152,14 +142,13 @@ constexpr ColumnOf<StepRow> exponent_columns[] = {
 
 /// How the time of a method's steps grows, by its rows with one thread.
 StepRow growth_of(const std::vector<StepRow>& rows, const std::string& method) {
-  std::vector<int> sides;
-  std::vector<double> times;
+  std::vector<double> particles, times;
   for (const StepRow& row : rows)
     if (row.method == method && row.threads == 1) {
-      sides.push_back(*row.n);
+      particles.push_back(row.cost->particles);
       times.push_back(row.cost->seconds);
     }
-  return {.method = method, .exponent = exponent(sides, times)};
+  return {.method = method, .exponent = base::exponent(particles, times)};
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include <tuple>
 #include <utility>
 
+#include "bench/runs/energy_guard.hpp"
 #include "bench/studies/stability/stability.hpp"
 #include "reference/theory/linear_prediction.hpp"
 #include "results/verdict.hpp"
@@ -29,7 +30,7 @@ struct Sheet {
   int n;
   double step;  ///< [s]
   std::vector<double> stiffnesses, ratios;
-  double effort = 1;        ///< part of the usual budgets
+  double effort = 1;        ///< part of the usual limits
   bool spot_check = false;  ///< only what the bar is about
 };
 
@@ -60,7 +61,7 @@ struct Row {
   std::string name;
   const Method* method;
   solver::Options options;
-  std::int64_t budget;
+  std::int64_t evaluations;  ///< that a run may take
 };
 
 constexpr const char* bar_methods[] = {"implicit-euler", "bdf2", "midpoint"};
@@ -70,7 +71,7 @@ bool is_bar_method(std::string_view name) { return std::ranges::find(bar_methods
 bool tries(const Sheet& sheet, const Row& row) { return !sheet.spot_check || is_bar_method(row.name); }
 
 /// What a run may cost. A sub-step of an explicit method is far cheaper than an update of an implicit one.
-std::int64_t budget(const Method& method) {
+std::int64_t evaluations(const Method& method) {
   if (method.sub_steps) return 100'000;
   return is_bar_method(method.name) ? 20'000 : 4'000;
 }
@@ -78,10 +79,10 @@ std::int64_t budget(const Method& method) {
 /// All methods, and the thesis' loop where a method has one.
 std::vector<Row> rows(const Methods& methods) {
   std::vector<Row> all;
-  for (const Method* method : methods) all.push_back({std::string(method->name), method, {}, budget(*method)});
+  for (const Method* method : methods) all.push_back({std::string(method->name), method, {}, evaluations(*method)});
   for (const Method* method : methods)
     if (is_bar_method(method->name))
-      all.push_back({fmt::format("{}/fixed-point", method->name), method, solver::thesis_options(), budget(*method)});
+      all.push_back({fmt::format("{}/fixed-point", method->name), method, solver::thesis_options(), evaluations(*method)});
   return all;
 }
 
@@ -99,9 +100,9 @@ struct AtlasCell {
   const Row* row;
   double stiffness, ratio;
   std::optional<Expected> expected;  ///< nothing where there is no theory
-  Judged judged;
+  ClassifiedRun run;
 
-  bool is_as_predicted() const { return expected && expected->good() == judged.stable(); }
+  bool is_as_predicted() const { return expected && expected->good() == run.stable(); }
 };
 
 /// The atlas as the jobs share it.
@@ -160,21 +161,21 @@ constexpr results::ColumnOf<Expected> expected_columns[] = {
 results::Table cells_table(std::string name, std::string description, const std::vector<AtlasCell>& cells) {
   results::Table table = results::make_table(std::move(name), std::move(description), cell_columns, cells);
   results::add_columns(table, expected_columns, cells, std::mem_fn(&AtlasCell::expected));
-  results::add_columns(table, judged_columns, cells, [](const AtlasCell& cell) { return &cell.judged; });
+  results::add_columns(table, classified_columns, cells, [](const AtlasCell& cell) { return &cell.run; });
   return table;
 }
 
 /// All methods that are tried on a sheet of one stiffness and one damping.
-std::vector<Judged> try_rows(const std::vector<Row>& rows, const Sheet& sheet, double nu, double ratio) {
+std::vector<ClassifiedRun> try_rows(const std::vector<Row>& rows, const Sheet& sheet, double nu, double ratio) {
   const double l = 0.8 / (sheet.n - 1), h = sheet.step, k = nu * l * l / (h * h);
-  const Specimen specimen = hung_by_corners(sheet.n, k, h * k / ratio);
-  const CrossCheckedReference reference(specimen, horizon, sheet.effort);
-  std::vector<Judged> runs;
-  for (const Row& row : rows)
-    if (tries(sheet, row))
-      runs.push_back(judged(attempt(specimen, {row.method, row.options, h, horizon,
-                                               static_cast<std::int64_t>(sheet.effort * static_cast<double>(row.budget))}),
-                            reference));
+  const CompiledScene hung = hung_by_corners(sheet.n, k, h * k / ratio);
+  const CrossCheckedReference reference(hung, sheet.effort);
+  std::vector<ClassifiedRun> runs;
+  for (const Row& row : rows) {
+    if (!tries(sheet, row)) continue;
+    const Limits limits{.evaluations = static_cast<std::int64_t>(sheet.effort * static_cast<double>(row.evaluations))};
+    runs.push_back(classified(run_guarded({hung.scene, "", row.method, h, row.options}, hung.cloth, limits), reference));
+  }
   return runs;
 }
 
@@ -214,15 +215,15 @@ results::Table explore(Atlas& atlas, Checkpoint& checkpoint) {
 struct Endings {
   const Sheet* sheet;
   const Row* row;
-  std::array<int, verdicts> counts;
+  std::array<int, classifications> counts;
   int total;
   std::optional<int> as_predicted;
 };
 
-template <Verdict verdict>
+template <Classification classification>
 constexpr results::ColumnOf<Endings> count_column(const char* name) {
-  return {name, to_string(verdict).data(), "1", "runs", Role::quantity, [](const Endings& row) {
-            return to_cell(row.counts[static_cast<std::size_t>(verdict)]);
+  return {name, to_string(classification).data(), "1", "runs", Role::quantity, [](const Endings& row) {
+            return to_cell(row.counts[static_cast<std::size_t>(classification)]);
           }};
 }
 
@@ -231,12 +232,12 @@ constexpr results::ColumnOf<Endings> endings_columns[] = {
     {"step", "h", "s", "time step", Role::key, [](const Endings& row) { return to_cell(row.sheet->step); }},
     {"method", "method", "", "time integrator, with its stage solver if that is not auto", Role::key,
      [](const Endings& row) { return to_cell(row.row->name); }},
-    count_column<Verdict::accurate>("accurate"),
-    count_column<Verdict::wrong>("wrong"),
-    count_column<Verdict::bounded>("bounded"),
-    count_column<Verdict::unstable>("unstable"),
-    count_column<Verdict::not_converged>("not_converged"),
-    count_column<Verdict::not_finished>("not_finished"),
+    count_column<Classification::accurate>("accurate"),
+    count_column<Classification::wrong>("wrong"),
+    count_column<Classification::bounded>("bounded"),
+    count_column<Classification::unstable>("unstable"),
+    count_column<Classification::not_converged>("not_converged"),
+    count_column<Classification::not_finished>("not_finished"),
     {"total", "of", "1", "runs", Role::quantity, results::field<&Endings::total>},
     {"as_predicted", "as predicted", "1", "runs that are stable and converge just where linear theory says so", Role::quantity,
      results::field<&Endings::as_predicted>},
@@ -251,7 +252,7 @@ results::Table count_verdicts(const Atlas& atlas) {
       for (const AtlasCell& cell : atlas.cells) {
         if (cell.sheet != &sheet || cell.row != &row) continue;
         ++endings.total;
-        ++endings.counts[static_cast<std::size_t>(cell.judged.verdict)];
+        ++endings.counts[static_cast<std::size_t>(cell.run.classification)];
         if (cell.expected) endings.as_predicted = endings.as_predicted.value_or(0) + (cell.is_as_predicted() ? 1 : 0);
       }
       all.push_back(endings);
@@ -291,9 +292,9 @@ results::Table check_bar(const Atlas& atlas) {
     for (const AtlasCell& cell : atlas.cells) {
       if (cell.row != &row || !cell.expected->good()) continue;
       ++counts.stable;
-      const bool rises = cell.judged.trial.result.outcome == solver::Outcome::unstable;
+      const bool rises = cell.run.end.result.outcome == solver::Outcome::unstable;
       if (rises) ++counts.rise;
-      if (rises || cell.judged.trial.succeeded()) ++counts.converge;
+      if (rises || cell.run.end.succeeded()) ++counts.converge;
     }
   }
   return results::make_table("stability-bar", "Runs that are predicted stable and do converge, with the default solvers",

@@ -4,14 +4,32 @@
 
 namespace drape::bench {
 
-Judged judged(RunEnd trial, const CrossCheckedReference& reference) {
-  Judged result{std::move(trial), {}, {}};
-  result.error = reference.measure(result.trial, error_bound);
-  result.verdict = judge(result.trial.result.outcome, result.error, error_bound);
-  return result;
+Classification classify(solver::Outcome outcome, const UncertainError& measured, double bound) {
+  switch (outcome) {
+    case solver::Outcome::success: break;
+    case solver::Outcome::unstable:
+    case solver::Outcome::not_finite: return Classification::unstable;
+    case solver::Outcome::not_converged:
+    case solver::Outcome::breakdown:
+    case solver::Outcome::failed:
+    case solver::Outcome::inaccurate: return Classification::not_converged;
+    case solver::Outcome::out_of_time:
+    case solver::Outcome::out_of_memory:
+    case solver::Outcome::out_of_evaluations: return Classification::not_finished;
+  }
+  if (measured.error + measured.uncertainty <= bound) return Classification::accurate;
+  if (measured.error - measured.uncertainty > bound) return Classification::wrong;
+  return Classification::bounded;
 }
 
-Specimen hung_by_corners(int n, double k, double d) {
+ClassifiedRun classified(RunEnd end, const CrossCheckedReference& reference) {
+  ClassifiedRun run{std::move(end), {}, {}};
+  run.error = reference.measure(run.end, error_bound);
+  run.classification = classify(run.end.result.outcome, run.error, error_bound);
+  return run;
+}
+
+CompiledScene hung_by_corners(int n, double k, double d) {
   model::Scene scene = model::load_scene("hung-corners");
   scene.sheet.grid.nu = scene.sheet.grid.nv = n;
   scene.sheet.material.tension = {k, k};

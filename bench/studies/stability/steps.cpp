@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
-#include <utility>
 
+#include "bench/runs/energy_guard.hpp"
 #include "bench/studies/stability/stability.hpp"
 
 namespace drape::bench {
@@ -21,8 +21,12 @@ struct Softness {
 /// Finds the fewest equal steps to the horizon with which a method does well.
 class FewestSteps {
  public:
-  FewestSteps(const Specimen& specimen, const CrossCheckedReference& reference, Conditions conditions)
-      : specimen_(specimen), reference_(reference), conditions_(std::move(conditions)) {}
+  FewestSteps(const CompiledScene& sheet, const CrossCheckedReference& reference, const solver::Method& method,
+              const solver::Options& options)
+      : sheet_(sheet),
+        reference_(reference),
+        spec_{sheet.scene, "", &method, 0, options},
+        limits_{.evaluations = method.sub_steps ? 100'000 : 4'000} {}
 
   /// Where doubling the number first does well, bisected between there and the number before; 0 if none does.
   template <class Good>
@@ -40,23 +44,24 @@ class FewestSteps {
   }
 
  private:
-  const Judged& operator()(int steps) {
+  const ClassifiedRun& operator()(int steps) {
     auto known = known_.find(steps);
     if (known == known_.end()) {
-      conditions_.step = horizon / steps;
-      known = known_.emplace(steps, judged(attempt(specimen_, conditions_), reference_)).first;
+      spec_.step = horizon / steps;
+      known = known_.emplace(steps, classified(run_guarded(spec_, sheet_.cloth, limits_), reference_)).first;
     }
     return known->second;
   }
 
-  const Specimen& specimen_;
+  const CompiledScene& sheet_;
   const CrossCheckedReference& reference_;
-  Conditions conditions_;
-  std::map<int, Judged> known_;
+  RunSpec spec_;
+  const Limits limits_;
+  std::map<int, ClassifiedRun> known_;
 };
 
 /// A step that the solver had to cut is not the one that was asked for.
-bool uncut(const Judged& run) { return run.trial.result.rejected_steps == 0; }
+bool uncut(const ClassifiedRun& run) { return run.end.result.rejected_steps == 0; }
 
 /// What a method does on one sheet.
 struct StepLimits {
@@ -80,22 +85,23 @@ constexpr results::ColumnOf<StepLimits> limits_uncertainty[] = {
 
 std::vector<StepLimits> step_limits(int n, const Softness& softness, const Methods& methods) {
   const auto [k, d] = softness;
-  const Specimen specimen = hung_by_corners(n, k, d);
-  const CrossCheckedReference reference(specimen, horizon);
+  const CompiledScene sheet = hung_by_corners(n, k, d);
+  const CrossCheckedReference reference(sheet);
   std::vector<StepLimits> rows;
   for (const solver::Method* method : methods)
-    rows.push_back({k, d, std::string(method->name), largest_steps(specimen, reference, *method, {}), reference.uncertainty()});
+    rows.push_back({k, d, std::string(method->name), largest_steps(sheet, reference, *method, {}), reference.uncertainty()});
   return rows;
 }
 
 }  // namespace
 
-LargestSteps largest_steps(const Specimen& specimen, const CrossCheckedReference& reference, const solver::Method& method,
+LargestSteps largest_steps(const CompiledScene& sheet, const CrossCheckedReference& reference, const solver::Method& method,
                            const solver::Options& options) {
-  FewestSteps search(specimen, reference, {&method, options, 0, horizon, method.sub_steps ? 100'000 : 4'000});
+  FewestSteps search(sheet, reference, method, options);
   const auto step = [](int steps) { return steps > 0 ? horizon / steps : 0; };
-  const int accurate = search.fewest([](const Judged& run) { return uncut(run) && run.verdict == Verdict::accurate; });
-  return {step(accurate), step(search.fewest([](const Judged& run) { return uncut(run) && run.stable(); }))};
+  const int accurate =
+      search.fewest([](const ClassifiedRun& run) { return uncut(run) && run.classification == Classification::accurate; });
+  return {step(accurate), step(search.fewest([](const ClassifiedRun& run) { return uncut(run) && run.stable(); }))};
 }
 
 TableJob largest_steps(bool quick, const Methods& methods) {

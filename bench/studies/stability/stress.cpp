@@ -5,6 +5,7 @@
 #include <iterator>
 #include <numbers>
 
+#include "bench/runs/energy_guard.hpp"
 #include "bench/studies/stability/stability.hpp"
 
 namespace drape::bench {
@@ -14,39 +15,39 @@ constexpr double stress_step = 0.01;  ///< [s]
 constexpr double modulus = 1e4;       ///< k [N/m]
 
 /// Something that no scene should do to a solver. `then` is what the sheet turns into half way, if it does.
-struct Stress {
+struct StressCase {
   const char* name;
-  Specimen (*make)(int n);
-  Specimen (*then)(int n) = nullptr;
+  CompiledScene (*make)(int n);
+  CompiledScene (*then)(int n) = nullptr;
 };
 
-Specimen sheet(int n) { return hung_by_corners(n, modulus, 0.5); }
+CompiledScene sheet(int n) { return hung_by_corners(n, modulus, 0.5); }
 
 template <class Change>
-Specimen changed(int n, const Change& change) {
+CompiledScene changed(int n, const Change& change) {
   model::Scene scene = sheet(n).scene;
   change(scene);
   return {scene, model::compile(scene)};
 }
 
 /// Every fifth particle is a factor heavier; weights stay as they are.
-Specimen with_masses(int n, double factor) {
-  Specimen s = sheet(n);
+CompiledScene with_masses(int n, double factor) {
+  CompiledScene s = sheet(n);
   for (Eigen::Index i = 0; i < s.cloth.ode.mass.size(); i += 5) s.cloth.ode.mass[i] *= factor;
   return s;
 }
 
-Specimen with_tension(int n, double weft, double warp) {
+CompiledScene with_tension(int n, double weft, double warp) {
   return changed(n, [=](model::Scene& scene) { scene.sheet.material.tension = {weft, warp}; });
 }
 
-Specimen with_gravity(int n, double g) {
+CompiledScene with_gravity(int n, double g) {
   return changed(n, [=](model::Scene& scene) { scene.sheet.gravity *= g; });
 }
 
 /// Two neighbours in the middle so far apart, as a part of the spacing.
-Specimen with_edge(int n, double length) {
-  Specimen s = sheet(n);
+CompiledScene with_edge(int n, double length) {
+  CompiledScene s = sheet(n);
   const model::Grid& grid = s.scene.sheet.grid;
   const int i = grid.index(n / 2, n / 2), j = grid.index(n / 2 + 1, n / 2);
   s.cloth.start.x.row(j) = s.cloth.start.x.row(i);
@@ -55,15 +56,15 @@ Specimen with_edge(int n, double length) {
 }
 
 /// All edges compressed: exactly flat, or with a wave of a thousandth of the side, along which the sheet buckles.
-Specimen compressed(int n, double stretch, bool wavy) {
-  Specimen s = changed(n, [=](model::Scene& scene) { scene.start.stretch = {stretch, stretch}; });
+CompiledScene compressed(int n, double stretch, bool wavy) {
+  CompiledScene s = changed(n, [=](model::Scene& scene) { scene.start.stretch = {stretch, stretch}; });
   const double size = model::size(s.scene);
   solver::Vectors& x = s.cloth.start.x;
   if (wavy) x.col(2).array() += 1e-3 * size * (3 * std::numbers::pi / size * (x.col(0) + x.col(1)).array()).sin();
   return s;
 }
 
-constexpr Stress stresses[] = {
+constexpr StressCase stresses[] = {
     {"masses 1 : 1e4", [](int n) { return with_masses(n, 1e4); }},
     {"masses 1e4 : 1", [](int n) { return with_masses(n, 1e-4); }},
     {"weft 1e4 times the warp", [](int n) { return with_tension(n, 1e6, 1e2); }},
@@ -85,22 +86,23 @@ constexpr Stress stresses[] = {
     {"undamped, k = 1e8", [](int n) { return hung_by_corners(n, 1e8, 0); }},
 };
 
-/// A trial to the end; half way the sheet turns into what it then is, if it does.
-RunEnd endure(const Stress& stress, int n, Conditions conditions) {
-  Specimen specimen = stress.make(n);
-  if (!stress.then) return attempt(specimen, conditions);
-  conditions.until /= 2;
-  RunEnd first = attempt(specimen, conditions);
+/// A run to the end; half way the sheet turns into what it then is, if it does.
+RunEnd endure(const StressCase& stress, int n, RunSpec spec, const Limits& limits) {
+  if (!stress.then) return run_guarded(spec, stress.make(n).cloth, limits);
+  spec.scene.end /= 2;
+  RunEnd first = run_guarded(spec, stress.make(n).cloth, limits);
   if (!first.succeeded()) return first;
-  specimen = stress.then(n);
-  specimen.cloth.start = first.state;
-  return attempt(specimen, conditions);
+  CompiledScene sheet = stress.then(n);
+  sheet.cloth.start = first.state;
+  sheet.scene.end = spec.scene.end;
+  spec.scene = sheet.scene;
+  return run_guarded(spec, sheet.cloth, limits);
 }
 
 /// A method under one stress.
 struct Endured {
   std::string stress, method;
-  Judged run;
+  ClassifiedRun run;
 };
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Endured, stress, method, run)
 
@@ -109,13 +111,16 @@ constexpr results::ColumnOf<Endured> endured_columns[] = {
     {"method", "method", "", "time integrator", results::Role::key, results::field<&Endured::method>},
 };
 
-std::vector<Endured> endured(const Stress& stress, int n, const Methods& methods) {
-  const auto run = [&](const Conditions& conditions) { return endure(stress, n, conditions); };
-  const CrossCheckedReference reference(stress.make(n), horizon, run);
+std::vector<Endured> endured(const StressCase& stress, int n, const Methods& methods) {
+  const auto run = [&](const RunSpec& spec, const Limits& limits) { return endure(stress, n, spec, limits); };
+  const CompiledScene sheet = stress.make(n);
+  const CrossCheckedReference reference(sheet, run);
   std::vector<Endured> rows;
   for (const solver::Method* method : methods)
-    rows.push_back({stress.name, std::string(method->name),
-                    judged(run({method, {}, stress_step, horizon, method->sub_steps ? 100'000 : 4'000}), reference)});
+    rows.push_back(
+        {stress.name, std::string(method->name),
+         classified(run({sheet.scene, "", method, stress_step, {}}, {.evaluations = method->sub_steps ? 100'000 : 4'000}),
+                    reference)});
   return rows;
 }
 
@@ -127,7 +132,7 @@ TableJob stress_cases(bool quick, const Methods& methods) {
   const Methods chosen = few ? Methods{&solver::method("bdf2"), &solver::method("verlet")} : all_or(methods);
   return {static_cast<int>(std::size(stresses)), [=](Checkpoint& checkpoint) {
             std::vector<Endured> rows;
-            for (const Stress& stress : stresses) {
+            for (const StressCase& stress : stresses) {
               checkpoint.show(stress.name);
               std::ranges::move(checkpoint.once(stress.name, [&] { return endured(stress, n, chosen); }),
                                 std::back_inserter(rows));
@@ -137,7 +142,7 @@ TableJob stress_cases(bool quick, const Methods& methods) {
                 "stability-stress",
                 fmt::format("What no scene should do to a solver, h = 0.01 s{}", few ? "; --quick: bdf2 and verlet only" : ""),
                 endured_columns, rows);
-            results::add_columns(table, judged_columns, rows, [](const Endured& row) { return &row.run; });
+            results::add_columns(table, classified_columns, rows, [](const Endured& row) { return &row.run; });
             return table;
           }};
 }

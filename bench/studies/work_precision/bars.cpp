@@ -46,15 +46,10 @@ using BarRows = std::vector<BarRow>;
 /// Times that our defaults are quicker than SUNDIALS, tuned.
 constexpr double wanted_lead = 1.5;
 
-/// Hung by two corners, with Kelvin-Voigt damping as the thesis has it.
-bool is_about_peers(const SceneTrials& scene) {
-  return scene.problem.scene.name == "hung-corners" &&
-         scene.problem.scene.sheet.material.damping_form != model::DampingForm::projected;
-}
-
 /// Both sides with hindsight, ours only with automatic stages and linear solvers.
-void add_lead(BarRows& rows, const SceneTrials& scene, const Winners& winners, double error) {
-  const Winner peer = winners.of("sundials", error), mine = winners.of("defaults", error);
+void add_lead(BarRows& rows, const SceneRuns& scene, double error) {
+  const Winner peer = winner(scene, &Configuration::is_sundials, error),
+               mine = winner(scene, &Configuration::is_default, error);
   std::optional<double> lead;
   if (peer) lead = mine ? peer.time / mine.time : 0;
   rows.push_back({scene.problem.name,
@@ -66,50 +61,45 @@ void add_lead(BarRows& rows, const SceneTrials& scene, const Winners& winners, d
 }
 
 /// The search must be as thorough on their side as on ours.
-void add_search_bar(BarRows& rows, const SceneTrials& scene) {
-  const int ours = number_of_families(scene, true), theirs = number_of_families(scene, false);
+void add_search_bar(BarRows& rows, const SceneRuns& scene) {
+  const int ours = number_of_configurations(scene, true), theirs = number_of_configurations(scene, false);
   rows.push_back({scene.problem.name,
-                  "families of SUNDIALS / of ours",
+                  "configurations of SUNDIALS / of ours",
                   {1, true},
                   std::nullopt,
                   static_cast<double>(theirs) / ours,
                   fmt::format("{} / {}", theirs, ours)});
 }
 
-void add_bars(BarRows& rows, const SceneTrials& scene, const std::string& usual) {
-  const Winners winners(scene);
+void add_bars(BarRows& rows, const SceneRuns& scene, const DefaultChoice& usual) {
   for (const double error : levels(scene.problem)) {
-    const Winner best = winners.of("ours", error);
+    const Winner best = winner(scene, &Configuration::is_ours, error);
     const auto ratio = [&](const Winner& a) { return a ? std::optional(a.time / best.time) : std::nullopt; };
     const auto names = [&](const Winner& a) { return fmt::format("{} / {}", a.name(), best.name()); };
     if (!best) {
       rows.push_back({scene.problem.name, "our best", {1, false}, error, std::nullopt, "none"});
       continue;
     }
-    if (is_about_peers(scene)) add_lead(rows, scene, winners, error);
-    if (const Winner thesis = winners.of("thesis", error))
+    if (scene.problem.against_sundials) add_lead(rows, scene, error);
+    if (const Winner thesis = winner(scene, &Configuration::is_thesis, error))
       rows.push_back({scene.problem.name, "thesis' loop / our best", {3, true}, error, ratio(thesis), names(thesis)});
-    for (const std::string contender : {"defaults", usual.c_str()}) {
-      const Winner winner = winners.of(contender, error);
-      rows.push_back({scene.problem.name,
-                      (contender == usual ? usual : "any method, auto") + " / our best",
-                      {default_bar, false},
-                      error,
-                      ratio(winner),
-                      names(winner)});
-    }
+    const auto add = [&](const std::string& name, const Contender& contender) {
+      const Winner one = winner(scene, contender, error);
+      rows.push_back({scene.problem.name, name + " / our best", {default_bar, false}, error, ratio(one), names(one)});
+    };
+    add("any method, auto", &Configuration::is_default);
+    add(usual.name(), usual);
   }
 }
 
 /// On peer-edge times are per simulated second and errors in metres.
-void add_peer_bars(BarRows& rows, const SceneTrials& scene) {
-  const Winners winners(scene);
+void add_peer_bars(BarRows& rows, const SceneRuns& scene) {
   const double end = scene.problem.times.back();
-  const auto seconds = [&](const Winner& winner) { return winner ? std::optional(1e-3 * winner.time / end) : std::nullopt; };
+  const auto seconds = [&](const Winner& one) { return one ? std::optional(1e-3 * one.time / end) : std::nullopt; };
   for (const PeerBar& bar : peer_bars) {
-    const Winner best = winners.of(bar.contender, bar.error);
+    const Winner best = winner(scene, bar.contender, bar.error);
     rows.push_back({scene.problem.name,
-                    fmt::format("{} [s per simulated second]", bar.contender),
+                    fmt::format("{} [s per simulated second]", bar.name),
                     {bar.seconds, false},
                     bar.error,
                     seconds(best),
@@ -119,12 +109,12 @@ void add_peer_bars(BarRows& rows, const SceneTrials& scene) {
 
 }  // namespace
 
-results::Table bars_table(const std::vector<SceneTrials>& scenes) {
+results::Table bars_table(const std::vector<SceneRuns>& scenes) {
   BarRows rows;
-  const std::string usual = usual_choice(scenes);
-  for (const SceneTrials& scene : scenes) {
-    if (is_about_peers(scene)) add_search_bar(rows, scene);
-    if (!is_peer_edge(scene))
+  const DefaultChoice usual = usual_choice(scenes);
+  for (const SceneRuns& scene : scenes) {
+    if (scene.problem.against_sundials) add_search_bar(rows, scene);
+    if (!scene.problem.with_other_codes)
       add_bars(rows, scene, usual);
     else if (scene.problem.scene.sheet.grid.nu == 100)
       add_peer_bars(rows, scene);

@@ -22,12 +22,11 @@ struct Quickest {
   double ratio() const { return sundials.time / ours.time; }
 };
 
-std::vector<Quickest> quickest_on(const SceneTrials& scene) {
-  const Winners winners(scene);
+std::vector<Quickest> quickest_on(const SceneRuns& scene) {
   std::vector<Quickest> all;
   for (const double error : levels(scene.problem))
-    if (const Winner ours = winners.of("ours", error))
-      all.push_back({scene.problem.name, error, ours, winners.of("sundials", error)});
+    if (const Winner ours = winner(scene, &Configuration::is_ours, error))
+      all.push_back({scene.problem.name, error, ours, winner(scene, &Configuration::is_sundials, error)});
   return all;
 }
 
@@ -49,7 +48,7 @@ struct Summary {
   std::size_t errors;
 };
 
-std::optional<Summary> summary(const SceneTrials& scene) {
+std::optional<Summary> summary(const SceneRuns& scene) {
   std::vector<double> ratios;
   for (const Quickest& row : quickest_on(scene))
     if (row.sundials) ratios.push_back(row.ratio());
@@ -68,17 +67,17 @@ constexpr ColumnOf<Summary> summary_columns[] = {
 
 }  // namespace
 
-results::Table quickest_table(const std::vector<SceneTrials>& scenes) {
+results::Table quickest_table(const std::vector<SceneRuns>& scenes) {
   std::vector<Quickest> rows;
-  for (const SceneTrials& scene : scenes) std::ranges::move(quickest_on(scene), std::back_inserter(rows));
+  for (const SceneRuns& scene : scenes) std::ranges::move(quickest_on(scene), std::back_inserter(rows));
   results::Table table = results::make_table("quickest", "The quickest at each error", quickest_columns, rows);
   table.headline = true;
   return table;
 }
 
-results::Table peers_summary_table(const std::vector<SceneTrials>& scenes) {
+results::Table peers_summary_table(const std::vector<SceneRuns>& scenes) {
   std::vector<Summary> rows;
-  for (const SceneTrials& scene : scenes)
+  for (const SceneRuns& scene : scenes)
     if (const auto row = summary(scene)) rows.push_back(*row);
   results::Table table =
       results::make_table("peers-summary", "How many times as long as our quickest SUNDIALS, tuned, takes with the same error",

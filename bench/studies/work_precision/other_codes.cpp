@@ -28,7 +28,7 @@ constexpr OtherCode other_codes[] = {{"Bullet, softbody", 0.53, 0.76},
                                      {"ARCSim", 0.072, 29},
                                      {"a plain vectorised leapfrog", 1.2e-4, 0.59}};
 
-/// A quickest trial of ours.
+/// A quickest run of ours.
 struct Match {
   Winner winner;
   double seconds;  ///< CPU time per simulated second
@@ -53,19 +53,19 @@ constexpr ColumnOf<OtherCodeRow> other_code_columns[] = {
 constexpr ColumnOf<Match> match_columns[] = {
     {"{}", "{}", "", "{}", Role::note, [](const Match& match) -> Cell { return match.winner.name(); }},
     {"{}_error", "error", "m", "RMS, the largest at all tenths of the end", Role::note,
-     [](const Match& match) -> Cell { return match.winner.trial->measured.error; }},
+     [](const Match& match) -> Cell { return match.winner.run->measured.error; }},
     {"{}_seconds", "time", "s/s", "CPU seconds per simulated second", Role::time, field<&Match::seconds>},
 };
 
-std::vector<OtherCodeRow> other_code_rows(const SceneTrials& scene) {
-  const Winners winners(scene);
-  const auto match = [&](const char* contender, double error) {
-    const Winner winner = winners.of(contender, error);
-    return winner ? std::optional(Match{winner, 1e-3 * winner.time / scene.problem.times.back()}) : std::nullopt;
+std::vector<OtherCodeRow> other_code_rows(const SceneRuns& scene) {
+  const auto match = [&](const Contender& contender, double error) {
+    const Winner best = winner(scene, contender, error);
+    return best ? std::optional(Match{best, 1e-3 * best.time / scene.problem.times.back()}) : std::nullopt;
   };
   std::vector<OtherCodeRow> rows;
   for (const OtherCode& other : other_codes)
-    rows.push_back({scene.problem.scene.sheet.grid.nu, other, match("ours", other.error), match("implicit", other.error)});
+    rows.push_back({scene.problem.scene.sheet.grid.nu, other, match(&Configuration::is_ours, other.error),
+                    match(&Configuration::is_implicit, other.error)});
   return rows;
 }
 
@@ -78,10 +78,10 @@ std::vector<double> peer_errors() {
   return errors;
 }
 
-results::Table peers_table(const std::vector<SceneTrials>& scenes) {
+results::Table peers_table(const std::vector<SceneRuns>& scenes) {
   std::vector<OtherCodeRow> rows;
-  for (const SceneTrials& scene : scenes)
-    if (is_peer_edge(scene)) std::ranges::move(other_code_rows(scene), std::back_inserter(rows));
+  for (const SceneRuns& scene : scenes)
+    if (scene.problem.with_other_codes) std::ranges::move(other_code_rows(scene), std::back_inserter(rows));
   results::Table table = results::make_table(
       "peer-edge", "Other codes on their own machine, and what is the quickest of ours with errors at most theirs on this one",
       other_code_columns, rows);

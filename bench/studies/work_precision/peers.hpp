@@ -1,24 +1,23 @@
 #pragma once
 
-#include "bench/studies/work_precision/candidates.hpp"
-#include "reference/sundials/peer_solvers.hpp"
+#include "bench/studies/work_precision/configurations.hpp"
+#include "reference/newton_solves.hpp"
+#include "reference/tableaux.hpp"
 
 namespace drape::bench {
 
 /// One way to set SUNDIALS up. It solves the same forces as our methods do, and where it factors, with our factor.
 struct PeerSetup {
-  /// A family of reference/sundials/peer_solvers.hpp, or "arkode-steps" with a method of reference/tableaux.hpp.
-  std::string package;
-  std::string newton;  ///< one of reference/newton_solves.hpp; empty if it solves no systems
+  Code package;                                    ///< a peer solver, or arkode_steps with a tableau
+  const reference::NewtonSolve* newton = nullptr;  ///< null if it solves no systems
   int order = 5;
   double velocity_weight = 1;  ///< as reference::Tuning has it, as the following
   double kept_factor = 1e-12;
   double nonlinear = 0;
-  std::string tableau = {};
+  const reference::Tableau* tableau = nullptr;
   double stage_tolerance = 0;  ///< of nonlinear systems with constant steps
   bool deduced = false;
 
-  /// Whose it is, for contenders: the package.
   std::string name() const;
 };
 
@@ -26,15 +25,16 @@ struct PeerSetup {
 /// absolute tolerances of the scene's own scales.
 std::string advised_peer();
 
-/// States at some times; `value`: step [s] or tolerance. Constant steps end at all of these times.
-std::vector<solver::State> solve_by_peer(const PeerSetup& setup, double value, double size, const model::Cloth& cloth,
-                                         std::span<const double> times);
+/// States at some times; `value`: step [s] or tolerance. Constant steps end at all of these times. Exceptions as for the peer
+/// solver.
+std::vector<solver::State> solve_by_peer(const PeerSetup& setup, double value, double size, const solver::SplitOde& ode,
+                                         const solver::State& start, std::span<const double> times);
 
 /// All setups that are tried: as many as of ours.
 std::vector<PeerSetup> peer_setups(Search search);
 
-Family peer_family(const PeerSetup& setup, const model::Scene& scene, Search search);
+Configuration peer_configuration(const PeerSetup& setup, const model::Scene& scene, Search search);
 
-void add_peers(std::vector<Family>& all, const model::Scene& scene, Search search);
+void add_peers(std::vector<Configuration>& all, const model::Scene& scene, Search search);
 
 }  // namespace drape::bench

@@ -6,12 +6,10 @@
 #include <cmath>
 #include <ctime>
 #include <memory>
-#include <stdexcept>
+#include <utility>
 
-#include "bench/runs/limits.hpp"
 #include "bench/runs/timing.hpp"
-#include "reference/reference.hpp"
-#include "solver/base/largest.hpp"
+#include "reference/distance.hpp"
 
 namespace drape::bench {
 namespace {
@@ -19,8 +17,8 @@ namespace {
 /// Below this multiple of the truth's uncertainty an error says nothing.
 constexpr double too_exact = 1;
 
-/// A family that is slower by this factor than another of the same code twice in a row will not win, unless finer steps take
-/// hardly more time: it may be the quickest at smaller errors, if it is not yet slower by far, or so coarse that nothing
+/// A configuration that is slower by this factor than another of the same code twice in a row will not win, unless finer steps
+/// take hardly more time: it may be the quickest at smaller errors, if it is not yet slower by far, or so coarse that nothing
 /// follows.
 constexpr double hopeless = 2, by_far = 8;
 constexpr double hardly_more = 1.3, coarse_error = 1e-2;
@@ -31,6 +29,9 @@ constexpr std::size_t leap = 4;
 /// Runs that take longer [ms] are repeated so often: the fewest times that still show a spread.
 constexpr double slow = 100;
 constexpr int fewest_repetitions = 3;
+
+/// Runs under the energy guard may take longer by this factor.
+constexpr double longer_guarded = 10;
 
 /// A first run may have been slower than others by this factor by chance.
 constexpr double slack = 1.4;
@@ -49,85 +50,114 @@ std::int64_t count(const solver::Counters& work, std::initializer_list<std::stri
   return sum;
 }
 
-void note_work(const solver::Counters& work, Trial& trial) {
-  trial.forces = count(work, {"forces", "explicit_forces"});
-  trial.factorisations = count(
+void note_work(const solver::Counters& work, ComparedRun& run) {
+  run.forces = count(work, {"forces", "explicit_forces"});
+  run.factorisations = count(
       work, {"newton_factorisations", "factorisations", "cvode/factorisations", "arkode/factorisations", "ida/factorisations"});
-  trial.steps = count(work, {"steps", "cvode/steps", "arkode/steps", "ida/steps"});
+  run.steps = count(work, {"steps", "cvode/steps", "arkode/steps", "ida/steps"});
 }
 
-Trial try_candidate(const Problem& problem, const Family& family, std::size_t candidate, const Effort& effort) {
-  check_interruption();  // SUNDIALS' failure of the one before may have been one
-  Trial trial{.family = &family, .candidate = candidate};
-  model::Cloth cloth = model::compile(problem.scene);
-  Meter meter({.seconds = effort.cap});
-  meter.watch(cloth.ode);
-  try {
-    const double begin = seconds(effort.time_of);
-    const auto positions = trial.configuration().solve(cloth, problem.times);
-    const double milliseconds = 1e3 * (seconds(effort.time_of) - begin);
-    trial.measured = {reference::largest_rms_distance(positions, problem.truth) / problem.length, {milliseconds}};
-    if (!std::isfinite(trial.measured.error)) throw std::runtime_error("not finite");
-  } catch (const std::exception& error) {
-    trial.outcome = error.what();
-    trial.measured = {std::nan(""), {}};
+ComparedRun run_variant(const Problem& problem, const Configuration& configuration, std::size_t place, const Effort& effort) {
+  ComparedRun run{.configuration = &configuration, .place = place};
+  const model::Cloth cloth = model::compile(problem.scene);
+  const double begin = seconds(effort.time_of);
+  Solved solved = run.variant().solve(cloth, problem.times, effort.limits);
+  const double milliseconds = 1e3 * (seconds(effort.time_of) - begin);
+  note_work(*cloth.ode.work, run);
+  run.outcome = solved.end.result.outcome;
+  if (!solved.end.succeeded()) {
+    run.exclude(solved.end.result.message);
+    return run;
   }
-  note_work(*cloth.ode.work, trial);
+  const auto positions = reference::positions_of(std::move(solved.states));
+  run.measured = {reference::largest_rms_distance(positions, problem.truth) / problem.length, {milliseconds}};
   const std::int64_t starting = count(*cloth.ode.work, {"starting_steps"});
-  if (trial.outcome == "success" && 2 * starting > trial.steps) {
-    trial.outcome = fmt::format("{} of {} steps are another method's, which starts it", starting, trial.steps);
-    trial.measured = {std::nan(""), {}};
+  if (!std::isfinite(run.measured.error)) {
+    run.outcome = solver::Outcome::not_finite;
+    run.exclude("not finite");
+  } else if (2 * starting > run.steps) {
+    run.exclude(fmt::format("{} of {} steps are another method's, which starts it", starting, run.steps));
   }
-  return trial;
+  return run;
 }
 
 /// Whether a rival was as exact and quicker by this factor.
-bool outdone(const results::Measured& trial, const std::vector<results::Measured>& rivals, double factor) {
-  return !trial.times.empty() && std::ranges::any_of(rivals, [&](const results::Measured& other) {
-    return !other.times.empty() && other.error <= trial.error && factor * other.times[0] < trial.times[0];
+bool outdone(const results::Measured& run, const std::vector<results::Measured>& rivals, double factor) {
+  return !run.times.empty() && std::ranges::any_of(rivals, [&](const results::Measured& other) {
+    return !other.times.empty() && other.error <= run.error && factor * other.times[0] < run.times[0];
   });
 }
 
-/// `rivals`: other trials of the same code.
-std::vector<Trial> try_family(const Problem& problem, const Family& family, const Effort& effort,
-                              std::vector<results::Measured> rivals) {
-  std::vector<Trial> trials;
+/// `rivals`: other runs of the same code.
+std::vector<ComparedRun> run_configuration(const Problem& problem, const Configuration& configuration, const Effort& effort,
+                                           std::vector<results::Measured> rivals) {
+  std::vector<ComparedRun> runs;
   int times_outdone = 0;
   double before = INFINITY;
   bool succeeded = false;
-  for (std::size_t k = 0; k < family.candidates.size();) {
+  for (std::size_t k = 0; k < configuration.variants.size();) {
     const double begin = seconds(effort.time_of);
-    const Trial& trial = trials.emplace_back(try_candidate(problem, family, k, effort));
+    const ComparedRun& run = runs.emplace_back(run_variant(problem, configuration, k, effort));
     const double taken = seconds(effort.time_of) - begin;
-    const bool too_long = taken > 0.7 * effort.cap;
-    succeeded |= trial.outcome == "success";
+    const bool too_long = taken > 0.7 * effort.limits.seconds;
+    succeeded |= run.counts();
     const bool slower = taken > hardly_more * before;
-    const bool lost = !family.advised && (slower || trial.measured.error <= coarse_error) &&
-                      outdone(trial.measured, rivals, slower ? hopeless : by_far);
+    const bool lost = !configuration.advised && (slower || run.measured.error <= coarse_error) &&
+                      outdone(run.measured, rivals, slower ? hopeless : by_far);
     times_outdone = lost ? times_outdone + 1 : 0;
     before = taken;
-    rivals.push_back(trial.measured);
-    const bool exact = trial.measured.error < std::max(too_exact * problem.uncertainty, problem.enough);
+    rivals.push_back(run.measured);
+    const bool exact = run.measured.error < std::max(too_exact * problem.uncertainty, problem.enough);
     if ((too_long && succeeded) || exact || times_outdone > 1) break;
     k += too_long ? leap : 1;
   }
-  return trials;
+  return runs;
 }
 
-std::vector<results::Measured> rivals_of(const Family& family, const std::vector<Trial>& trials) {
+std::vector<results::Measured> rivals_of(const Configuration& configuration, const std::vector<ComparedRun>& runs) {
   std::vector<results::Measured> rivals;
-  for (const Trial& trial : trials)
-    if (trial.family->code == family.code) rivals.push_back(trial.measured);
+  for (const ComparedRun& run : runs)
+    if (run.configuration->code == configuration.code) rivals.push_back(run.measured);
   return rivals;
 }
 
 }  // namespace
 
-std::vector<double> levels(const Problem& problem) {
-  constexpr double part = 0.3;  // of an error that the truth may be uncertain by
+void ComparedRun::exclude(std::string why) {
+  reason = std::move(why);
+  measured = {std::nan(""), {}};
+}
+
+std::string DefaultChoice::name() const {
+  return method == nullptr ? "" : fmt::format("{} by {}", method->name, to_string(control));
+}
+
+Contender of_code(Code code) {
+  return [code](const Configuration& configuration) { return configuration.code == code; };
+}
+
+Contender named(const std::string& name) {
+  return [name](const Configuration& configuration) { return configuration.name == name; };
+}
+
+Contender only(const Configuration& configuration) {
+  return [&configuration](const Configuration& other) { return &other == &configuration; };
+}
+
+std::vector<double> usual_errors() {
   std::vector<double> all;
-  for (int digits = 1; digits <= 7; ++digits)
-    if (const double error = std::pow(10.0, -digits); problem.uncertainty <= part * error) all.push_back(error);
+  for (int digits = 1; digits <= 7; ++digits) all.push_back(std::pow(10.0, -digits));
+  return all;
+}
+
+bool resolves(const Problem& problem, double error) {
+  constexpr double part = 0.3;  // of an error that the truth may be uncertain by
+  return problem.uncertainty <= part * error;
+}
+
+std::vector<double> levels(const Problem& problem) {
+  std::vector<double> all = usual_errors();
+  std::erase_if(all, [&](double error) { return !resolves(problem, error); });
   return all;
 }
 
@@ -137,114 +167,120 @@ std::vector<double> asked(const Problem& problem) {
   return all;
 }
 
-std::vector<Trial> try_all(const Problem& problem, const std::vector<Family>& families, const Effort& effort,
-                           Checkpoint& checkpoint) {
-  std::vector<Trial> trials;
-  for (const Family& family : families) {
-    checkpoint.show(fmt::format("{}: {}", problem.name, family.name));
-    auto tried = checkpoint.once(family.name, [&] { return try_family(problem, family, effort, rivals_of(family, trials)); });
-    for (Trial& trial : tried) {
-      trial.family = &family;
-      trials.push_back(std::move(trial));
+std::vector<ComparedRun> run_all(const Problem& problem, const std::vector<Configuration>& configurations, const Effort& effort,
+                                 Checkpoint& checkpoint) {
+  std::vector<ComparedRun> runs;
+  for (const Configuration& configuration : configurations) {
+    checkpoint.show(fmt::format("{}: {}", problem.name, configuration.name));
+    auto some = checkpoint.once(
+        configuration.name, [&] { return run_configuration(problem, configuration, effort, rivals_of(configuration, runs)); });
+    for (ComparedRun& run : some) {
+      run.configuration = &configuration;
+      runs.push_back(std::move(run));
     }
     checkpoint.advance();
   }
-  return trials;
-}
-
-std::vector<Contender> contenders(const std::vector<Trial>& trials) {
-  std::vector<Contender> all{{"ours", {}}};
-  const auto join = [&](const std::string& name, std::size_t k) {
-    for (Contender& contender : all)
-      if (contender.name == name) return contender.members.push_back(k);
-    all.push_back({name, {k}});
-  };
-  for (std::size_t k = 0; k < trials.size(); ++k) {
-    const Family& family = *trials[k].family;
-    join(is_ours(family.code) ? "ours" : "sundials", k);
-    if (family.code == "drape" || family.code == "thesis") join("implicit", k);
-    if (family.code != "drape") join(family.code, k);
-    if (!family.method.empty()) join("defaults", k);
-    if (!family.method.empty()) join(fmt::format("default {} by {}", family.method, family.control), k);
-    join(family.name, k);
-  }
-  return all;
+  return runs;
 }
 
 namespace {
 
-/// The trials near the front of any of these.
-std::set<std::size_t> near_fronts(const Problem& problem, const std::vector<Contender>& who, const std::vector<Trial>& trials) {
+/// What was measured of the runs of a contender, and their places.
+struct Measurements {
+  std::vector<results::Measured> measured;
+  std::vector<std::size_t> places;
+};
+
+Measurements measurements(const Contender& contender, const std::vector<ComparedRun>& runs) {
+  Measurements of;
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    if (!contender(*runs[k].configuration)) continue;
+    of.measured.push_back(runs[k].measured);
+    of.places.push_back(k);
+  }
+  return of;
+}
+
+/// The places of the runs near the front of any of these.
+std::set<std::size_t> near_fronts(const Problem& problem, const std::vector<Contender>& who,
+                                  const std::vector<ComparedRun>& runs) {
   std::set<std::size_t> chosen;
   for (const Contender& contender : who) {
-    std::vector<results::Measured> measured;
-    for (const std::size_t k : contender.members) measured.push_back(trials[k].measured);
-    for (const std::size_t k : results::near_quickest(measured, asked(problem), slack)) chosen.insert(contender.members[k]);
+    const auto [measured, places] = measurements(contender, runs);
+    for (const std::size_t k : results::near_quickest(measured, asked(problem), slack)) chosen.insert(places[k]);
   }
   return chosen;
 }
 
-/// Fails trials near a front whose energy cannot be, until there are none.
-void judge_energies(const Problem& problem, const std::vector<Contender>& who, std::vector<Trial>& trials,
+/// Excludes runs near a front whose energy cannot be, until there are none.
+void guard_energies(const Problem& problem, const std::vector<Contender>& who, std::vector<ComparedRun>& runs, Limits limits,
                     Checkpoint& checkpoint) {
-  std::set<std::size_t> judged;
-  for (bool failed = true; failed;) {
-    failed = false;
-    for (const std::size_t k : near_fronts(problem, who, trials)) {
-      Trial& trial = trials[k];
-      if (!judged.insert(k).second || !trial.configuration().energy_fault) continue;
-      const std::string name = fmt::format("energy of {} {}", trial.family->name, trial.configuration().value);
-      const std::string fault = checkpoint.once(name, [&] { return trial.configuration().energy_fault(); });
-      if (fault.empty()) continue;
-      trial.outcome = fault;
-      trial.measured = {std::nan(""), {}};
-      failed = true;
+  limits.seconds *= longer_guarded;
+  std::set<std::size_t> guarded;
+  for (bool excluded = true; excluded;) {
+    excluded = false;
+    for (const std::size_t k : near_fronts(problem, who, runs)) {
+      ComparedRun& run = runs[k];
+      if (!guarded.insert(k).second) continue;
+      const std::string id = fmt::format("energy of {} {}", run.configuration->name, run.variant().value);
+      const solver::RunResult result = checkpoint.once(id, [&] { return run.variant().guarded(limits).result; });
+      if (result.outcome == solver::Outcome::success) continue;
+      run.outcome = result.outcome;
+      run.exclude(result.message);
+      excluded = true;
     }
   }
 }
 
 }  // namespace
 
-void time_fronts(const Problem& problem, std::vector<Trial>& trials, const Effort& effort, const std::set<std::string>& named,
-                 Checkpoint& checkpoint) {
-  std::set<std::string> families;
-  for (const Trial& trial : trials) families.insert(trial.family->name);
-  std::vector<Contender> who = contenders(trials);
-  std::erase_if(who, [&](const Contender& one) { return families.contains(one.name) && !named.contains(one.name); });
-  time_fronts(problem, who, trials, effort, checkpoint);
+void time_fronts(const Problem& problem, std::vector<ComparedRun>& runs, const Effort& effort,
+                 const std::set<std::string>& names, Checkpoint& checkpoint) {
+  std::vector<Contender> who{&Configuration::is_ours, &Configuration::is_sundials, &Configuration::is_implicit,
+                             &Configuration::is_default};
+  std::set<Code> codes;
+  std::set<const Configuration*> defaults;
+  for (const ComparedRun& run : runs) {
+    codes.insert(run.configuration->code);
+    if (run.configuration->is_default()) defaults.insert(run.configuration);
+  }
+  for (const Code code : codes)
+    if (code != Code::drape) who.push_back(of_code(code));
+  for (const Configuration* configuration : defaults) who.push_back(only(*configuration));
+  for (const std::string& name : names) who.push_back(named(name));
+  time_fronts(problem, who, runs, effort, checkpoint);
 }
 
-void time_fronts(const Problem& problem, const std::vector<Contender>& who, std::vector<Trial>& trials, const Effort& effort,
-                 Checkpoint& checkpoint) {
-  judge_energies(problem, who, trials, checkpoint);
-  const std::set<std::size_t> chosen = near_fronts(problem, who, trials);
-  std::vector<Repeated> runs;
+void time_fronts(const Problem& problem, const std::vector<Contender>& who, std::vector<ComparedRun>& runs,
+                 const Effort& effort, Checkpoint& checkpoint) {
+  guard_energies(problem, who, runs, effort.limits, checkpoint);
+  const std::set<std::size_t> chosen = near_fronts(problem, who, runs);
+  std::vector<Repeated> repeated;
   for (const std::size_t k : chosen) {
-    const auto prepare = [&problem, &solve = trials[k].configuration().solve] {
+    const auto prepare = [&problem, &solve = runs[k].variant().solve] {
       return [&problem, &solve, cloth = std::make_shared<model::Cloth>(model::compile(problem.scene))] {
-        solve(*cloth, problem.times);
+        solve(*cloth, problem.times, {});
       };
     };
-    const bool few = trials[k].measured.times.front() > slow;
-    runs.push_back({prepare, few ? std::min(fewest_repetitions, effort.repetitions) : effort.repetitions});
+    const bool few = runs[k].measured.times.front() > slow;
+    repeated.push_back({prepare, few ? std::min(fewest_repetitions, effort.repetitions) : effort.repetitions});
   }
   const auto times = checkpoint.once("times", [&] {
     return time_runs(
-        runs, [] {}, effort.time_of);
+        repeated, [] {}, effort.time_of);
   });
   for (std::size_t place = 0; const std::size_t k : chosen) {
-    trials[k].measured.times = times[place++];
-    trials[k].timed = true;
+    runs[k].measured.times = times[place++];
+    runs[k].timed = true;
   }
 }
 
-std::vector<results::Measured> timed(const Contender& contender, const std::vector<Trial>& trials) {
-  std::vector<results::Measured> measured;
-  for (const std::size_t k : contender.members) {
-    measured.push_back(trials[k].measured);
-    if (!trials[k].timed) measured.back().times.clear();
-  }
-  return measured;
+const ComparedRun* quickest(const Contender& contender, const std::vector<ComparedRun>& runs, double error) {
+  auto [measured, places] = measurements(contender, runs);
+  for (std::size_t k = 0; k < places.size(); ++k)
+    if (!runs[places[k]].timed) measured[k].times.clear();
+  const auto best = results::quickest(measured, error);
+  return best ? &runs[places[*best]] : nullptr;
 }
 
 }  // namespace drape::bench

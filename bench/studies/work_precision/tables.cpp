@@ -20,39 +20,44 @@ using results::field;
 using results::Role;
 using results::to_cell;
 
-// --- Trials --------------------------------------------------------------------------------------------------------------
+// --- Runs ----------------------------------------------------------------------------------------------------------------
 
-struct TrialRow {
-  const Trial& trial;
+struct RunRow {
+  const ComparedRun& run;
   double uncertainty;  ///< of the reference
 };
 
-Cell kind(const TrialRow& row) {
-  const Family& family = *row.trial.family;
-  return !family.method.empty() ? "automatic" : family.code == "drape" ? "" : family.code;
+/// None: only as that of its side.
+Cell kind(const RunRow& row) {
+  const Configuration& configuration = *row.run.configuration;
+  if (configuration.is_default()) return "automatic";
+  return configuration.code == Code::drape ? "" : std::string(to_string(configuration.code));
 }
 
-constexpr ColumnOf<TrialRow> tried_columns[] = {
-    {"code", "", "", "whose it is", Role::key, [](const TrialRow& row) -> Cell { return row.trial.family->code; }},
+constexpr ColumnOf<RunRow> run_columns[] = {
+    {"code", "", "", "whose it is", Role::key,
+     [](const RunRow& row) -> Cell { return std::string(to_string(row.run.configuration->code)); }},
     {"family", "", "", "ways that differ in one number", Role::key,
-     [](const TrialRow& row) -> Cell { return row.trial.family->name; }},
+     [](const RunRow& row) -> Cell { return row.run.configuration->name; }},
     {"method", "", "", "ours with the program's defaults: the method", Role::key,
-     [](const TrialRow& row) -> Cell { return row.trial.family->method; }},
+     [](const RunRow& row) {
+       return to_cell(row.run.configuration->is_default() ? row.run.configuration->by_default->name : "");
+     }},
     {"build", "", "", "how the program and SUNDIALS were built", Role::note,
-     [](const TrialRow&) -> Cell { return reference::sundials_build(); }},
+     [](const RunRow&) -> Cell { return reference::sundials_build(); }},
     {"control", "", "", "the number: step [s], tolerance, or fraction of the stability limit", Role::key,
-     [](const TrialRow& row) -> Cell { return row.trial.family->control; }},
-    {"value", "", "1", "its value", Role::key, [](const TrialRow& row) -> Cell { return row.trial.configuration().value; }},
+     [](const RunRow& row) -> Cell { return std::string(to_string(row.run.configuration->control)); }},
+    {"value", "", "1", "its value", Role::key, [](const RunRow& row) -> Cell { return row.run.variant().value; }},
     {"outcome", "", "", "success, or why there is none", Role::outcome,
-     [](const TrialRow& row) -> Cell { return row.trial.outcome; }},
+     [](const RunRow& row) -> Cell { return row.run.counts() ? "success" : row.run.reason; }},
     {"side", "", "", "whose search it is of", Role::note,
-     [](const TrialRow& row) -> Cell { return is_ours(row.trial.family->code) ? "ours" : "SUNDIALS"; }},
+     [](const RunRow& row) -> Cell { return row.run.configuration->is_ours() ? "ours" : "SUNDIALS"; }},
     {"kind", "", "", "what it is compared as beside its side; none: as that only", Role::note, kind},
-    {"uncertainty", "", "1", "of the reference, as the error", Role::uncertainty, field<&TrialRow::uncertainty>},
-    {"steps", "", "1", "steps", Role::counter, [](const TrialRow& row) -> Cell { return row.trial.steps; }},
-    {"forces", "", "1", "evaluations of forces", Role::counter, [](const TrialRow& row) -> Cell { return row.trial.forces; }},
+    {"uncertainty", "", "1", "of the reference, as the error", Role::uncertainty, field<&RunRow::uncertainty>},
+    {"steps", "", "1", "steps", Role::counter, [](const RunRow& row) -> Cell { return row.run.steps; }},
+    {"forces", "", "1", "evaluations of forces", Role::counter, [](const RunRow& row) -> Cell { return row.run.forces; }},
     {"factorisations", "", "1", "matrices factored", Role::counter,
-     [](const TrialRow& row) -> Cell { return row.trial.factorisations; }},
+     [](const RunRow& row) -> Cell { return row.run.factorisations; }},
 };
 
 using Times = const results::Measured&;
@@ -70,7 +75,7 @@ constexpr ColumnOf<results::Measured> times_columns[] = {
 
 /// Where winners are sought.
 struct Level {
-  const SceneTrials* scene;
+  const SceneRuns* scene;
   double error;
 };
 
@@ -80,13 +85,13 @@ constexpr ColumnOf<Level> level_columns[] = {
 };
 
 /// The size of the search on each side, and what part of the motion an error is.
-constexpr ColumnOf<SceneTrials> search_columns[] = {
-    {"our_families", "", "1", "families of ours that were tried", Role::quantity,
-     [](const SceneTrials& scene) { return to_cell(number_of_families(scene, true)); }},
-    {"sundials_families", "", "1", "families of SUNDIALS that were tried", Role::quantity,
-     [](const SceneTrials& scene) { return to_cell(number_of_families(scene, false)); }},
+constexpr ColumnOf<SceneRuns> search_columns[] = {
+    {"our_families", "", "1", "configurations of ours that were tried", Role::quantity,
+     [](const SceneRuns& scene) { return to_cell(number_of_configurations(scene, true)); }},
+    {"sundials_families", "", "1", "configurations of SUNDIALS that were tried", Role::quantity,
+     [](const SceneRuns& scene) { return to_cell(number_of_configurations(scene, false)); }},
     {"motion", "", "1", "largest distance from the start, over the scene's size", Role::quantity,
-     [](const SceneTrials& scene) { return scene.problem.motion > 0 ? Cell(scene.problem.motion) : Cell(); }},
+     [](const SceneRuns& scene) { return scene.problem.motion > 0 ? Cell(scene.problem.motion) : Cell(); }},
 };
 
 /// CPU times of one over those of another, with the interval of its uncertainty.
@@ -98,7 +103,7 @@ struct TimeRatio {
 /// Nothing unless there are both.
 std::optional<TimeRatio> ratio_of(const Winner& a, const Winner& b) {
   if (!a || !b) return std::nullopt;
-  return TimeRatio{a.time / b.time, results::ratio_of_medians(a.trial->measured, b.trial->measured)};
+  return TimeRatio{a.time / b.time, results::ratio_of_medians(a.run->measured, b.run->measured)};
 }
 
 constexpr ColumnOf<TimeRatio> time_ratio_columns[] = {
@@ -123,7 +128,7 @@ Beside beside(const Winner& winner, const Winner& best) {
   return {winner, ratio, ratio && tie(winner, best)};
 }
 
-results::Quartiles times_of(const Beside& one) { return results::quartiles(one.winner.trial->measured.times); }
+results::Quartiles times_of(const Beside& one) { return results::quartiles(one.winner.run->measured.times); }
 
 constexpr ColumnOf<Beside> winner_columns[] = {
     {"{}", "", "", "the quickest", Role::note, [](const Beside& one) -> Cell { return one.winner.name(); }},
@@ -141,16 +146,20 @@ constexpr ColumnOf<Beside> tie_columns[] = {
 
 /// A contender of the table of winners.
 struct WinnerGroup {
-  std::string name, title, contender;
+  std::string name, title;
+  Contender contender;
 };
 
-std::vector<WinnerGroup> winner_groups(const std::string& usual) {
-  std::vector<WinnerGroup> groups{{"defaults", "auto", "defaults"},
+std::vector<WinnerGroup> winner_groups(const DefaultChoice& usual) {
+  std::vector<WinnerGroup> groups{{"defaults", "auto", &Configuration::is_default},
                                   {"usual", "usual", usual},
-                                  {"explicit", "explicit", "explicit"},
-                                  {"thesis", "thesis", "thesis"},
-                                  {"sundials", "SUNDIALS", "sundials"}};
-  for (const std::string& package : packages()) groups.push_back({package, package, package});
+                                  {"explicit", "explicit", &Configuration::is_explicit},
+                                  {"thesis", "thesis", &Configuration::is_thesis},
+                                  {"sundials", "SUNDIALS", &Configuration::is_sundials}};
+  for (const Code package : packages()) {
+    const std::string name(to_string(package));
+    groups.push_back({name, name, of_code(package)});
+  }
   return groups;
 }
 
@@ -165,15 +174,14 @@ constexpr ColumnOf<WinnersRow> best_columns[] = {
      [](const WinnersRow& row) { return row.ours.winner ? Cell(row.ours.winner.name()) : Cell(); }},
 };
 
-std::vector<WinnersRow> winners_rows(const std::vector<SceneTrials>& scenes, const std::vector<WinnerGroup>& groups) {
+std::vector<WinnersRow> winners_rows(const std::vector<SceneRuns>& scenes, const std::vector<WinnerGroup>& groups) {
   std::vector<WinnersRow> rows;
-  for (const SceneTrials& scene : scenes) {
-    const Winners winners(scene);
+  for (const SceneRuns& scene : scenes)
     for (const double error : levels(scene.problem)) {
-      WinnersRow& row = rows.emplace_back(WinnersRow{{&scene, error}, {winners.of("ours", error)}, {}});
-      for (const WinnerGroup& group : groups) row.others.push_back(beside(winners.of(group.contender, error), row.ours.winner));
+      WinnersRow& row = rows.emplace_back(WinnersRow{{&scene, error}, {winner(scene, &Configuration::is_ours, error)}, {}});
+      for (const WinnerGroup& group : groups)
+        row.others.push_back(beside(winner(scene, group.contender, error), row.ours.winner));
     }
-  }
   return rows;
 }
 
@@ -181,8 +189,6 @@ std::vector<WinnersRow> winners_rows(const std::vector<SceneTrials>& scenes, con
 const Beside* if_won(const Beside& one) { return one.winner ? &one : nullptr; }
 
 // --- One choice of each side ---------------------------------------------------------------------------------------------
-
-constexpr const char* sides[] = {"ours", "defaults", "sundials"};
 
 /// Who is chosen at an error, and the ratios of SUNDIALS to ours.
 struct Sides {
@@ -192,7 +198,7 @@ struct Sides {
 };
 
 constexpr ColumnOf<Winner> side_columns[] = {
-    {"{}", "{}", "", "the family with the value that is the quickest", Role::note,
+    {"{}", "{}", "", "the configuration with the value that is the quickest", Role::note,
      [](const Winner& winner) -> Cell { return winner.name(); }},
     {"{}_ms", "CPU", "ms", "its median CPU time", Role::time,
      [](const Winner& winner) { return winner ? Cell(winner.time) : Cell(); }},
@@ -201,22 +207,24 @@ constexpr ColumnOf<Winner> side_columns[] = {
 constexpr ColumnOf<Sides> held_out_columns[] = {
     {"scene", "scene", "", "where it is judged", Role::key,
      [](const Sides& row) -> Cell { return row.level.scene->problem.name; }},
-    {"training", "chosen on", "", "where the families were chosen", Role::key,
+    {"training", "chosen on", "", "where the configurations were chosen", Role::key,
      [](const Sides& row) -> Cell { return row.level.scene->training->problem.name; }},
     {"error", "error", "1", "at most, over the scene's size", Role::key,
      [](const Sides& row) -> Cell { return row.level.error; }},
 };
 
 /// What was chosen on the scene's training, judged on it.
-std::vector<Sides> held_out(const SceneTrials& scene) {
-  const Winners winners(scene), training(*scene.training);
+std::vector<Sides> held_out(const SceneRuns& scene) {
   std::vector<Sides> rows;
   for (const double error : levels(scene.problem)) {
-    const auto chosen = [&](const char* side) {
-      const Winner winner = training.of(side, error);
-      return winner ? winners.of(winner.trial->family->name, error) : Winner{};
+    const auto chosen = [&](const Contender& side) {
+      const Winner best = winner(*scene.training, side, error);
+      return best ? winner(scene, named(best.run->configuration->name), error) : Winner{};
     };
-    rows.push_back({{&scene, error}, chosen("sundials"), chosen("ours"), chosen("defaults")});
+    rows.push_back({{&scene, error},
+                    chosen(&Configuration::is_sundials),
+                    chosen(&Configuration::is_ours),
+                    chosen(&Configuration::is_default)});
   }
   return rows;
 }
@@ -235,8 +243,9 @@ void add_ratio(results::Table& table, const std::vector<Sides>& rows, std::optio
 
 constexpr ColumnOf<Score> score_columns[] = {
     {"choice", "choice", "", "a method and what controls its accuracy", Role::key,
-     [](const Score& score) -> Cell { return score.contender.substr(std::string_view("default ").size()); }},
-    {"cells", "cells", "1", "scenes and errors", Role::quantity, field<&Score::cells>},
+     [](const Score& score) -> Cell { return score.choice.name(); }},
+    {"cells", "cells", "1", "scenes and errors", Role::quantity,
+     [](const Score& score) { return to_cell(score.ratios.size()); }},
     {"missed", "missed", "1", "of these not reached", Role::time, field<&Score::missed>},
     {"within", "within 1.5", "1", "of these at most 1.5 times our best, or tied with it", Role::time, field<&Score::within>},
     {"mean", "mean", "1", "geometric mean of the ratios to our best, those not reached as 10", Role::time,
@@ -246,18 +255,17 @@ constexpr ColumnOf<Score> score_columns[] = {
 
 }  // namespace
 
-int number_of_families(const SceneTrials& scene, bool ours) {
-  return static_cast<int>(
-      std::ranges::count_if(scene.families, [=](const Family& family) { return is_ours(family.code) == ours; }));
+int number_of_configurations(const SceneRuns& scene, bool ours) {
+  return static_cast<int>(std::ranges::count(scene.configurations, ours, &Configuration::is_ours));
 }
 
-results::Table trials_table(const SceneTrials& scene) {
-  std::vector<TrialRow> rows;
-  for (const Trial& trial : scene.trials) rows.push_back({trial, scene.problem.uncertainty});
+results::Table runs_table(const SceneRuns& scene) {
+  std::vector<RunRow> rows;
+  for (const ComparedRun& run : scene.runs) rows.push_back({run, scene.problem.uncertainty});
   results::Table table =
-      results::make_table("trials: " + scene.problem.name, "All that was tried on " + scene.problem.name, tried_columns, rows);
+      results::make_table("trials: " + scene.problem.name, "All that was tried on " + scene.problem.name, run_columns, rows);
   results::add_columns(table, times_columns, rows,
-                       [](const TrialRow& row) { return row.trial.measured.times.empty() ? nullptr : &row.trial.measured; });
+                       [](const RunRow& row) { return row.run.measured.times.empty() ? nullptr : &row.run.measured; });
   table.timed_rows = table.for_file = true;
   using results::Part;
   draw(table, results::Figure::work_precision,
@@ -277,14 +285,14 @@ results::Table trials_table(const SceneTrials& scene) {
   return table;
 }
 
-results::Table winners_table(const std::vector<SceneTrials>& scenes) {
-  const std::string usual = usual_choice(scenes);
+results::Table winners_table(const std::vector<SceneRuns>& scenes) {
+  const DefaultChoice usual = usual_choice(scenes);
   const std::vector<WinnerGroup> groups = winner_groups(usual);
   const std::vector<WinnersRow> rows = winners_rows(scenes, groups);
   results::Table table{"winners",
                        fmt::format("With hindsight: the quickest at each error, and ratios to our best; "
                                    "usual: {}; auto: the best method with automatic stages and linear solvers; {}",
-                                   usual, reference::sundials_build()),
+                                   usual.name(), reference::sundials_build()),
                        {}};
   results::add_columns(table, level_columns, rows, [](const WinnersRow& row) { return &row.level; });
   results::add_columns(table, search_columns, rows, [](const WinnersRow& row) { return row.level.scene; });
@@ -303,24 +311,24 @@ results::Table winners_table(const std::vector<SceneTrials>& scenes) {
   return table;
 }
 
-std::set<std::string> named_families(const SceneTrials& scene) {
+std::set<std::string> named_configurations(const SceneRuns& scene) {
   std::set<std::string> names{advised_peer(), advised_ours};
   if (scene.training == nullptr) return names;
-  const Winners training(*scene.training);
   for (const double error : levels(scene.problem))
-    for (const char* side : sides)
-      if (const Winner winner = training.of(side, error)) names.insert(winner.trial->family->name);
+    for (const auto side : {&Configuration::is_ours, &Configuration::is_default, &Configuration::is_sundials})
+      if (const Winner best = winner(*scene.training, side, error)) names.insert(best.run->configuration->name);
   return names;
 }
 
-results::Table held_out_table(const std::vector<SceneTrials>& scenes) {
+results::Table held_out_table(const std::vector<SceneRuns>& scenes) {
   std::vector<Sides> rows;
-  for (const SceneTrials& scene : scenes)
+  for (const SceneRuns& scene : scenes)
     if (scene.training != nullptr) std::ranges::move(held_out(scene), std::back_inserter(rows));
-  results::Table table = results::make_table(
-      "held-out",
-      fmt::format("Families that were the quickest on another scene, judged on this one; {}", reference::sundials_build()),
-      held_out_columns, rows);
+  results::Table table =
+      results::make_table("held-out",
+                          fmt::format("Configurations that were the quickest on another scene, judged on this one; {}",
+                                      reference::sundials_build()),
+                          held_out_columns, rows);
   results::add_columns(table, search_columns, rows, [](const Sides& row) { return row.level.scene; });
   add_side(table, rows, &Sides::sundials, "sundials", "SUNDIALS");
   add_side(table, rows, &Sides::ours, "ours", "ours");
@@ -330,13 +338,12 @@ results::Table held_out_table(const std::vector<SceneTrials>& scenes) {
   return table;
 }
 
-results::Table recommended_table(const std::vector<SceneTrials>& scenes) {
+results::Table recommended_table(const std::vector<SceneRuns>& scenes) {
   std::vector<Sides> rows;
-  for (const SceneTrials& scene : scenes) {
-    if (is_peer_edge(scene)) continue;
-    const Winners winners(scene);
+  for (const SceneRuns& scene : scenes) {
+    if (scene.problem.with_other_codes) continue;
     for (const double error : levels(scene.problem))
-      rows.push_back({{&scene, error}, winners.of(advised_peer(), error), winners.of(advised_ours, error)});
+      rows.push_back({{&scene, error}, winner(scene, named(advised_peer()), error), winner(scene, named(advised_ours), error)});
   }
   results::Table table{
       "recommended",
@@ -349,7 +356,7 @@ results::Table recommended_table(const std::vector<SceneTrials>& scenes) {
   return table;
 }
 
-results::Table defaults_table(const std::vector<SceneTrials>& scenes) {
+results::Table defaults_table(const std::vector<SceneRuns>& scenes) {
   return results::make_table(
       "defaults", "Methods with automatic stages and linear solvers against our best choice, over all scenes and errors",
       score_columns, scores(scenes));

@@ -5,46 +5,46 @@
 
 namespace drape::bench {
 
-/// A scene with all that was tried on it. `trials` point into `families`.
-struct SceneTrials {
+/// A scene with all that was run on it. `runs` point into `configurations`.
+struct SceneRuns {
   Problem problem;
-  std::vector<Family> families;
-  std::vector<Trial> trials;
-  const SceneTrials* training = nullptr;  ///< another scene, on which families were chosen for this one
+  std::vector<Configuration> configurations;
+  std::vector<ComparedRun> runs;
+  const SceneRuns* training = nullptr;  ///< another scene, on which configurations were chosen for this one
 };
 
-/// How many families of ours or of SUNDIALS were tried on a scene.
-int number_of_families(const SceneTrials& scene, bool ours);
+/// How many configurations of ours or of SUNDIALS were tried on a scene.
+int number_of_configurations(const SceneRuns& scene, bool ours);
 
-/// All trials of a scene, for the file and its plot.
-results::Table trials_table(const SceneTrials& scene);
+/// All runs of a scene, for the file and its plot.
+results::Table runs_table(const SceneRuns& scene);
 
 /// With hindsight: for errors of 1e-1 to 1e-7 the quickest of each contender and the ratios to ours.
-results::Table winners_table(const std::vector<SceneTrials>& scenes);
+results::Table winners_table(const std::vector<SceneRuns>& scenes);
 
 /// For the overview: the same of ours and of SUNDIALS only; and the least, median and largest ratio of each scene.
-results::Table quickest_table(const std::vector<SceneTrials>& scenes);
-results::Table peers_summary_table(const std::vector<SceneTrials>& scenes);
+results::Table quickest_table(const std::vector<SceneRuns>& scenes);
+results::Table peers_summary_table(const std::vector<SceneRuns>& scenes);
 
-/// Without: families of both sides that were the quickest on another scene, judged on this one.
-results::Table held_out_table(const std::vector<SceneTrials>& scenes);
+/// Without: configurations of both sides that were the quickest on another scene, judged on this one.
+results::Table held_out_table(const std::vector<SceneRuns>& scenes);
 
 /// One fixed setting of each side.
-results::Table recommended_table(const std::vector<SceneTrials>& scenes);
+results::Table recommended_table(const std::vector<SceneRuns>& scenes);
 
-/// The families that these two tables ask for on a scene.
-std::set<std::string> named_families(const SceneTrials& scene);
+/// The configurations that these two tables ask for on a scene.
+std::set<std::string> named_configurations(const SceneRuns& scene);
 
 /// How each method, with the program's defaults, compares with our best choice over all scenes and errors.
-results::Table defaults_table(const std::vector<SceneTrials>& scenes);
+results::Table defaults_table(const std::vector<SceneRuns>& scenes);
 
 /// The bars of the study.
-results::Table bars_table(const std::vector<SceneTrials>& scenes);
+results::Table bars_table(const std::vector<SceneRuns>& scenes);
 
 /// The errors [m] of other codes on the scene peer-edge, and those of the bars about it.
 std::vector<double> peer_errors();
 
 /// Other codes' figures on the scene peer-edge, and ours.
-results::Table peers_table(const std::vector<SceneTrials>& scenes);
+results::Table peers_table(const std::vector<SceneRuns>& scenes);
 
 }  // namespace drape::bench

@@ -6,63 +6,53 @@
 
 namespace drape::bench {
 
-/// The quickest trial of a contender at an error.
+/// The quickest run of a contender at an error.
 struct Winner {
-  const Trial* trial = nullptr;
+  const ComparedRun* run = nullptr;
   double time = NAN;  ///< median [ms]
 
-  explicit operator bool() const { return trial != nullptr; }
+  explicit operator bool() const { return run != nullptr; }
 
-  /// The family and the value of what controls it; "none" if nothing reaches the error.
+  /// The configuration and the value of what controls it; "none" if nothing reaches the error.
   std::string name() const;
 };
+
+/// Of those that were timed repeatedly.
+Winner winner(const SceneRuns& scene, const Contender& contender, double error);
 
 /// Whether the gap between two is below the noise.
 bool tie(const Winner& a, const Winner& b);
 
-/// All winners of a scene.
-class Winners {
- public:
-  explicit Winners(const SceneTrials& scene) : scene_(scene), contenders_(contenders(scene.trials)) {}
-
-  Winner of(const std::string& contender, double error) const;
-
- private:
-  const SceneTrials& scene_;
-  std::vector<Contender> contenders_;
-};
-
 /// The packages of SUNDIALS.
-std::vector<std::string> packages();
+std::vector<Code> packages();
 
-/// Where errors are in metres and times are compared with other codes'.
-bool is_peer_edge(const SceneTrials& scene);
-
-/// A bar about 100 × 100 particles of that scene: an error [m] and its limit in seconds per simulated second.
+/// A bar about the scene peer-edge with 100 × 100 particles: an error [m] and its limit in seconds per simulated second.
 struct PeerBar {
-  const char* contender;
+  const char* name;
+  bool (Configuration::*contender)() const;
   double error, seconds;
 };
-inline constexpr PeerBar peer_bars[] = {{"implicit", 5e-2, 0.4}, {"ours", 5e-3, 0.7}, {"ours", 3e-4, 0.5}};
-
-/// Ratios of one method, with automatic stages and linear solvers, to our best choice.
-struct Score {
-  std::string contender;
-  int cells = 0;   ///< scenes and errors
-  int missed = 0;  ///< of these not reached
-  int within = 0;  ///< of these at most `default_bar`, or tied with the best
-  double log_sum = 0, worst = 1;
-
-  /// Geometric mean of the ratios to our best, with those not reached as ten times slower.
-  double mean() const { return std::exp((log_sum + missed * std::log(10.0)) / std::max(1, cells)); }
-};
+inline constexpr PeerBar peer_bars[] = {{"implicit", &Configuration::is_implicit, 5e-2, 0.4},
+                                        {"ours", &Configuration::is_ours, 5e-3, 0.7},
+                                        {"ours", &Configuration::is_ours, 3e-4, 0.5}};
 
 constexpr double default_bar = 1.5;
 
-/// Best first, by the mean ratio.
-std::vector<Score> scores(const std::vector<SceneTrials>& scenes);
+/// Ratios of one method, with automatic stages and linear solvers, to our best choice.
+struct Score {
+  DefaultChoice choice;
+  std::vector<double> ratios = {};  ///< of scenes and errors; 10 for those not reached
+  int missed = 0;                   ///< of these not reached
+  int within = 0;                   ///< of these at most `default_bar`, or tied with the best
+  double worst = 1;                 ///< of those reached
 
-/// The contender that scores best; empty if there is none.
-std::string usual_choice(const std::vector<SceneTrials>& scenes);
+  double mean() const;  ///< geometric; infinite if there are no ratios
+};
+
+/// Best first, by the mean ratio.
+std::vector<Score> scores(const std::vector<SceneRuns>& scenes);
+
+/// The choice that scores best; none if there is none.
+DefaultChoice usual_choice(const std::vector<SceneRuns>& scenes);
 
 }  // namespace drape::bench

@@ -10,86 +10,97 @@
 #include "bench/runs/run.hpp"
 #include "bench/runs/samples.hpp"
 #include "bench/studies/studies.hpp"
+#include "bench/studies/work_precision/ranking.hpp"
 #include "bench/studies/work_precision/tables.hpp"
 #include "model/scene_file/scene_file.hpp"
 #include "reference/reference.hpp"
 #include "reference/sundials/arkode.hpp"
-#include "results/analysis/ranking.hpp"
 #include "results/columns.hpp"
 #include "solver/base/largest.hpp"
 
 namespace drape::bench {
 namespace {
 
-/// Errors are measured at all tenths of the end: at some they are small by chance, and where the motion contracts those of its
-/// beginning fade.
-constexpr int tenths = 10;
-
-struct Entry {
+/// A scene of the study, and how much is tried on it.
+struct StudiedScene {
   std::string name;
   model::Scene scene;
   Search search = Search::usual;
   Effort effort = {};
-  std::string training = {};  ///< the name of an entry before it, on which families are chosen for this one
+  std::string training = {};      ///< the name of one before it, on which configurations are chosen for this one
+  bool with_other_codes = false;  ///< as Problem has it, as the following
+  bool against_sundials = false;
 };
 
-Entry entry(const std::string& name, const std::string& scene, const std::vector<model::Override>& overrides,
-            Search search = Search::usual, const Effort& effort = {}) {
+StudiedScene studied(const std::string& name, const std::string& scene, const std::vector<model::Override>& overrides,
+                     Search search = Search::usual, const Effort& effort = {}) {
   return {name, model::load_scene(scene, overrides), search, effort};
 }
 
-constexpr Effort quick_effort{.cap = 0.3, .repetitions = 3}, large_effort{.cap = 10, .repetitions = 3};
+constexpr Effort quick_effort{.limits = {.seconds = 0.3}, .repetitions = 3},
+    large_effort{.limits = {.seconds = 10}, .repetitions = 3};
 
-std::vector<Entry> quick_entries() {
-  return {entry("hung-corners d=5", "hung-corners", {{"material.damping", "5"}, {"grid.n", "6"}, {"end.time", "0.2"}},
-                Search::quick, quick_effort),
-          entry("peer-edge n=8", "peer-edge", {{"grid.n", "8"}, {"end.time", "0.1"}}, Search::quick, quick_effort)};
+std::vector<StudiedScene> quick_scenes() {
+  std::vector<StudiedScene> all{
+      studied("hung-corners d=5", "hung-corners", {{"material.damping", "5"}, {"grid.n", "6"}, {"end.time", "0.2"}},
+              Search::quick, quick_effort),
+      studied("peer-edge n=8", "peer-edge", {{"grid.n", "8"}, {"end.time", "0.1"}}, Search::quick, quick_effort)};
+  all.front().against_sundials = true;
+  all.back().with_other_codes = true;
+  return all;
 }
 
-/// The sheet hung by its corners, for which families are chosen on the one hung by its edge.
-void add_hung_sheets(std::vector<Entry>& all, const std::string& damping) {
+/// The sheet hung by its corners, for which configurations are chosen on the one hung by its edge.
+void add_hung_sheets(std::vector<StudiedScene>& all, const std::string& damping) {
   for (const char* scene : {"hung-edge", "hung-corners"})
-    all.push_back(entry(fmt::format("{} d={}", scene, damping), scene, {{"material.damping", damping}}, Search::full));
+    all.push_back(studied(fmt::format("{} d={}", scene, damping), scene, {{"material.damping", damping}}, Search::full));
   all.back().training = all[all.size() - 2].name;
+  all.back().against_sundials = true;
 }
 
-std::vector<Entry> entries() {
-  std::vector<Entry> all;
+std::vector<StudiedScene> chosen_scenes() {
+  std::vector<StudiedScene> all;
   for (const char* d : {"50", "5", "0.5"}) add_hung_sheets(all, d);
-  all.push_back(entry("projected", "hung-corners",
-                      {{"material.damping_form", "projected"}, {"material.bend", "0.01"}, {"end.time", "0.3"}}));
-  all.push_back(entry("pulled", "pulled", {{"material.damping_form", "projected"}}));
-  all.push_back(entry("wind", "wind", {{"end.time", "0.5"}}));
-  all.push_back(entry("tablecloth", "tablecloth", {{"end.time", "0.3"}}));
-  for (const char* n : {"20", "100"}) all.push_back(entry(fmt::format("peer-edge n={}", n), "peer-edge", {{"grid.n", n}}));
-  all.push_back(entry("peer-edge n=316", "peer-edge", {{"grid.n", "316"}}, Search::large, large_effort));
+  all.push_back(studied("projected", "hung-corners",
+                        {{"material.damping_form", "projected"}, {"material.bend", "0.01"}, {"end.time", "0.3"}}));
+  all.push_back(studied("pulled", "pulled", {{"material.damping_form", "projected"}}));
+  all.push_back(studied("wind", "wind", {{"end.time", "0.5"}}));
+  all.push_back(studied("tablecloth", "tablecloth", {{"end.time", "0.3"}}));
+  const std::size_t before = all.size();
+  for (const char* n : {"20", "100"}) all.push_back(studied(fmt::format("peer-edge n={}", n), "peer-edge", {{"grid.n", n}}));
+  all.push_back(studied("peer-edge n=316", "peer-edge", {{"grid.n", "316"}}, Search::large, large_effort));
+  for (std::size_t k = before; k < all.size(); ++k) all[k].with_other_codes = true;
   return all;
 }
 
 /// And all other built-in scenes as they are, so that no ranking rests on a choice of scenes.
-std::vector<Entry> with_all_scenes(std::vector<Entry> all) {
+std::vector<StudiedScene> with_all_scenes(std::vector<StudiedScene> all) {
   for (const model::BuiltinScene& scene : model::builtin_scenes()) {
     const std::string name(scene.name);
-    if (std::ranges::find(all, name, [](const Entry& e) { return e.scene.name; }) == all.end())
-      all.push_back(entry(name, name, {}));
+    if (std::ranges::find(all, name, [](const StudiedScene& one) { return one.scene.name; }) == all.end())
+      all.push_back(studied(name, name, {}));
   }
   return all;
 }
 
-Problem problem(const Entry& entry) {
-  Problem result{entry.name, entry.scene, model::size(entry.scene)};
-  for (int tenth = 1; tenth < tenths; ++tenth) result.times.push_back(entry.scene.end * tenth / tenths);
-  result.times.push_back(entry.scene.end);
-  return result;
+/// Errors are measured at compared_times(): at some they are small by chance, and where the motion contracts those of its
+/// beginning fade.
+Problem problem(const StudiedScene& studied) {
+  return {.name = studied.name,
+          .scene = studied.scene,
+          .length = model::size(studied.scene),
+          .times = compared_times(studied.scene),
+          .with_other_codes = studied.with_other_codes,
+          .against_sundials = studied.against_sundials};
 }
 
-/// From the two families that certify a reference.
-void find_truth(Problem& problem, Checkpoint& checkpoint) {
+/// That of the two solvers that certify a reference.
+void set_truth(Problem& problem, Checkpoint& checkpoint) {
   const auto say = [&](const std::string& pace) { checkpoint.report("reference of " + problem.name + ": " + pace); };
   References references(1e-6, {.say = say}, 1e-10);  // errors down to 1e-7 are compared
   const model::Cloth cloth = model::compile(problem.scene);
   const auto reference = references(problem.scene, cloth);
-  for (std::size_t k = 0; k < tenths; ++k) {
+  for (std::size_t k = 0; k < problem.times.size(); ++k) {
     problem.truth.push_back(reference.trajectory.states[k].x);
     problem.motion = base::larger(problem.motion, reference::rms_distance(problem.truth[k], cloth.start.x) / problem.length);
     problem.uncertainty = base::larger(problem.uncertainty, reference.error[k] / problem.length);
@@ -114,14 +125,14 @@ std::vector<solver::Vectors> leapfrog(const Problem& problem, double fraction) {
   return fine;
 }
 
-/// Large undamped sheets are beyond the families' factorisations, but not stiff: two explicit families.
+/// Large undamped sheets are beyond those solvers' factorisations, but not stiff: two explicit ones.
 struct ExplicitTruth {
   std::vector<solver::Vectors> positions;
   double uncertainty = 0;  ///< [m]
 };
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ExplicitTruth, positions, uncertainty)
 
-ExplicitTruth find_explicit_truth(const Problem& problem) {
+ExplicitTruth compute_explicit_truth(const Problem& problem) {
   constexpr double fraction = 0.1, rtol = 1e-5;
   ExplicitTruth truth{leapfrog(problem, fraction)};
   const model::Cloth cloth = model::compile(problem.scene);
@@ -140,32 +151,26 @@ void set_explicit_truth(Problem& problem, const ExplicitTruth& truth) {
 }
 
 /// What the tables of all scenes are made from.
-using All = std::vector<SceneTrials>;
+using All = std::vector<SceneRuns>;
 
-results::Table ranking_table(const All& all) {
-  std::vector<results::Table> trials;
-  for (const SceneTrials& scene : all) trials.push_back(trials_table(scene));
-  return results::ranking(trials);
-}
-
-const SceneTrials* find(const All& all, const std::string& name) {
-  const auto found = std::ranges::find(all, name, [](const SceneTrials& scene) { return scene.problem.name; });
+const SceneRuns* find(const All& all, const std::string& name) {
+  const auto found = std::ranges::find(all, name, [](const SceneRuns& scene) { return scene.problem.name; });
   return found == all.end() ? nullptr : &*found;
 }
 
-results::Table try_scene(const Entry& entry, const Methods& methods, All& all, Checkpoint& checkpoint) {
-  checkpoint.show("reference of " + entry.name);
-  SceneTrials& scene = all.emplace_back(SceneTrials{problem(entry), {}, {}, find(all, entry.training)});
+results::Table run_scene(const StudiedScene& studied, const Methods& methods, All& all, Checkpoint& checkpoint) {
+  checkpoint.show("reference of " + studied.name);
+  SceneRuns& scene = all.emplace_back(SceneRuns{problem(studied), {}, {}, find(all, studied.training)});
   Problem& problem = scene.problem;
-  if (entry.scene.name == "peer-edge")
-    set_explicit_truth(problem, checkpoint.once("truth", [&] { return find_explicit_truth(problem); }));
+  if (problem.with_other_codes)
+    set_explicit_truth(problem, checkpoint.once("truth", [&] { return compute_explicit_truth(problem); }));
   else
-    find_truth(problem, checkpoint);
-  scene.families = families(problem.scene, entry.search, methods);
-  scene.trials = try_all(problem, scene.families, entry.effort, checkpoint);
-  checkpoint.show("timing " + entry.name);
-  time_fronts(problem, scene.trials, entry.effort, named_families(scene), checkpoint);
-  return trials_table(scene);
+    set_truth(problem, checkpoint);
+  scene.configurations = configurations(problem.scene, studied.search, methods);
+  scene.runs = run_all(problem, scene.configurations, studied.effort, checkpoint);
+  checkpoint.show("timing " + studied.name);
+  time_fronts(problem, scene.runs, studied.effort, named_configurations(scene), checkpoint);
+  return runs_table(scene);
 }
 
 /// A method that is not tried on a scene.
@@ -180,21 +185,21 @@ constexpr results::ColumnOf<Absent> absent_columns[] = {
 };
 
 /// Our methods that are not tried, so that their absence is not taken for a defeat.
-results::Table left_out_table(const std::vector<Entry>& list, const Methods& methods) {
+results::Table left_out_table(const std::vector<StudiedScene>& list, const Methods& methods) {
   std::vector<Absent> rows;
-  for (const Entry& entry : list)
-    for (const LeftOut& left : left_out(entry.scene, entry.search, methods))
-      rows.push_back({entry.name, std::string(left.method->name), left.reason});
+  for (const StudiedScene& studied : list)
+    for (const LeftOut& left : left_out(studied.scene, studied.search, methods))
+      rows.push_back({studied.name, std::string(left.method->name), left.reason});
   return results::make_table("left-out", "Methods that were not tried", absent_columns, rows);
 }
 
-std::vector<TableJob> jobs(const std::vector<Entry>& list, const Methods& methods, bool with_bars = false) {
+std::vector<TableJob> jobs(const std::vector<StudiedScene>& list, const Methods& methods, bool with_bars = false) {
   const auto all = std::make_shared<All>();
   std::vector<TableJob> jobs;
-  all->reserve(list.size());  // trials point into what is in it
-  for (const Entry& entry : list)
-    jobs.push_back({static_cast<int>(families(entry.scene, entry.search, methods).size()),
-                    [=](Checkpoint& checkpoint) { return try_scene(entry, methods, *all, checkpoint); }});
+  all->reserve(list.size());  // runs point into what is in it
+  for (const StudiedScene& studied : list)
+    jobs.push_back({static_cast<int>(configurations(studied.scene, studied.search, methods).size()),
+                    [=](Checkpoint& checkpoint) { return run_scene(studied, methods, *all, checkpoint); }});
   for (auto* table :
        {held_out_table, recommended_table, winners_table, quickest_table, peers_summary_table, defaults_table, peers_table})
     jobs.push_back({0, [=](Checkpoint&) { return table(*all); }});
@@ -209,21 +214,26 @@ std::vector<TableJob> jobs(const std::vector<Entry>& list, const Methods& method
 
 Problem certified_problem(const std::string& name, const model::Scene& scene, Checkpoint& checkpoint) {
   Problem result = problem({name, scene});
-  find_truth(result, checkpoint);
+  set_truth(result, checkpoint);
   return result;
 }
 
 std::vector<TableJob> work_precision(bool quick, const Methods& methods) {
-  return jobs(quick ? quick_entries() : with_all_scenes(entries()), methods);
+  return jobs(quick ? quick_scenes() : with_all_scenes(chosen_scenes()), methods);
 }
 
-std::vector<TableJob> bars(bool quick) { return jobs(quick ? quick_entries() : entries(), {}, true); }
+std::vector<TableJob> bars(bool quick) { return jobs(quick ? quick_scenes() : chosen_scenes(), {}, true); }
 
 std::vector<TableJob> work_precision_of(const model::Scene& scene, bool quick, const Methods& methods) {
-  if (quick) return jobs({{scene.name, scene, Search::quick, quick_effort}}, methods);
   constexpr int large = 50'000;  // particles
-  if (scene.sheet.grid.particles() >= large) return jobs({{scene.name, scene, Search::large, large_effort}}, methods);
-  return jobs({{scene.name, scene, Search::full}}, methods);
+  StudiedScene studied{scene.name, scene, Search::full};
+  if (quick)
+    studied.search = Search::quick, studied.effort = quick_effort;
+  else if (scene.sheet.grid.particles() >= large)
+    studied.search = Search::large, studied.effort = large_effort;
+  studied.with_other_codes = std::ranges::any_of(
+      chosen_scenes(), [&](const StudiedScene& one) { return one.with_other_codes && one.scene.name == scene.name; });
+  return jobs({studied}, methods);
 }
 
 }  // namespace drape::bench

@@ -1,21 +1,17 @@
-#include "bench/studies/work_precision/candidates.hpp"
+#include "bench/studies/work_precision/configurations.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
+#include "bench/runs/energy_guard.hpp"
 #include "bench/runs/run.hpp"
 #include "bench/runs/samples.hpp"
-#include "bench/studies/work_precision/energy.hpp"
 #include "bench/studies/work_precision/peers.hpp"
-#include "reference/distance.hpp"
 
 namespace drape::bench {
 namespace {
-
-using solver::Vectors;
 
 /// The methods of the thesis with a loop.
 constexpr const char* looped[] = {"implicit-euler", "bdf2", "midpoint"};
@@ -30,19 +26,25 @@ constexpr const char* other_solvers[] = {"bdf2/anderson", "midpoint/anderson", "
 bool tries_few(Search search) { return search == Search::quick || search == Search::large; }
 
 /// This is timed: where only the end is asked for, nothing looks at the run.
-std::vector<Vectors> solve_ours(const RunSpec& spec, const model::Cloth& cloth, std::span<const double> times) {
+Solved solve_ours(const RunSpec& spec, const model::Cloth& cloth, std::span<const double> times, const Limits& limits) {
   Samples samples({times.begin(), times.end()});
   std::vector<Observer*> observers;
   if (times.size() > 1) observers.push_back(&samples);
-  RunEnd end = run(spec, cloth, observers);
-  if (!end.succeeded()) throw std::runtime_error(end.result.message);
-  if (times.size() > 1) return reference::positions_of(std::move(samples).states());
-  return {std::move(end.state.x)};
+  Solved solved{run(spec, cloth, observers, limits)};
+  if (!solved.end.succeeded()) return solved;
+  if (times.size() > 1)
+    solved.states = std::move(samples).states();
+  else
+    solved.states.push_back(solved.end.state);
+  return solved;
 }
 
-Candidate ours(const RunSpec& spec, double value) {
-  return {value, [spec](const model::Cloth& cloth, std::span<const double> times) { return solve_ours(spec, cloth, times); },
-          [spec] { return energy_fault(spec); }};
+Variant ours(const RunSpec& spec, double value) {
+  return {value,
+          [spec](const model::Cloth& cloth, std::span<const double> times, const Limits& limits) {
+            return solve_ours(spec, cloth, times, limits);
+          },
+          [spec](const Limits& limits) { return run_guarded(spec, model::compile(spec.scene), limits); }};
 }
 
 RunSpec spec_of(const model::Scene& scene, const std::string& name, const solver::Options& options = {}) {
@@ -57,45 +59,45 @@ bool by_default(const RunSpec& spec) {
          options.stage_accuracy == usual.stage_accuracy;
 }
 
-Family by_steps(RunSpec spec, const std::string& code, int parts) {
-  Family family{spec.method_name() + " by steps", code, "step", by_default(spec) ? std::string(spec.method->name) : "", {}};
+Configuration by_steps(RunSpec spec, Code code, int parts) {
+  Configuration all{spec.method_name() + " by steps", code, Control::step, by_default(spec) ? spec.method : nullptr};
   for (const double h : divided_steps(spec.scene.end, parts)) {
     spec.step = h;
-    family.candidates.push_back(ours(spec, h));
+    all.variants.push_back(ours(spec, h));
   }
-  return family;
+  return all;
 }
 
-Family by_tolerance(RunSpec spec) {
-  Family family{spec.method_name() + " by tolerance", "drape", "tolerance", std::string(spec.method->name), {}};
+Configuration by_tolerance(RunSpec spec) {
+  Configuration all{spec.method_name() + " by tolerance", Code::drape, Control::tolerance, spec.method};
   for (const double tolerance : tolerances(9)) {
     spec.options.error_control = {tolerance, model::size(spec.scene), spec.scene.end};
-    family.candidates.push_back(ours(spec, tolerance));
+    all.variants.push_back(ours(spec, tolerance));
   }
-  return family;
+  return all;
 }
 
 /// Explicit sub-steps follow the stability limit, however long the step.
-Family by_fraction(RunSpec spec, int halvings) {
-  Family family{spec.method_name() + " by fraction", "explicit", "fraction", std::string(spec.method->name), {}};
+Configuration by_fraction(RunSpec spec, int halvings) {
+  Configuration all{spec.method_name() + " by fraction", Code::explicit_steps, Control::fraction, spec.method};
   for (int k = 0; k <= 2 * halvings; ++k) {
     spec.options.verlet_fraction = 0.9 * std::pow(2.0, -0.5 * k);
-    family.candidates.push_back(ours(spec, spec.options.verlet_fraction));
+    all.variants.push_back(ours(spec, spec.options.verlet_fraction));
   }
-  return family;
+  return all;
 }
 
 /// The loop of the thesis with another linear solver, to a number of digits; and stages that end as far off as the time step.
-void add_loose(std::vector<Family>& all, const model::Scene& scene, const std::string& method, int parts) {
+void add_loose(std::vector<Configuration>& all, const model::Scene& scene, const std::string& method, int parts) {
   solver::Options options;
   for (const double tolerance : {0.1, 0.01}) {
     options.loop_tolerance = tolerance;
-    all.push_back(by_steps(spec_of(scene, method + "/fixed-point/cholesky", options), "drape", parts));
+    all.push_back(by_steps(spec_of(scene, method + "/fixed-point/cholesky", options), Code::drape, parts));
     all.back().name += fmt::format(" to {:.0e}", tolerance);
   }
   options = {};
   options.stage_accuracy = 1;
-  all.push_back(by_steps(spec_of(scene, method, options), "drape", parts));
+  all.push_back(by_steps(spec_of(scene, method, options), Code::drape, parts));
   all.back().name += fmt::format(" to {:g}", options.stage_accuracy);
 }
 
@@ -107,7 +109,7 @@ std::string reason_against(const solver::Method& method, const model::Scene& sce
                                  : "large sheet: few methods; name it by --method";
 }
 
-void add_ours(std::vector<Family>& all, const model::Scene& scene, Search search, const Methods& methods) {
+void add_ours(std::vector<Configuration>& all, const model::Scene& scene, Search search, const Methods& methods) {
   const int parts = finest_parts(search);
   for (const solver::Method* chosen : all_or(methods)) {
     const solver::Method& method = *chosen;
@@ -117,12 +119,12 @@ void add_ours(std::vector<Family>& all, const model::Scene& scene, Search search
       all.push_back(by_fraction(spec_of(scene, name), tries_few(search) ? 3 : 10));
       continue;
     }
-    all.push_back(by_steps(spec_of(scene, name), "drape", parts));
+    all.push_back(by_steps(spec_of(scene, name), Code::drape, parts));
     all.push_back(by_tolerance(spec_of(scene, name)));
     if (search == Search::full && std::ranges::find(looped, name) != std::end(looped)) add_loose(all, scene, name, parts);
   }
   if (search != Search::full || !methods.empty()) return;
-  for (const char* name : other_solvers) all.push_back(by_steps(spec_of(scene, name), "drape", parts));
+  for (const char* name : other_solvers) all.push_back(by_steps(spec_of(scene, name), Code::drape, parts));
 }
 
 std::vector<int> loop_digits(Search search) {
@@ -131,16 +133,16 @@ std::vector<int> loop_digits(Search search) {
 }
 
 /// The fixed-point loop with IC(0)   [Etzmuß 2002, 3.4].
-void add_thesis(std::vector<Family>& all, const model::Scene& scene, Search search, const Methods& methods) {
+void add_thesis(std::vector<Configuration>& all, const model::Scene& scene, Search search, const Methods& methods) {
   for (const char* method : looped) {
     if (!methods.empty() && std::ranges::find(methods, method, &solver::Method::name) == methods.end()) continue;
     for (const int digits : loop_digits(search)) {
       solver::Options options = solver::thesis_options();
       options.loop_tolerance = std::pow(10.0, -digits);
-      Family family =
-          by_steps(spec_of(scene, fmt::format("{}/fixed-point/ic0", method), options), "thesis", finest_parts(search));
-      family.name += fmt::format(" to {:.0e}", options.loop_tolerance);
-      all.push_back(std::move(family));
+      Configuration configuration =
+          by_steps(spec_of(scene, fmt::format("{}/fixed-point/ic0", method), options), Code::thesis, finest_parts(search));
+      configuration.name += fmt::format(" to {:.0e}", options.loop_tolerance);
+      all.push_back(std::move(configuration));
     }
   }
 }
@@ -165,12 +167,10 @@ std::vector<double> divided_steps(double end, int parts) {
   }
 }
 
-Family ladder(const model::Scene& scene, const std::string& method) {
+Configuration ladder(const model::Scene& scene, const std::string& method) {
   const RunSpec chosen = spec_of(scene, method);
-  return chosen.method->sub_steps ? by_fraction(chosen, 10) : by_steps(chosen, "drape", finest_parts(Search::usual));
+  return chosen.method->sub_steps ? by_fraction(chosen, 10) : by_steps(chosen, Code::drape, finest_parts(Search::usual));
 }
-
-bool is_ours(std::string_view code) { return code == "drape" || code == "explicit" || code == "thesis"; }
 
 std::vector<LeftOut> left_out(const model::Scene& scene, Search search, const Methods& methods) {
   std::vector<LeftOut> all;
@@ -180,12 +180,12 @@ std::vector<LeftOut> left_out(const model::Scene& scene, Search search, const Me
   return all;
 }
 
-std::vector<Family> families(const model::Scene& scene, Search search, const Methods& methods) {
-  std::vector<Family> all;
+std::vector<Configuration> configurations(const model::Scene& scene, Search search, const Methods& methods) {
+  std::vector<Configuration> all;
   add_ours(all, scene, search, methods);
   add_thesis(all, scene, search, methods);
   if (scene.obstacles.empty() && search != Search::large) add_peers(all, scene, search);  // they have no contacts
-  for (Family& family : all) family.advised = family.name == advised_ours || family.name == advised_peer();
+  for (Configuration& one : all) one.advised = one.name == advised_ours || one.name == advised_peer();
   return all;
 }
 
