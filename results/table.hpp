@@ -8,10 +8,12 @@
 #include <variant>
 #include <vector>
 
+#include "results/verdict.hpp"
+
 namespace drape::results {
 
 /// A value in a table; monostate if there is none.
-using Cell = std::variant<std::monostate, std::string, double, std::int64_t>;
+using Cell = std::variant<std::monostate, std::string, double, std::int64_t, Verdict>;
 
 /// What a column says: compare, the overview and the report go by this, never by names.
 enum class Role {
@@ -22,7 +24,7 @@ enum class Role {
   order,        ///< a fitted order of convergence
   counter,      ///< work, the same on every machine
   time,         ///< what depends on the machine and the hour
-  verdict,      ///< what the row comes to: see verdict.hpp
+  verdict,      ///< what the row comes to: a Verdict, or a text that classifies, such as "converges"
   note,         ///< for users only
 };
 
@@ -70,9 +72,14 @@ const Column* find_column(const Table& table, std::string_view name);
 /// The first column with this role, null if there is none.
 const Column* find_column(const Table& table, Role role);
 
-/// A cell's text, empty if it has none; its number, NaN if it has none. Without a column there is none.
+/// A cell's text, that of its verdict included, empty if it has none; its number, NaN if it has none. Without a column there is
+/// none.
 std::string text_in(const Column* column, std::size_t row);
 double number_in(const Column* column, std::size_t row);
+
+/// The verdict in a cell. A text that classifies is open, and so is a cell without any.
+Verdict verdict_of(const Cell& cell);
+Standing standing(const Cell& cell);
 
 /// One line per row, aligned for users; "no rows" without any. Columns without any value or title are left out.
 std::string to_text(const Table& table);

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <memory>
 #include <optional>
 
 #include "bench/studies/studies.hpp"
@@ -64,6 +63,7 @@ struct TriedSheet {
 void try_defaults(TriedSheet& tried, Checkpoint& checkpoint) {
   SceneTrials& scene = tried.scene;
   const std::string name = name_of_sheet(tried.sheet);
+  checkpoint.begin(name);
   checkpoint.show("reference of " + name);
   scene.problem = certified_problem(name, hung_scene(tried.sheet), checkpoint);
   scene.problem.enough = std::ranges::min(choice_errors);
@@ -134,21 +134,28 @@ results::Table choice_table(const std::vector<TriedSheet>& all) {
                              rows);
 }
 
+std::vector<TriedSheet> try_sheets(const std::vector<HungSheet>& list, Checkpoint& checkpoint) {
+  std::vector<TriedSheet> all;
+  all.reserve(list.size());  // trials point into what is in it
+  for (const HungSheet& sheet : list) try_defaults(all.emplace_back(TriedSheet{sheet, {}}), checkpoint);
+  return all;
+}
+
+std::vector<results::Table> choice_tables(const std::vector<TriedSheet>& all) {
+  std::vector<results::Table> tables;
+  for (const TriedSheet& tried : all) tables.push_back(trials_table(tried.scene));
+  tables.push_back(choice_table(all));
+  return tables;
+}
+
 }  // namespace
 
-std::vector<TableJob> choice(bool quick) {
-  const auto all = std::make_shared<std::vector<TriedSheet>>();
-  const std::vector<HungSheet> list = hung_sheets_to_choose_on(quick);
-  all->reserve(list.size());  // trials point into what is in it
-  std::vector<TableJob> jobs;
-  for (const HungSheet& sheet : list)
-    jobs.push_back({static_cast<int>(default_families(sheet).size()), [=](Checkpoint& checkpoint) {
-                      TriedSheet& tried = all->emplace_back(TriedSheet{sheet, {}});
-                      try_defaults(tried, checkpoint);
-                      return trials_table(tried.scene);
-                    }});
-  jobs.push_back({0, [=](Checkpoint&) { return choice_table(*all); }});
-  return jobs;
+std::vector<Job> choice(const Question& question) {
+  const std::vector<HungSheet> list = hung_sheets_to_choose_on(question.quick);
+  int parts = 0;
+  for (const HungSheet& sheet : list) parts += static_cast<int>(default_families(sheet).size());
+  return {job(
+      "choice", parts, [=](Checkpoint& checkpoint) { return try_sheets(list, checkpoint); }, choice_tables)};
 }
 
 }  // namespace drape::bench

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <optional>
 
 #include "bench/runs/certified_reference.hpp"
@@ -61,23 +60,27 @@ struct Controlled {
   double tolerance = 0, error = NAN, uncertainty = 0;
   std::int64_t steps = 0, rejected = 0, pilots = 0, forces = 0;
   bool largest_steps = false;  ///< whether some steps are as long as allowed
-  std::string outcome, note, verdict;
+  std::string outcome, note;
+  results::Verdict verdict;
 };
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Controlled, scene, set, method, tolerance, error, uncertainty, steps, rejected, pilots,
                                    forces, largest_steps, outcome, note, verdict)
 
-/// Of all scenes.
-using ControlledRuns = std::vector<Controlled>;
+/// Of all methods and tolerances on a scene.
+struct ControlledRuns {
+  std::string setting, scene;
+  std::vector<Controlled> runs;
+};
 
-std::string judge(const Controlled& run) {
-  if (run.outcome != to_string(solver::Outcome::success)) return run.steps == 0 ? "cost explodes" : "fails";
+results::Verdict judge(const Controlled& run) {
+  if (run.outcome != to_string(solver::Outcome::success)) return {Standing::open, run.steps == 0 ? "cost explodes" : "fails"};
   const double ratio = run.error / run.tolerance;
-  if (ratio > band) return results::verdict(Standing::missed, fmt::format("not within {:g}: over by {:.2g}", band, ratio));
-  if (ratio * band >= 1) return results::verdict(Standing::met, fmt::format("within {:g}", band));
-  if (run.error < results::resolution * run.uncertainty) return "under: not resolved";
-  if (run.largest_steps) return fmt::format("under by {:.2g}: largest steps", 1 / ratio);
-  if (!run.note.empty()) return fmt::format("under by {:.2g}: stability", 1 / ratio);
-  return results::verdict(Standing::missed, fmt::format("not within {:g}: under by {:.2g}", band, 1 / ratio));
+  if (ratio > band) return results::Verdict{Standing::missed, fmt::format("not within {:g}: over by {:.2g}", band, ratio)};
+  if (ratio * band >= 1) return results::Verdict{Standing::met, fmt::format("within {:g}", band)};
+  if (run.error < results::resolution * run.uncertainty) return {Standing::open, "under: not resolved"};
+  if (run.largest_steps) return {Standing::open, fmt::format("under by {:.2g}: largest steps", 1 / ratio)};
+  if (!run.note.empty()) return {Standing::open, fmt::format("under by {:.2g}: stability", 1 / ratio)};
+  return results::Verdict{Standing::missed, fmt::format("not within {:g}: under by {:.2g}", band, 1 / ratio)};
 }
 
 /// Runs of a scene, measured at all tenths of its time.
@@ -154,24 +157,25 @@ constexpr ColumnOf<Controlled> controlled_columns[] = {
     {"note", "", "", "what the run says of itself", Role::note, field<&Controlled::note>},
 };
 
-results::Table tolerances_on(const Setting& setting, const Methods& methods, ControlledRuns& all, Checkpoint& checkpoint) {
+ControlledRuns tolerances_on(const Setting& setting, const Methods& methods, Checkpoint& checkpoint) {
+  checkpoint.begin(setting.name);
   const model::Scene scene = model::load_scene(setting.scene, setting.overrides);
   checkpoint.show("reference of " + scene.name);
   References references(SweepOptions().agreement, {}, 1e-10);
   const Measurement measure(setting, scene, references(scene, model::compile(scene)));
   checkpoint.advance();
-  ControlledRuns runs;
+  ControlledRuns all{setting.name, scene.name, {}};
   for (const Method* const chosen : methods) {
     const Method& method = *chosen;
     for (int digits = 2; digits <= setting.digits; ++digits) {
       checkpoint.show(fmt::format("{} on {}, 1e-{}", method.name, scene.name, digits));
       const double tolerance = std::pow(10.0, -digits);
-      runs.push_back(checkpoint.once(fmt::format("{} {}", method.name, digits), [&] { return measure(method, tolerance); }));
+      all.runs.push_back(
+          checkpoint.once(fmt::format("{} {}", method.name, digits), [&] { return measure(method, tolerance); }));
     }
     checkpoint.advance();
   }
-  all.insert(all.end(), runs.begin(), runs.end());
-  return results::make_table("tolerance-" + setting.name, "Error over tolerance on " + scene.name, controlled_columns, runs);
+  return all;
 }
 
 /// How many runs of a method have become what.
@@ -181,9 +185,9 @@ struct MethodSummary {
   double lowest = INFINITY, highest = 0;  ///< of error to tolerance
 
   void count(const Controlled& run) {
-    const auto says = [&](std::string_view text) { return run.verdict.find(text) != std::string::npos ? 1 : 0; };
+    const auto says = [&](std::string_view text) { return run.verdict.detail.find(text) != std::string::npos ? 1 : 0; };
     ++runs;
-    within += results::standing(run.verdict) == Standing::met ? 1 : 0;
+    within += run.verdict.standing == Standing::met ? 1 : 0;
     over += says("over by");
     under += says("under");
     explodes += says("cost explodes");
@@ -193,9 +197,9 @@ struct MethodSummary {
     highest = std::max(highest, run.error / run.tolerance);
   }
 
-  std::string verdict() const {
-    return over + fails == 0 ? results::verdict(Standing::met, "proportional")
-                             : results::verdict(Standing::missed, "not proportional");
+  results::Verdict verdict() const {
+    return over + fails == 0 ? results::Verdict{Standing::met, "proportional"}
+                             : results::Verdict{Standing::missed, "not proportional"};
   }
 };
 
@@ -215,28 +219,38 @@ constexpr ColumnOf<MethodSummary> method_summary_columns[] = {
 };
 
 /// Of all scenes and tolerances.
-results::Table tolerance_summary(const ControlledRuns& all, const Methods& methods) {
+results::Table tolerance_summary(const std::vector<ControlledRuns>& all, const Methods& methods) {
   std::vector<MethodSummary> rows;
   for (const Method* const method : methods) {
     MethodSummary& row = rows.emplace_back(MethodSummary{std::string(method->name)});
-    for (const Controlled& run : all)
-      if (run.method == method->name) row.count(run);
+    for (const ControlledRuns& scene : all)
+      for (const Controlled& run : scene.runs)
+        if (run.method == method->name) row.count(run);
   }
   return results::make_table("tolerance-summary", "Error over tolerance, all scenes and tolerances", method_summary_columns,
                              rows);
 }
 
+std::vector<results::Table> tolerance_tables(const std::vector<ControlledRuns>& all, const Methods& methods) {
+  std::vector<results::Table> tables;
+  for (const auto& [setting, scene, runs] : all)
+    tables.push_back(results::make_table("tolerance-" + setting, "Error over tolerance on " + scene, controlled_columns, runs));
+  tables.push_back(tolerance_summary(all, methods));
+  return tables;
+}
+
 }  // namespace
 
-std::vector<TableJob> tolerance(bool quick, const Methods& chosen) {
-  const auto all = std::make_shared<ControlledRuns>();
-  const Methods methods = all_or(chosen);
-  std::vector<TableJob> jobs;
-  for (const Setting& setting : settings(quick))
-    jobs.push_back({1 + static_cast<int>(methods.size()),
-                    [=](Checkpoint& checkpoint) { return tolerances_on(setting, methods, *all, checkpoint); }});
-  jobs.push_back({0, [=](Checkpoint&) { return tolerance_summary(*all, methods); }});
-  return jobs;
+std::vector<Job> tolerance(const Question& question) {
+  const Methods methods = all_or(question.methods);
+  const std::vector<Setting> list = settings(question.quick);
+  const auto compute = [=](Checkpoint& checkpoint) {
+    std::vector<ControlledRuns> all;
+    for (const Setting& setting : list) all.push_back(tolerances_on(setting, methods, checkpoint));
+    return all;
+  };
+  const auto present = [=](const auto& all) { return tolerance_tables(all, methods); };
+  return {job("tolerance", static_cast<int>(list.size() * (1 + methods.size())), compute, present)};
 }
 
 }  // namespace drape::bench

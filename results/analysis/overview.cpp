@@ -47,7 +47,7 @@ OrderRow order_row(const Table& table, const OrderCount& count) {
   std::string others;
   for (std::size_t row = 0; row < rows(table); ++row) {
     const std::string verdict = text_in(verdicts, row);
-    if (verdict.empty() || standing(verdict) == Standing::met) continue;
+    if (verdict.empty() || standing(verdicts->cells[row]) == Standing::met) continue;
     others += fmt::format("{}{}: {}{}", others.empty() ? "" : "; ", row_title(table, row, true), verdict,
                           std::isfinite(number_in(fitted, row)) ? fmt::format(" but {:.2f}", number_in(fitted, row)) : "");
   }
@@ -110,7 +110,8 @@ constexpr ColumnOf<Failure> failure_columns[] = {
 // --- Other verdicts ------------------------------------------------------------------------------------------------------
 
 struct Missed {
-  std::string table, row, verdict;
+  std::string table, row;
+  Verdict verdict;
 };
 
 constexpr ColumnOf<Missed> missed_columns[] = {
@@ -122,7 +123,7 @@ constexpr ColumnOf<Missed> missed_columns[] = {
 void add_missed(const Table& table, std::vector<Missed>& missed) {
   const Column* verdicts = find_column(table, Role::verdict);
   for (std::size_t row = 0; verdicts != nullptr && row < rows(table); ++row)
-    if (const std::string verdict = text_in(verdicts, row); standing(verdict) == Standing::missed)
+    if (const Verdict verdict = verdict_of(verdicts->cells[row]); verdict.standing == Standing::missed)
       missed.push_back({table.name, row_title(table, row), verdict});
 }
 
@@ -160,7 +161,7 @@ std::vector<Table> overview(std::span<const Recording> recordings) {
   add(make_table("orders", "Orders of convergence", order_columns, orders));
   add(make_table("quickest-runs", "The quickest recorded run at each error: method and step [s]", quickest_columns, quickest));
   add(make_table("failures", "Runs that failed", failure_columns, failures));
-  add(make_table("not-met", "What is not as it was wanted", missed_columns, missed));
+  add(make_table("not-met", "Targets missed", missed_columns, missed));
   std::erase_if(tables, [](const Table& table) { return rows(table) == 0; });
   return tables;
 }

@@ -7,7 +7,6 @@
 #include <iterator>
 #include <limits>
 #include <map>
-#include <memory>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -104,7 +103,7 @@ struct AtlasCell {
   bool is_as_predicted() const { return expected && expected->good() == judged.stable(); }
 };
 
-/// The atlas as the jobs share it.
+/// All runs; they point into sheets and rows.
 struct Atlas {
   std::vector<Sheet> sheets;
   std::vector<Row> rows;
@@ -162,36 +161,45 @@ results::Table cells_table(std::string name, std::string description, const std:
   return table;
 }
 
-/// All methods that are tried on a sheet of one stiffness and one damping.
-std::vector<Judged> try_rows(const std::vector<Row>& rows, const Sheet& sheet, double nu, double ratio) {
+/// A sheet of one stiffness and one damping with its reference, for all methods that are tried on it.
+struct TestedSheet {
+  Specimen specimen;
+  CrossCheckedReference reference;
+
+  TestedSheet(const Sheet& sheet, double k, double d)
+      : specimen(hung_by_corners(sheet.n, k, d)), reference(specimen, horizon, sheet.effort) {}
+};
+
+/// Tries all methods on a sheet of one stiffness and one damping.
+void explore(Atlas& atlas, const Sheet& sheet, double nu, double ratio, Predictions& predictions, Checkpoint& checkpoint) {
   const double l = 0.8 / (sheet.n - 1), h = sheet.step, k = nu * l * l / (h * h);
-  const Specimen specimen = hung_by_corners(sheet.n, k, h * k / ratio);
-  const CrossCheckedReference reference(specimen, horizon, sheet.effort);
-  std::vector<Judged> runs;
-  for (const Row& row : rows)
-    if (tries(sheet, row))
-      runs.push_back(judged(attempt(specimen, {row.method, row.options, h, horizon,
-                                               static_cast<std::int64_t>(sheet.effort * static_cast<double>(row.budget))}),
-                            reference));
-  return runs;
+  std::optional<TestedSheet> tested;  // made for the first run that no process before this one has made
+  for (const Row& row : atlas.rows) {
+    if (!tries(sheet, row)) continue;
+    const auto budget = static_cast<std::int64_t>(sheet.effort * static_cast<double>(row.budget));
+    const Judged run = checkpoint.once(fmt::format("{} {} {} {} {}", sheet.n, h, nu, ratio, row.name), [&] {
+      if (!tested) tested.emplace(sheet, k, h * k / ratio);
+      return judged(attempt(tested->specimen, {row.method, row.options, h, horizon, budget}), tested->reference);
+    });
+    atlas.cells.push_back({&sheet, &row, nu, ratio, predictions.of(row, sheet, nu, ratio), run});
+  }
 }
 
-/// All runs: for the file, so without titles.
-results::Table explore(Atlas& atlas, Checkpoint& checkpoint) {
+Atlas explored(bool quick, const Methods& methods, Checkpoint& checkpoint) {
+  Atlas atlas{sheets(quick), rows(all_or(methods)), {}};
   Predictions predictions;
   for (const Sheet& sheet : atlas.sheets)
     for (const double nu : sheet.stiffnesses)
       for (const double ratio : sheet.ratios) {
         checkpoint.show(fmt::format("{0} x {0}, h = {1}, ν = {2:g}, h k/d = {3:g}", sheet.n, sheet.step, nu, ratio));
-        const auto runs = checkpoint.once(fmt::format("{} {} {} {}", sheet.n, sheet.step, nu, ratio),
-                                          [&] { return try_rows(atlas.rows, sheet, nu, ratio); });
-        for (std::size_t k = 0, run = 0; k < atlas.rows.size(); ++k) {
-          const Row& row = atlas.rows[k];
-          if (!tries(sheet, row)) continue;
-          atlas.cells.push_back({&sheet, &row, nu, ratio, predictions.of(row, sheet, nu, ratio), runs[run++]});
-        }
+        explore(atlas, sheet, nu, ratio, predictions, checkpoint);
         checkpoint.advance();
       }
+  return atlas;
+}
+
+/// All runs: for the file, so without titles.
+results::Table runs_of_atlas(const Atlas& atlas) {
   results::Table table = cells_table("stability-atlas", "Every run of the atlas", atlas.cells);
   for (results::Column& column : table.columns) column.title.clear();
   table.figure = results::Figure::stability;
@@ -263,8 +271,8 @@ constexpr results::ColumnOf<Converging> converging_columns[] = {
      results::field<&Converging::rise>},
     {"verdict", "verdict", "", "whether all of them do", Role::verdict,
      [](const Converging& row) -> results::Cell {
-       return row.converge == row.stable ? results::verdict(results::Standing::met, "all converge")
-                                         : results::verdict(results::Standing::missed, "not all converge");
+       return row.converge == row.stable ? results::Verdict{results::Standing::met, "all converge"}
+                                         : results::Verdict{results::Standing::missed, "not all converge"};
      }},
 };
 
@@ -301,14 +309,14 @@ results::Table list_surprises(const Atlas& atlas) {
 
 }  // namespace
 
-std::vector<TableJob> stability_atlas(bool quick, const Methods& methods) {
-  const auto atlas = std::make_shared<Atlas>(Atlas{sheets(quick), rows(all_or(methods)), {}});
-  int cells = 0;
-  for (const Sheet& sheet : atlas->sheets) cells += static_cast<int>(sheet.stiffnesses.size() * sheet.ratios.size());
-  std::vector<TableJob> jobs{{cells, [=](Checkpoint& checkpoint) { return explore(*atlas, checkpoint); }}};
-  for (auto* summarise : {count_verdicts, check_bar, list_surprises})
-    jobs.push_back({0, [=](Checkpoint&) { return summarise(*atlas); }});
-  return jobs;
+Job stability_atlas(bool quick, const Methods& methods) {
+  int parts = 0;
+  for (const Sheet& sheet : sheets(quick)) parts += static_cast<int>(sheet.stiffnesses.size() * sheet.ratios.size());
+  const auto compute = [=](Checkpoint& checkpoint) { return explored(quick, methods, checkpoint); };
+  const auto present = [](const Atlas& atlas) {
+    return std::vector{runs_of_atlas(atlas), count_verdicts(atlas), check_bar(atlas), list_surprises(atlas)};
+  };
+  return job("stability-atlas", parts, compute, present);
 }
 
 }  // namespace drape::bench

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <numbers>
+#include <optional>
 
 #include "bench/studies/stability/stability.hpp"
 
@@ -109,37 +110,43 @@ constexpr results::ColumnOf<Endured> endured_columns[] = {
     {"method", "method", "", "time integrator", results::Role::key, results::field<&Endured::method>},
 };
 
-std::vector<Endured> endured(const Stress& stress, int n, const Methods& methods) {
+std::vector<Endured> endured(const Stress& stress, int n, const Methods& methods, Checkpoint& checkpoint) {
   const auto run = [&](const Conditions& conditions) { return endure(stress, n, conditions); };
-  const CrossCheckedReference reference(stress.make(n), horizon, run);
+  std::optional<CrossCheckedReference> reference;  // made for the first row that no process before this one has made
   std::vector<Endured> rows;
   for (const solver::Method* method : methods)
-    rows.push_back({stress.name, std::string(method->name),
-                    judged(run({method, {}, stress_step, horizon, method->sub_steps ? 100'000 : 4'000}), reference)});
+    rows.push_back(checkpoint.once(fmt::format("{}, {}", stress.name, method->name), [&] {
+      if (!reference) reference.emplace(stress.make(n), horizon, run);
+      return Endured{stress.name, std::string(method->name),
+                     judged(run({method, {}, stress_step, horizon, method->sub_steps ? 100'000 : 4'000}), *reference)};
+    }));
   return rows;
 }
 
 }  // namespace
 
-TableJob stress_cases(bool quick, const Methods& methods) {
+Job stress_cases(bool quick, const Methods& methods) {
   const int n = quick ? 6 : 10;
   const bool few = quick && methods.empty();
   const Methods chosen = few ? Methods{&solver::method("bdf2"), &solver::method("verlet")} : all_or(methods);
-  return {static_cast<int>(std::size(stresses)), [=](Checkpoint& checkpoint) {
-            std::vector<Endured> rows;
-            for (const Stress& stress : stresses) {
-              checkpoint.show(stress.name);
-              std::ranges::move(checkpoint.once(stress.name, [&] { return endured(stress, n, chosen); }),
-                                std::back_inserter(rows));
-              checkpoint.advance();
-            }
-            results::Table table = results::make_table(
-                "stability-stress",
-                fmt::format("What no scene should do to a solver, h = 0.01 s{}", few ? "; --quick: bdf2 and verlet only" : ""),
-                endured_columns, rows);
-            results::add_columns(table, judged_columns, rows, [](const Endured& row) { return &row.run; });
-            return table;
-          }};
+  const auto compute = [=](Checkpoint& checkpoint) {
+    std::vector<Endured> rows;
+    for (const Stress& stress : stresses) {
+      checkpoint.show(stress.name);
+      std::ranges::move(endured(stress, n, chosen, checkpoint), std::back_inserter(rows));
+      checkpoint.advance();
+    }
+    return rows;
+  };
+  const auto present = [=](const std::vector<Endured>& rows) {
+    results::Table table = results::make_table(
+        "stability-stress",
+        fmt::format("What no scene should do to a solver, h = 0.01 s{}", few ? "; --quick: bdf2 and verlet only" : ""),
+        endured_columns, rows);
+    results::add_columns(table, judged_columns, rows, [](const Endured& row) { return &row.run; });
+    return table;
+  };
+  return job("stability-stress", static_cast<int>(std::size(stresses)), compute, present);
 }
 
 }  // namespace drape::bench

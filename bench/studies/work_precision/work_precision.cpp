@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
 #include "bench/runs/certified_reference.hpp"
 #include "bench/runs/run.hpp"
@@ -153,7 +152,8 @@ const SceneTrials* find(const All& all, const std::string& name) {
   return found == all.end() ? nullptr : &*found;
 }
 
-results::Table try_scene(const Entry& entry, const Methods& methods, All& all, Checkpoint& checkpoint) {
+void try_scene(const Entry& entry, const Methods& methods, All& all, Checkpoint& checkpoint) {
+  checkpoint.begin(entry.name);
   checkpoint.show("reference of " + entry.name);
   SceneTrials& scene = all.emplace_back(SceneTrials{problem(entry), {}, {}, find(all, entry.training)});
   Problem& problem = scene.problem;
@@ -165,7 +165,13 @@ results::Table try_scene(const Entry& entry, const Methods& methods, All& all, C
   scene.trials = try_all(problem, scene.families, entry.effort, checkpoint);
   checkpoint.show("timing " + entry.name);
   time_fronts(problem, scene.trials, entry.effort, named_families(scene), checkpoint);
-  return trials_table(scene);
+}
+
+All try_scenes(const std::vector<Entry>& list, const Methods& methods, Checkpoint& checkpoint) {
+  All all;
+  all.reserve(list.size());  // trials point into what is in it
+  for (const Entry& entry : list) try_scene(entry, methods, all, checkpoint);
+  return all;
 }
 
 /// A method that is not tried on a scene.
@@ -188,21 +194,27 @@ results::Table left_out_table(const std::vector<Entry>& list, const Methods& met
   return results::make_table("left-out", "Methods that were not tried", absent_columns, rows);
 }
 
-std::vector<TableJob> jobs(const std::vector<Entry>& list, const Methods& methods, bool with_bars = false) {
-  const auto all = std::make_shared<All>();
-  std::vector<TableJob> jobs;
-  all->reserve(list.size());  // trials point into what is in it
-  for (const Entry& entry : list)
-    jobs.push_back({static_cast<int>(families(entry.scene, entry.search, methods).size()),
-                    [=](Checkpoint& checkpoint) { return try_scene(entry, methods, *all, checkpoint); }});
+std::vector<results::Table> all_tables(const All& all) {
+  std::vector<results::Table> tables;
+  for (const SceneTrials& scene : all) tables.push_back(trials_table(scene));
   for (auto* table :
        {held_out_table, recommended_table, winners_table, quickest_table, peers_summary_table, defaults_table, peers_table})
-    jobs.push_back({0, [=](Checkpoint&) { return table(*all); }});
-  if (list.size() > 1) jobs.push_back({0, [=](Checkpoint&) { return ranking_table(*all); }});
-  if (with_bars) jobs.push_back({0, [=](Checkpoint&) { return bars_table(*all); }});
-  if (const results::Table table = left_out_table(list, methods); results::rows(table) > 0)
-    jobs.push_back({0, [=](Checkpoint&) { return table; }});
-  return jobs;
+    tables.push_back(table(all));
+  if (all.size() > 1) tables.push_back(ranking_table(all));
+  return tables;
+}
+
+std::vector<Job> jobs(const std::vector<Entry>& list, const Methods& methods, bool with_bars = false) {
+  int parts = 0;
+  for (const Entry& entry : list) parts += static_cast<int>(families(entry.scene, entry.search, methods).size());
+  const auto compute = [=](Checkpoint& checkpoint) { return try_scenes(list, methods, checkpoint); };
+  const auto present = [=](const All& all) {
+    std::vector<results::Table> tables = all_tables(all);
+    if (with_bars) tables.push_back(bars_table(all));
+    if (results::Table table = left_out_table(list, methods); results::rows(table) > 0) tables.push_back(std::move(table));
+    return tables;
+  };
+  return {job("work-precision", parts, compute, present)};
 }
 
 }  // namespace
@@ -213,17 +225,15 @@ Problem certified_problem(const std::string& name, const model::Scene& scene, Ch
   return result;
 }
 
-std::vector<TableJob> work_precision(bool quick, const Methods& methods) {
-  return jobs(quick ? quick_entries() : with_all_scenes(entries()), methods);
-}
-
-std::vector<TableJob> bars(bool quick) { return jobs(quick ? quick_entries() : entries(), {}, true); }
-
-std::vector<TableJob> work_precision_of(const model::Scene& scene, bool quick, const Methods& methods) {
-  if (quick) return jobs({{scene.name, scene, Search::quick, quick_effort}}, methods);
+std::vector<Job> work_precision(const Question& question) {
+  const auto& [quick, methods, scene] = question;
+  if (!scene) return jobs(quick ? quick_entries() : with_all_scenes(entries()), methods);
+  if (quick) return jobs({{scene->name, *scene, Search::quick, quick_effort}}, methods);
   constexpr int large = 50'000;  // particles
-  if (scene.sheet.grid.particles() >= large) return jobs({{scene.name, scene, Search::large, large_effort}}, methods);
-  return jobs({{scene.name, scene, Search::full}}, methods);
+  if (scene->sheet.grid.particles() >= large) return jobs({{scene->name, *scene, Search::large, large_effort}}, methods);
+  return jobs({{scene->name, *scene, Search::full}}, methods);
 }
+
+std::vector<Job> bars(const Question& question) { return jobs(question.quick ? quick_entries() : entries(), {}, true); }
 
 }  // namespace drape::bench
