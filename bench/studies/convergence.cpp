@@ -251,8 +251,8 @@ std::vector<Equilibrium> curve(const Experiment& experiment, const std::vector<i
   return all;
 }
 
-std::vector<Equilibrium> curves(const std::vector<Experiment>& experiments, const std::vector<int>& resolutions,
-                                Checkpoint& checkpoint) {
+std::vector<Equilibrium> equilibrium_curves(const std::vector<Experiment>& experiments, const std::vector<int>& resolutions,
+                                            Checkpoint& checkpoint) {
   std::vector<Equilibrium> rows;
   for (const Experiment& experiment : experiments)
     std::ranges::move(curve(experiment, resolutions, checkpoint), std::back_inserter(rows));
@@ -273,7 +273,7 @@ std::vector<Job> convergence(const Question& question) {
   const auto figure = [&](const char* name, const char* title, int experiments, auto make) {
     const auto compute = [=](Checkpoint& checkpoint) {
       checkpoint.show(fmt::format("exact solution of {}", name));
-      return curves(make(), resolutions, checkpoint);
+      return equilibrium_curves(make(), resolutions, checkpoint);
     };
     const auto present = [=](const auto& rows) { return equilibrium_table(name, title, rows); };
     return job(name, experiments * static_cast<int>(resolutions.size()), compute, present);
