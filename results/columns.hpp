@@ -19,6 +19,7 @@ namespace drape::results {
 inline Cell to_cell(std::string text) { return text; }
 inline Cell to_cell(std::string_view text) { return std::string(text); }
 inline Cell to_cell(const char* text) { return std::string(text); }
+inline Cell to_cell(Verdict verdict) { return verdict; }
 inline Cell to_cell(double value) { return value; }
 inline Cell to_cell(std::integral auto value) { return static_cast<std::int64_t>(value); }
 inline Cell to_cell(solver::Outcome outcome) { return std::string(to_string(outcome)); }

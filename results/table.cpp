@@ -47,12 +47,14 @@ Overload(Functions...) -> Overload<Functions...>;
 std::string to_text(const Cell& cell, std::string_view number) {
   return std::visit(Overload{[](std::monostate) { return std::string(); }, [](const std::string& text) { return text; },
                              [&](double value) { return fmt::format(fmt::runtime(number), value); },
-                             [](std::int64_t value) { return std::to_string(value); }},
+                             [](std::int64_t value) { return std::to_string(value); },
+                             [](const Verdict& verdict) { return to_string(verdict); }},
                     cell);
 }
 
 nlohmann::ordered_json to_value(const Cell& cell) {
   return std::visit(Overload{[](std::monostate) { return nlohmann::ordered_json(); },
+                             [](const Verdict& verdict) { return nlohmann::ordered_json(to_string(verdict)); },
                              [](const auto& value) { return nlohmann::ordered_json(value); }},
                     cell);
 }
@@ -74,7 +76,7 @@ std::string dump(const nlohmann::ordered_json& value) {
 /// A text or number of CSV. Programs that calculate would take some texts for formulas, unless an apostrophe is before them.
 std::string csv_cell(const Cell& cell) {
   std::string text = to_text(cell, "{}");
-  if (!std::holds_alternative<std::string>(cell)) return text;
+  if (std::holds_alternative<double>(cell) || std::holds_alternative<std::int64_t>(cell)) return text;
   if (text.find_first_of("=+-@") == 0) text.insert(0, 1, '\'');
   text = base::printable(text);
   if (text.find_first_of(",\"") == std::string::npos) return text;
@@ -140,9 +142,20 @@ bool is_good(const Column& outcomes, std::string_view text) {
 }
 
 std::string text_in(const Column* column, std::size_t row) {
-  const auto* text = column == nullptr ? nullptr : std::get_if<std::string>(&column->cells[row]);
+  if (column == nullptr) return "";
+  const Cell& cell = column->cells[row];
+  if (const auto* verdict = std::get_if<Verdict>(&cell)) return to_string(*verdict);
+  const auto* text = std::get_if<std::string>(&cell);
   return text == nullptr ? "" : *text;
 }
+
+Verdict verdict_of(const Cell& cell) {
+  if (const auto* verdict = std::get_if<Verdict>(&cell)) return *verdict;
+  const auto* text = std::get_if<std::string>(&cell);
+  return {Standing::open, text == nullptr ? "" : *text};
+}
+
+Standing standing(const Cell& cell) { return verdict_of(cell).standing; }
 
 double number_in(const Column* column, std::size_t row) {
   if (column == nullptr) return std::numeric_limits<double>::quiet_NaN();

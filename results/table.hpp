@@ -8,10 +8,12 @@
 #include <variant>
 #include <vector>
 
+#include "results/verdict.hpp"
+
 namespace drape::results {
 
 /// A value in a table; monostate if there is none.
-using Cell = std::variant<std::monostate, std::string, double, std::int64_t>;
+using Cell = std::variant<std::monostate, std::string, double, std::int64_t, Verdict>;
 
 /// What a column says: compare, the overview and the report go by this, never by names.
 enum class Role {
@@ -23,7 +25,7 @@ enum class Role {
   counter,      ///< work, the same on every machine
   time,         ///< what depends on the machine and the hour
   outcome,      ///< how a run ended, or what became of it: see is_good()
-  verdict,      ///< what the row comes to: see verdict.hpp
+  verdict,      ///< what the row comes to: a Verdict, or a text that classifies, such as "converges"
   note,         ///< for users only
 };
 
@@ -110,9 +112,14 @@ const Column* find_column(const Table& table, Role role);
 /// Whether a text in a column of outcomes is the best one: the first of its classes; if it has none, success.
 bool is_good(const Column& outcomes, std::string_view text);
 
-/// A cell's text, empty if it has none; its number, NaN if it has none. Without a column there is none.
+/// A cell's text, that of its verdict included, empty if it has none; its number, NaN if it has none. Without a column there is
+/// none.
 std::string text_in(const Column* column, std::size_t row);
 double number_in(const Column* column, std::size_t row);
+
+/// The verdict in a cell. A text that classifies is open, and so is a cell without any.
+Verdict verdict_of(const Cell& cell);
+Standing standing(const Cell& cell);
 
 /// One line per row, aligned for users; "no rows" without any. Columns without any value are left out, and those without a
 /// title unless the table is for the file.

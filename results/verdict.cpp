@@ -1,5 +1,6 @@
 #include "results/verdict.hpp"
 
+#include <algorithm>
 #include <array>
 
 namespace drape::results {
@@ -10,15 +11,18 @@ constexpr std::array<std::string_view, 3> words{"met", "open", "missed"};
 
 }  // namespace
 
-std::string verdict(Standing standing, std::string_view detail) {
-  std::string text(words[static_cast<std::size_t>(standing)]);
-  if (!detail.empty()) text.append(": ").append(detail);
-  return text;
+std::string_view to_string(Standing standing) { return words[static_cast<std::size_t>(standing)]; }
+
+std::optional<Standing> standing_named(std::string_view name) {
+  const auto found = std::ranges::find(words, name);
+  if (found == words.end()) return std::nullopt;
+  return static_cast<Standing>(found - words.begin());
 }
 
-Standing standing(std::string_view verdict) {
-  const std::string_view word = verdict.substr(0, verdict.find(':'));
-  return word == words[0] ? Standing::met : word == words[2] ? Standing::missed : Standing::open;
+std::string to_string(const Verdict& verdict) {
+  std::string text(to_string(verdict.standing));
+  if (!verdict.detail.empty()) text.append(": ").append(verdict.detail);
+  return text;
 }
 
 }  // namespace drape::results

@@ -1,17 +1,29 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
 namespace drape::results {
 
-/// Whether something is as it was wanted.
+/// Whether what a row states comes to what was declared, predicted or asked for. From the best to the worst.
 enum class Standing { met, open, missed };
 
-/// The text of a verdict: "met: 2 as declared", "open: no theory known", "missed".
-std::string verdict(Standing standing, std::string_view detail = "");
+/// The standing as files name it, for example "met".
+std::string_view to_string(Standing standing);
 
-/// What a verdict says. Texts that begin with none of these words classify, such as "converges", and are open.
-Standing standing(std::string_view verdict);
+/// Nothing if no standing has this name.
+std::optional<Standing> standing_named(std::string_view name);
+
+/// What a row comes to.
+struct Verdict {
+  Standing standing = Standing::open;
+  std::string detail = {};  ///< for users: "2 as declared"
+
+  bool operator==(const Verdict&) const = default;
+};
+
+/// "met: 2 as declared", or "met" without a detail.
+std::string to_string(const Verdict& verdict);
 
 }  // namespace drape::results

@@ -67,20 +67,20 @@ Group run_group(const RunArguments& a) {
   model::Scene scene = a.choice.load();
   scene.end = a.until.value_or(scene.end);
   check_steps(a, scene.end);
-  RunSpec cell{scene, fmt::format("{}", fmt::join(a.choice.sets, " ")), nullptr, 0, a.options};
-  cell.options.control = step_control(a.control);
-  cell.options.error_control = {a.tolerance, model::size(scene), scene.end, scene.obstacles.empty()};
+  RunSpec spec{scene, fmt::format("{}", fmt::join(a.choice.sets, " ")), nullptr, 0, a.options};
+  spec.options.control = step_control(a.control);
+  spec.options.error_control = {a.tolerance, model::size(scene), scene.end, scene.obstacles.empty()};
   Group group;
   for (const std::string& name : named_methods(a.methods, scene)) {
-    cell.options.stage = a.options.stage;
-    cell.options.linear_solver = a.options.linear_solver;
-    choose_method(cell, name);
-    if (!scene.obstacles.empty() && !cell.method->meets_obstacles)
+    spec.options.stage = a.options.stage;
+    spec.options.linear_solver = a.options.linear_solver;
+    choose_method(spec, name);
+    if (!scene.obstacles.empty() && !spec.method->meets_obstacles)
       throw std::invalid_argument(
           fmt::format("method '{}': expected one of {} in a scene with obstacles", name, for_obstacles()));
     for (const double h : a.steps) {
-      cell.step = h;
-      group.push_back(cell);
+      spec.step = h;
+      group.push_back(spec);
     }
   }
   return group;
@@ -92,12 +92,12 @@ void run(const RunArguments& a) {
   Output output = a.output;
   if (!a.frames.folder.empty()) {
     if (output.sweep.start == results::Start::resumed)
-      throw std::invalid_argument("--frames: expected no --resume beside it, frames of finished runs are not written again");
+      throw std::invalid_argument("--frames cannot be combined with --resume: frames of finished runs are not rewritten");
     output.sweep.out = out_file(output, "run");
     base::require_creatable(output.sweep.out);  // before a folder is made
     base::create_folder(a.frames.folder);
     base::require_empty_folder(a.frames.folder, "the frames");
-    output.sweep.look = [&](const RunSpec& cell) { return frame_writer(cell, a.frames); };
+    output.sweep.observer_for = [&](const RunSpec& spec) { return frame_writer(spec, a.frames); };
   }
   sweep_and_print(groups, output, "run");
 }

@@ -8,7 +8,6 @@
 #include "bench/commands/commands.hpp"
 #include "bench/commands/output.hpp"
 #include "bench/commands/scene_choice.hpp"
-#include "bench/runs/table_jobs.hpp"
 #include "bench/score/ours.hpp"
 #include "solver/base/printable.hpp"
 
@@ -30,10 +29,9 @@ void score(const ScoreArguments& a) {
   const ScoreOptions options{a.cost, a.methods, a.output.sweep.agreement, a.output.sweep.repetitions};
   SweepOptions sweep = a.output.sweep;
   sweep.out = out_file(a.output, "score");
-  const std::vector<results::Table> tables =
-      compute(score_jobs(scene, external, options), score_identity(scene, external, options), sweep);
-  if (a.output.format == "table") fmt::print("{}", base::printable_lines(score_summary(tables)));
-  print_tables(tables, a.output.format);
+  const Results all = record_in_file(sweep, score_identity(scene, external, options), {score_job(scene, external, options)});
+  if (a.output.format == "table") fmt::print("{}", base::printable_lines(all.summary));
+  print_tables(all.tables, a.output.format);
   say_where(sweep.out, a.output.format);
 }
 

@@ -13,7 +13,6 @@
 #include "bench/commands/names_of.hpp"
 #include "bench/commands/output.hpp"
 #include "bench/runs/identity.hpp"
-#include "bench/runs/table_jobs.hpp"
 #include "bench/studies/studies.hpp"
 #include "model/scene_file/scene_file.hpp"
 #include "solver/base/printable.hpp"
@@ -23,17 +22,15 @@ namespace {
 
 /// The studies that can be made of any scene.
 std::string of_any_scene() {
-  return names_of(studies(), [](const Study& study) { return study.of_scene != nullptr; });
+  return names_of(studies(), [](const Study& study) { return study.any_scene; });
 }
 
-std::string of_any_methods() { return names_of(studies(), std::mem_fn(&Study::takes_methods)); }
+std::string of_any_methods() { return names_of(studies(), std::mem_fn(&Study::any_methods)); }
 
-std::string of_runs() {
-  return names_of(studies(), [](const Study& study) { return study.groups != nullptr; });
-}
+std::string of_runs() { return names_of(studies(), std::mem_fn(&Study::makes_runs)); }
 
 void check_scene(const Study& chosen, const SceneChoice& choice) {
-  if (!choice.scene.empty() && chosen.of_scene == nullptr)
+  if (!choice.scene.empty() && !chosen.any_scene)
     throw std::invalid_argument(
         fmt::format("--scene: the study {} has scenes of its own; it is for {}", chosen.name, of_any_scene()));
   if (choice.scene.empty() && !choice.sets.empty()) throw std::invalid_argument("--set: expected --scene beside it");
@@ -41,7 +38,7 @@ void check_scene(const Study& chosen, const SceneChoice& choice) {
 
 /// Those that were named, each once, in the order of their names on the command line.
 Methods methods_of(const Study& chosen, const std::vector<std::string>& names) {
-  if (!names.empty() && !chosen.takes_methods())
+  if (!names.empty() && !chosen.any_methods)
     throw std::invalid_argument(
         fmt::format("--method: the study {} has methods of its own; it is for {}", chosen.name, of_any_methods()));
   Methods methods;
@@ -55,7 +52,7 @@ Methods methods_of(const Study& chosen, const std::vector<std::string>& names) {
 std::vector<Group> runs_of(std::vector<Group> groups, const Methods& methods) {
   if (methods.empty()) return groups;
   for (Group& group : groups)
-    std::erase_if(group, [&](const RunSpec& cell) { return std::ranges::find(methods, cell.method) == methods.end(); });
+    std::erase_if(group, [&](const RunSpec& spec) { return std::ranges::find(methods, spec.method) == methods.end(); });
   std::erase_if(groups, [](const Group& group) { return group.empty(); });
   return groups;
 }
@@ -80,17 +77,15 @@ std::string identity(const StudyArguments& a, const std::optional<model::Scene>&
 std::filesystem::path run_study(const StudyArguments& a) {
   const Study& chosen = study(a.name);
   check_scene(chosen, a.choice);
-  const Methods methods = methods_of(chosen, a.methods);
-  if (chosen.groups) return sweep_and_print(runs_of(chosen.groups(a.quick), methods), a.output, a.name);
+  Question question{a.quick, methods_of(chosen, a.methods)};
+  if (!a.choice.scene.empty()) question.scene = a.choice.load();
+  if (const auto* runs = std::get_if<Study::Runs>(&chosen.answer))
+    return sweep_and_print(runs_of((*runs)(question), question.methods), a.output, a.name);
   check_options_of_tables(chosen, a.output.sweep);
-  std::optional<model::Scene> scene;
-  if (!a.choice.scene.empty()) scene = a.choice.load();
-  const std::vector<TableJob> jobs = scene               ? chosen.of_scene(*scene, a.quick, methods)
-                                     : chosen.of_methods ? chosen.of_methods(a.quick, methods)
-                                                         : chosen.tables(a.quick);
   SweepOptions options = a.output.sweep;
   options.out = out_file(a.output, a.name);
-  print_tables(compute(jobs, identity(a, scene), options), a.output.format);
+  const std::vector<Job> jobs = std::get<Study::Tables>(chosen.answer)(question);
+  print_tables(record_in_file(options, identity(a, question.scene), jobs).tables, a.output.format);
   say_where(options.out, a.output.format);
   return options.out;
 }

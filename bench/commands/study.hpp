@@ -19,7 +19,7 @@ struct StudyArguments {
 };
 
 /// Runs the study, prints what it finds, and returns the file that it is recorded in. Throws std::invalid_argument if the
-/// arguments do not go together, and what sweep() and compute() throw.
+/// arguments do not go together, and what record_in_file() throws.
 std::filesystem::path run_study(const StudyArguments& a);
 
 }  // namespace drape::bench

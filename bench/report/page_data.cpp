@@ -26,6 +26,7 @@ Json json_value(double value) {
 Json json_value(std::int64_t value) { return value; }
 Json json_value(int value) { return value; }
 Json json_value(const std::string& value) { return value; }
+Json json_value(const results::Verdict& verdict) { return to_string(verdict); }
 Json json_value(solver::Outcome outcome) { return std::string(to_string(outcome)); }
 Json json_value(std::monostate) { return nullptr; }
 Json json_value(const std::vector<double>& values) {

@@ -17,7 +17,7 @@ class Checkpoint {
   /// `parts`: how often advance() will be called.
   Checkpoint(results::Journal& journal, int parts) : journal_(journal), progress_(parts) {}
 
-  /// The ids that follow belong to this.
+  /// The ids that follow belong to this job, or part of one.
   void begin(const std::string& part) { prefix_ = part + ": "; }
 
   void show(const std::string& activity) { progress_.show(activity); }

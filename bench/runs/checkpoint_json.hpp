@@ -7,7 +7,7 @@
 #include "bench/runs/run.hpp"
 #include "results/file/run_file.hpp"
 
-/// How units of work keep what nlohmann/json does not know by itself.
+/// How checkpoints keep what nlohmann/json does not know by itself.
 namespace nlohmann {
 
 /// Rows, columns and the numbers as they are in memory.
@@ -64,3 +64,13 @@ namespace drape::bench {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RunEnd, result, evaluations, newton_matrices, cpu_ms)
 
 }  // namespace drape::bench
+
+namespace drape::results {
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Verdict, standing, detail)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ErrorRecord, rms, maximum, reference, reference_tolerance, reference_error, growth, energy,
+                                   energy_spread, centre, centre_spread)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(MotionErrorRecord, position, amplitude, relative, velocity, reference_velocity, energy,
+                                   momentum, angular_momentum)
+
+}  // namespace drape::results

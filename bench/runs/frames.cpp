@@ -17,8 +17,8 @@ namespace {
 namespace fs = std::filesystem;
 
 /// A name for a run that any file system takes.
-std::string run_name(const RunSpec& cell) {
-  std::string name = fmt::format("{}-{}-{}", cell.scene.name, cell.method_name(), cell.step);
+std::string run_name(const RunSpec& spec) {
+  std::string name = fmt::format("{}-{}-{}", spec.scene.name, spec.method_name(), spec.step);
   std::ranges::replace_if(
       name, [](unsigned char c) { return !std::isalnum(c) && c != '.' && c != '_'; }, '-');
   return name;
@@ -34,10 +34,10 @@ void write(const fs::path& file, double t, const model::Polygons& polygons) {
 
 class Writer {
  public:
-  Writer(const RunSpec& cell, const Frames& frames)
-      : folder_(frames.folder / run_name(cell)), every_(frames.every), grid_(cell.scene.sheet.grid) {
+  Writer(const RunSpec& spec, const Frames& frames)
+      : folder_(frames.folder / run_name(spec)), every_(frames.every), grid_(spec.scene.sheet.grid) {
     base::create_folder(folder_);
-    for (const model::ObstacleRule& rule : cell.scene.obstacles) obstacles_.emplace_back(rule, 4 * model::size(cell.scene));
+    for (const model::ObstacleRule& rule : spec.scene.obstacles) obstacles_.emplace_back(rule, 4 * model::size(spec.scene));
   }
 
   void see(double t, const solver::State& y) {
@@ -61,8 +61,8 @@ class Writer {
 
 }  // namespace
 
-solver::Observer frame_writer(const RunSpec& cell, const Frames& frames) {
-  return [writer = Writer(cell, frames)](const solver::StepReport& step) mutable { writer.see(step.t, step.y); };
+solver::Observer frame_writer(const RunSpec& spec, const Frames& frames) {
+  return [writer = Writer(spec, frames)](const solver::StepReport& step) mutable { writer.see(step.t, step.y); };
 }
 
 }  // namespace drape::bench

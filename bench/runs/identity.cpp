@@ -24,18 +24,18 @@ std::string hash_of(std::string_view text) {
   return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
 }
 
-std::string identity(const RunSpec& cell, const SweepOptions& options) {
+std::string identity(const RunSpec& spec, const SweepOptions& options) {
   const std::string errors = options.reference ? fmt::format("errors to {}", options.agreement) : "no errors";
   const std::string frames = options.frames_every ? fmt::format("\nframes every {} s", *options.frames_every) : "";
-  return hash_of(fmt::format("{}\n{} {}\n{}{}{}", model::to_toml(cell.scene), cell.method->name, cell.step,
-                             all_of(cell.options, base::threads_for(cell.scene.sheet.grid.particles())), errors, frames));
+  return hash_of(fmt::format("{}\n{} {}\n{}{}{}", model::to_toml(spec.scene), spec.method->name, spec.step,
+                             all_of(spec.options, base::threads_for(spec.scene.sheet.grid.particles())), errors, frames));
 }
 
 std::string identity(const std::vector<Group>& groups, const SweepOptions& options) {
   std::string all =
       fmt::format("{} times, {} s, {} MB\n", options.repetitions, options.limits.seconds, options.limits.megabytes);
   for (const Group& group : groups) {
-    for (const RunSpec& cell : group) all += identity(cell, options) + ' ';
+    for (const RunSpec& spec : group) all += identity(spec, options) + ' ';
     all += '\n';
   }
   return hash_of(all);

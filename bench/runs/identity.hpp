@@ -3,17 +3,17 @@
 #include <string>
 #include <string_view>
 
-#include "bench/runs/sweep.hpp"
+#include "bench/runs/sweep_options.hpp"
 
 namespace drape::bench {
 
 /// 32 hexadecimal digits.
 std::string hash_of(std::string_view text);
 
-/// Identity of a cell: a hash of all that determines its result beside the program itself and the machine, thus equal in all
+/// Identity of a run: a hash of all that determines its result beside the program itself and the machine, thus equal in all
 /// files where the same was asked for: scene, method, solvers with their options, step, and whether errors are measured and the
 /// motion is kept.
-std::string identity(const RunSpec& cell, const SweepOptions& options);
+std::string identity(const RunSpec& spec, const SweepOptions& options);
 
 /// Identity of a list of groups with their repetitions and limits.
 std::string identity(const std::vector<Group>& groups, const SweepOptions& options);

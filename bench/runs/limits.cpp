@@ -64,7 +64,7 @@ void Meter::watch(solver::SplitOde& ode) {
 
 MemoryLimit::MemoryLimit(double megabytes) : before_(limit_of_data()) {
   if (!std::isfinite(megabytes)) return;
-  malloc_trim(0);  // or what earlier cells have freed would be at this one's disposal
+  malloc_trim(0);  // or what earlier runs have freed would be at this one's disposal
   limit_data(base::data_held() + static_cast<rlim_t>(megabytes * 1024 * 1024));
 }
 

@@ -39,12 +39,14 @@ struct Ending {
 /// A function that sees the start, as a step of no length, and every accepted step.
 class FunctionObserver : public Observer {
  public:
-  explicit FunctionObserver(solver::Observer look) : look_(std::move(look)) {}
-  void begin(const model::Scene&, const model::Cloth&, const solver::State& start) override { look_({0, 0, 0, 0, start, {}}); }
-  void observe(const solver::StepReport& step) override { look_(step); }
+  explicit FunctionObserver(solver::Observer function) : function_(std::move(function)) {}
+  void begin(const model::Scene&, const model::Cloth&, const solver::State& start) override {
+    function_({0, 0, 0, 0, start, {}});
+  }
+  void observe(const solver::StepReport& step) override { function_(step); }
 
  private:
-  solver::Observer look_;
+  solver::Observer function_;
 };
 
 }  // namespace drape::bench

@@ -14,7 +14,6 @@
 #include "bench/runs/identity.hpp"
 #include "bench/runs/motion_error.hpp"
 #include "bench/runs/record.hpp"
-#include "bench/runs/recording.hpp"
 #include "bench/runs/samples.hpp"
 #include "bench/runs/timing.hpp"
 #include "bench/runs/trajectory_observer.hpp"
@@ -24,8 +23,8 @@
 namespace drape::bench {
 namespace {
 
-std::string title(const RunSpec& cell) {
-  return fmt::format("{} {} h = {} {}", cell.scene.name, cell.method_name(), cell.step, cell.overrides);
+std::string title(const RunSpec& spec) {
+  return fmt::format("{} {} h = {} {}", spec.scene.name, spec.method_name(), spec.step, spec.overrides);
 }
 
 /// A run with its states at the compared times, which its error is found from when the reference is there.
@@ -52,10 +51,10 @@ MeasuredRun measure(const RunSpec& spec, const SweepOptions& options) {
   std::vector<Observer*> observers;
   std::optional<Samples> samples;
   std::optional<TrajectoryObserver> trajectory;
-  std::optional<FunctionObserver> look;
+  std::optional<FunctionObserver> other;
   if (options.reference) observers.push_back(&samples.emplace(compared_times(spec.scene)));
   if (options.frames_every) observers.push_back(&trajectory.emplace(*options.frames_every));
-  if (options.look) observers.push_back(&look.emplace(options.look(spec)));
+  if (options.observer_for) observers.push_back(&other.emplace(options.observer_for(spec)));
   MeasuredRun measured{record(spec, observers, options.limits), {}, {}};
   if (trajectory) measured.run.trajectory = trajectory->result();
   if (!samples || measured.run.outcome != solver::Outcome::success) return measured;
@@ -139,8 +138,28 @@ std::string preview(const results::RunRecord& run) {
   return line + "; its error follows";
 }
 
-void add_errors(const model::Scene& scene, std::vector<MeasuredRun>& runs, const SweepOptions& options,
-                Checkpoint& checkpoint) {
+/// What the reference says of a run.
+struct ComparedRun {
+  std::optional<results::ErrorRecord> error;
+  std::optional<results::MotionErrorRecord> motion_error;
+  std::optional<double> reference_area;
+  std::string message;
+};
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ComparedRun, error, motion_error, reference_area, message)
+
+ComparedRun compared(const results::RunRecord& run) {
+  return {run.error, run.motion_error, run.contact ? std::optional(run.contact->reference_area) : std::nullopt, run.message};
+}
+
+void set(results::RunRecord& run, const ComparedRun& compared) {
+  run.error = compared.error;
+  run.motion_error = compared.motion_error;
+  if (compared.reference_area) run.contact->reference_area = *compared.reference_area;
+  run.message = compared.message;
+}
+
+std::vector<ComparedRun> compare_with_reference(const model::Scene& scene, std::vector<MeasuredRun>& runs,
+                                                const SweepOptions& options, Checkpoint& checkpoint) {
   checkpoint.show("reference of " + scene.name);
   bool previewed = false;
   References references(options.agreement, {options.limits.seconds, [&](const std::string& pace) {
@@ -149,22 +168,23 @@ void add_errors(const model::Scene& scene, std::vector<MeasuredRun>& runs, const
                                               checkpoint.report("reference of " + scene.name + ": " + pace);
                                             }});
   measure_errors(scene, runs, references);
-  check_interruption();
-  checkpoint.advance();
+  std::vector<ComparedRun> all;
+  for (const MeasuredRun& measured : runs) all.push_back(compared(measured.run));
+  return all;
 }
 
-/// Runs a group and records it as a whole: each cell is a unit of work, and so are their repetitions together, which must be
-/// interleaved. The reference comes last, since it may take longer than all the rest.
-void run_group(const Group& group, const SweepOptions& options, results::RunFile& file, Checkpoint& checkpoint) {
+/// Runs a group. Each run is a checkpoint, and so are their repetitions together, which must be interleaved. The reference
+/// comes last, since it may take longer than all the rest.
+Results run_group(const Group& group, const SweepOptions& options, Checkpoint& checkpoint) {
   const model::Scene& scene = group.front().scene;
   std::vector<MeasuredRun> measured;
   std::string ids;
-  for (const RunSpec& cell : group) {
-    const std::string id = identity(cell, options);
+  for (const RunSpec& spec : group) {
+    const std::string id = identity(spec, options);
     ids += id;
     measured.push_back(checkpoint.once(id, [&] {
-      checkpoint.show(title(cell));
-      MeasuredRun one = measure(cell, options);
+      checkpoint.show(title(spec));
+      MeasuredRun one = measure(spec, options);
       one.run.cell = id;
       return one;
     }));
@@ -178,10 +198,14 @@ void run_group(const Group& group, const SweepOptions& options, results::RunFile
     measured[k].run.times_ms = std::move(timed[k].times);
     measured[k].run.work.push_back({"timed_steps", "accepted steps of a repetition that was timed", timed[k].steps});
   }
-  if (options.reference) add_errors(scene, measured, options, checkpoint);
-  std::vector<results::RunRecord> runs;
-  for (MeasuredRun& one : measured) runs.push_back(std::move(one.run));
-  file.add(runs);
+  if (options.reference) {
+    const auto all = checkpoint.once("errors", [&] { return compare_with_reference(scene, measured, options, checkpoint); });
+    for (std::size_t k = 0; k < measured.size(); ++k) set(measured[k].run, all[k]);
+    checkpoint.advance();
+  }
+  Results group_results;
+  for (MeasuredRun& one : measured) group_results.runs.push_back(std::move(one.run));
+  return group_results;
 }
 
 }  // namespace
@@ -192,17 +216,10 @@ std::vector<results::RunRecord> sweep(const std::vector<Group>& groups, const Sw
     return static_cast<int>(group.size()) * (1 + options.repetitions) + (options.reference ? 1 : 0);
   };
   std::vector<Job> jobs;
-  std::size_t before = 0;  // runs of the groups before this one
-  for (const Group& group : groups) {
-    const int parts = parts_of(group);
-    jobs.push_back({parts, [&options, &group, before, parts](results::RunFile& file, Checkpoint& checkpoint) {
-                      if (before >= file.run_count()) return run_group(group, options, file, checkpoint);
-                      for (int k = 0; k < parts; ++k) checkpoint.advance();
-                    }});
-    before += group.size();
-  }
-  record_in_file(options, identity(groups, options), jobs);
-  std::vector<results::RunRecord> all = results::read_runs(options.out);
+  for (const Group& group : groups)
+    jobs.push_back({fmt::format("group {}", jobs.size()), parts_of(group),
+                    [&](Checkpoint& checkpoint) { return run_group(group, options, checkpoint); }});
+  std::vector<results::RunRecord> all = record_in_file(options, identity(groups, options), jobs).runs;
   if (options.frames_every) results::write_xdmf(options.out, all);
   return all;
 }

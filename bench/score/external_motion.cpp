@@ -41,8 +41,7 @@ void check_choice(const std::vector<std::string>& files, std::optional<double> f
   for (const std::string& file : files) check_file(file);
   if (hdf5 && files.size() > 1) throw std::invalid_argument("FILE: expected a single HDF5 file, or meshes only");
   if (hdf5 && frame_time) throw std::invalid_argument("--frame-time: an HDF5 file has its own times; expected meshes");
-  if (!hdf5 && !frame_time)
-    throw std::invalid_argument("--frame-time: expected beside meshes, the seconds from one to the next");
+  if (!hdf5 && !frame_time) throw std::invalid_argument("mesh files need --frame-time, the time between frames in seconds");
 }
 
 std::string title(const std::vector<std::string>& files) {

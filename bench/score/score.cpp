@@ -7,11 +7,10 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <memory>
 #include <optional>
 
 #include "bench/runs/identity.hpp"
-#include "bench/score/ours.hpp"
+#include "bench/score/scoring.hpp"
 #include "model/scene_file/scene_file.hpp"
 #include "results/columns.hpp"
 
@@ -28,18 +27,6 @@ using results::quartiles;
 using results::Role;
 using results::Table;
 using results::to_cell;
-
-/// What the tables share.
-struct Scoring {
-  model::Scene scene;
-  ExternalMotion external;
-  ScoreOptions options;
-  std::optional<TrueMotion> truth;
-  std::vector<FrameScore> frames;
-  Ours ours;
-
-  double size() const { return model::size(scene); }
-};
 
 /// A frame in units of the scene's size.
 struct Frame {
@@ -83,7 +70,7 @@ Table frames_table(const Scoring& s) {
   Table table =
       make_table("score",
                  fmt::format("{} on {}, frame by frame; reference {}; energies by our model{}", s.external.name, s.scene.name,
-                             s.truth->families, s.external.differenced ? ", velocities by differences of the frames" : ""),
+                             s.truth.families, s.external.differenced ? ", velocities by differences of the frames" : ""),
                  frame_columns, rows);
   const auto add_energies = [&](double Observables::*which, const ColumnGroup& group) {
     const auto energy = [&](const FrameScore& frame) {
@@ -94,27 +81,9 @@ Table frames_table(const Scoring& s) {
   add_energies(&Observables::kinetic, {"kinetic", "kinetic", ""});
   add_energies(&Observables::potential, {"potential", "potential", ""});
   add_energies(&Observables::total, {"energy", "total", ""});
-  if (s.truth->cloth.contacts) add_columns(table, depth_columns, s.frames);
+  if (s.truth.cloth.contacts) add_columns(table, depth_columns, s.frames);
   return table;
 }
-
-Table over_time(Scoring& s, Checkpoint& checkpoint) {
-  checkpoint.show("reference of " + s.scene.name);
-  const auto say = [&](const std::string& pace) { checkpoint.report("reference of " + s.scene.name + ": " + pace); };
-  s.truth = true_motion(s.scene, s.external.times, s.options.agreement, {.say = say});
-  s.frames = frame_scores(s.external, *s.truth);
-  checkpoint.advance();
-  return frames_table(s);
-}
-
-/// A whole motion in numbers. Errors are over the size of the scene.
-struct Summary {
-  const Scoring* scoring;
-  const FrameScore *worst, *last, *deepest;
-  double error, maximum, mean_error, end_error, reference_error, reference_depth;
-  Lag late;  ///< what is left: also over the size
-  Uncertain damping;
-};
 
 constexpr const char* by_reference = "by what the reference is uncertain";
 
@@ -122,13 +91,13 @@ constexpr ColumnOf<Summary> summary_columns[] = {
     {"scene", "", "", "its name", Role::key, [](const Summary& s) -> Cell { return s.scoring->scene.name; }},
     {"file", "", "", "what was measured", Role::key, [](const Summary& s) -> Cell { return s.scoring->external.name; }},
     {"velocities", "", "", "where they are from", Role::key,
-     [](const Summary& s) { return to_cell(s.scoring->external.differenced ? "differences of the frames" : "the file"); }},
+     [](const Summary& s) { return to_cell(source_of_velocities(s.scoring->external)); }},
     {"reference", "", "", "the families that agree", Role::note,
-     [](const Summary& s) -> Cell { return s.scoring->truth->families; }},
+     [](const Summary& s) -> Cell { return s.scoring->truth.families; }},
     {"frames", "", "1", "how many", Role::quantity, [](const Summary& s) -> Cell { return std::ssize(s.scoring->frames); }},
     {"end", "", "s", "time of the last frame", Role::quantity, [](const Summary& s) -> Cell { return s.last->t; }},
     {"growth", "", "1", "largest growth of a small perturbation of the start", Role::quantity,
-     [](const Summary& s) -> Cell { return s.scoring->truth->growth; }},
+     [](const Summary& s) -> Cell { return s.scoring->truth.growth; }},
     {"error", "rms error", "1", "largest of the frames' rms distances, over the size", Role::error, field<&Summary::error>},
     {"error_time", "at", "s", "when that is", Role::quantity, [](const Summary& s) -> Cell { return s.worst->t; }},
     {"maximum", "largest", "1", "largest distance of any particle in any frame, over the size", Role::error,
@@ -172,7 +141,7 @@ Summary summarised(const Scoring& s) {
   const double size = s.size();
   double mean = 0;
   for (const FrameScore& frame : s.frames) mean += frame.rms * frame.rms / static_cast<double>(s.frames.size());
-  const Lag late = lag(s.external, *s.truth);
+  const Lag late = lag(s.external, s.truth);
   return {.scoring = &s,
           .worst = worst,
           .last = last,
@@ -184,14 +153,15 @@ Summary summarised(const Scoring& s) {
           .reference_error = largest(&FrameScore::uncertainty)->uncertainty / size,
           .reference_depth = largest(&FrameScore::true_depth)->true_depth,
           .late = {late.seconds, over(late.left, size)},
-          .damping = damping(s.external, *s.truth, late)};
+          .damping = damping(s.external, s.truth, late)};
 }
 
-Table summary(const Scoring& s) {
-  const std::array rows{summarised(s)};
+Table summary_table(const Summary& summary) {
+  const std::array rows{summary};
+  const Scoring& s = *summary.scoring;
   Table table =
       make_table("score-summary", fmt::format("{} on {} in numbers", s.external.name, s.scene.name), summary_columns, rows);
-  if (s.truth->cloth.contacts) add_columns(table, penetration_columns, rows);
+  if (s.truth.cloth.contacts) add_columns(table, penetration_columns, rows);
   return table;
 }
 
@@ -275,9 +245,19 @@ Table answers_table(const Scoring& s) {
   return table;
 }
 
-Table beside_ours(Scoring& s, Checkpoint& checkpoint) {
-  s.ours = try_ours(*s.truth, s.frames, s.options.methods, s.options.cost, s.options.repetitions, checkpoint);
-  return answers_table(s);
+Scoring scored(const model::Scene& scene, const ExternalMotion& external, const ScoreOptions& options, Checkpoint& checkpoint) {
+  checkpoint.show("reference of " + scene.name);
+  const auto say = [&](const std::string& pace) { checkpoint.report("reference of " + scene.name + ": " + pace); };
+  Scoring s{scene, external, options, true_motion(scene, external.times, options.agreement, {.say = say}), {}, {}};
+  s.frames = frame_scores(s.external, s.truth);
+  checkpoint.advance();
+  s.ours = try_ours(s.truth, s.frames, options.methods, options.cost, options.repetitions, checkpoint);
+  return s;
+}
+
+Results present(const Scoring& s) {
+  const Summary summary = summarised(s);
+  return {.tables = {frames_table(s), summary_table(summary), answers_table(s), trials(s)}, .summary = in_words(summary)};
 }
 
 std::string bits(const std::vector<solver::State>& states) {
@@ -290,12 +270,14 @@ std::string bits(const std::vector<solver::State>& states) {
 
 }  // namespace
 
-std::vector<TableJob> score_jobs(const model::Scene& scene, const ExternalMotion& external, const ScoreOptions& options) {
-  const auto shared = std::make_shared<Scoring>(Scoring{scene, external, options, {}, {}, {}});
-  return {{1, [=](Checkpoint& checkpoint) { return over_time(*shared, checkpoint); }},
-          {0, [=](Checkpoint&) { return summary(*shared); }},
-          {static_cast<int>(options.methods.size()), [=](Checkpoint& checkpoint) { return beside_ours(*shared, checkpoint); }},
-          {0, [=](Checkpoint&) { return trials(*shared); }}};
+const char* source_of_velocities(const ExternalMotion& external) {
+  return external.differenced ? "differences of the frames" : "the file";
+}
+
+Job score_job(const model::Scene& scene, const ExternalMotion& external, const ScoreOptions& options) {
+  return job(
+      "score", 1 + static_cast<int>(options.methods.size()),
+      [=](Checkpoint& checkpoint) { return scored(scene, external, options, checkpoint); }, present);
 }
 
 std::string score_identity(const model::Scene& scene, const ExternalMotion& external, const ScoreOptions& options) {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/runs/table_jobs.hpp"
+#include "bench/runs/recording.hpp"
 #include "bench/score/external_motion.hpp"
 
 namespace drape::bench {
@@ -17,13 +17,10 @@ struct ScoreOptions {
   int repetitions;                   ///< of those of ours that are timed
 };
 
-/// The tables `score` (over time), `score-summary`, `score-ours` and, for files, `score-trials`.
-std::vector<TableJob> score_jobs(const model::Scene& scene, const ExternalMotion& external, const ScoreOptions& options);
+/// Records the tables `score` (over time), `score-summary`, `score-ours` and, for files, `score-trials`, with a summary.
+Job score_job(const model::Scene& scene, const ExternalMotion& external, const ScoreOptions& options);
 
 /// Of all that determines them.
 std::string score_identity(const model::Scene& scene, const ExternalMotion& external, const ScoreOptions& options);
-
-/// These tables in a few lines, for users.
-std::string score_summary(const std::vector<results::Table>& tables);
 
 }  // namespace drape::bench

@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include "results/verdict.hpp"
+
 namespace drape::bench {
 
 /// A bound from below or above that a value should keep.
@@ -13,7 +15,7 @@ struct Bar {
 /// ">= 5"
 std::string to_string(const Bar& bar);
 
-/// "met", or "missed: not met by 1.30", the factor between value and bar.
-std::string verdict(const Bar& bar, double value);
+/// Met, or missed: "not met by 1.30", the factor between value and bar.
+results::Verdict verdict(const Bar& bar, double value);
 
 }  // namespace drape::bench

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <memory>
 #include <optional>
 
 #include "bench/studies/studies.hpp"
@@ -64,6 +63,7 @@ struct SheetRuns {
 void run_defaults(SheetRuns& runs, Checkpoint& checkpoint) {
   SceneRuns& scene = runs.scene;
   const std::string name = name_of_sheet(runs.sheet);
+  checkpoint.begin(name);
   checkpoint.show("reference of " + name);
   scene.problem = certified_problem(name, hung_scene(runs.sheet), checkpoint);
   scene.problem.enough = std::ranges::min(choice_errors);
@@ -130,21 +130,28 @@ results::Table choice_table(const std::vector<SheetRuns>& all) {
                              rows);
 }
 
+std::vector<TriedSheet> try_sheets(const std::vector<HungSheet>& list, Checkpoint& checkpoint) {
+  std::vector<TriedSheet> all;
+  all.reserve(list.size());  // trials point into what is in it
+  for (const HungSheet& sheet : list) try_defaults(all.emplace_back(TriedSheet{sheet, {}}), checkpoint);
+  return all;
+}
+
+std::vector<results::Table> choice_tables(const std::vector<TriedSheet>& all) {
+  std::vector<results::Table> tables;
+  for (const TriedSheet& tried : all) tables.push_back(trials_table(tried.scene));
+  tables.push_back(choice_table(all));
+  return tables;
+}
+
 }  // namespace
 
-std::vector<TableJob> choice(bool quick) {
-  const auto all = std::make_shared<std::vector<SheetRuns>>();
-  const std::vector<HungSheet> list = hung_sheets_to_choose_on(quick);
-  all->reserve(list.size());  // runs point into what is in it
-  std::vector<TableJob> jobs;
-  for (const HungSheet& sheet : list)
-    jobs.push_back({static_cast<int>(default_configurations(sheet).size()), [=](Checkpoint& checkpoint) {
-                      SheetRuns& runs = all->emplace_back(SheetRuns{sheet, {}});
-                      run_defaults(runs, checkpoint);
-                      return runs_table(runs.scene);
-                    }});
-  jobs.push_back({0, [=](Checkpoint&) { return choice_table(*all); }});
-  return jobs;
+std::vector<Job> choice(const Question& question) {
+  const std::vector<HungSheet> list = hung_sheets_to_choose_on(question.quick);
+  int parts = 0;
+  for (const HungSheet& sheet : list) parts += static_cast<int>(default_configurations(sheet).size());
+  return {job(
+      "choice", parts, [=](Checkpoint& checkpoint) { return try_sheets(list, checkpoint); }, choice_tables)};
 }
 
 }  // namespace drape::bench

@@ -202,13 +202,15 @@ Errors errors(const Experiment& experiment, int n) {
   }
 }
 
-/// The verdict on a curve; empty if nothing is declared and an order is to be seen.
-std::string conclusion(const Experiment& experiment, const std::optional<results::OrderFit>& fit, double finest_error) {
+/// The verdict on a curve; nothing if nothing is declared and an order is to be seen.
+std::optional<results::Verdict> conclusion(const Experiment& experiment, const std::optional<results::OrderFit>& fit,
+                                           double finest_error) {
   constexpr double round_off = 1e-10;
   if (experiment.order == 0)
-    return finest_error <= round_off ? results::verdict(results::Standing::met, "exact as declared")
-                                     : results::verdict(results::Standing::missed, "not exact");
-  return std::isnan(experiment.order) && fit ? "" : results::order_verdict(fit, experiment.order);
+    return finest_error <= round_off ? results::Verdict{results::Standing::met, "exact as declared"}
+                                     : results::Verdict{results::Standing::missed, "not exact"};
+  if (std::isnan(experiment.order) && fit) return std::nullopt;
+  return results::order_verdict(fit, experiment.order);
 }
 
 /// An experiment at one resolution.
@@ -263,11 +265,15 @@ std::vector<Equilibrium> curve(const Experiment& experiment, const std::vector<i
   return all;
 }
 
-results::Table figure(const std::string& name, const std::string& title, const std::vector<Experiment>& experiments,
-                      const std::vector<int>& resolutions, Checkpoint& checkpoint) {
+std::vector<Equilibrium> equilibrium_curves(const std::vector<Experiment>& experiments, const std::vector<int>& resolutions,
+                                            Checkpoint& checkpoint) {
   std::vector<Equilibrium> rows;
   for (const Experiment& experiment : experiments)
     std::ranges::move(curve(experiment, resolutions, checkpoint), std::back_inserter(rows));
+  return rows;
+}
+
+results::Table equilibrium_table(const char* name, const char* title, const std::vector<Equilibrium>& rows) {
   results::Table table = results::make_table(name, title, equilibrium_columns, rows);
   results::add_columns(table, results::fit_columns, rows, std::mem_fn(&Equilibrium::curve));
   using results::Part;
@@ -278,18 +284,20 @@ results::Table figure(const std::string& name, const std::string& title, const s
 
 }  // namespace
 
-std::vector<TableJob> convergence(bool quick) {
-  const std::vector<int> resolutions = quick ? std::vector{20, 28, 36, 48} : std::vector{5, 10, 20, 40, 80, 160};
-  const auto job = [&](const char* name, const char* title, int experiments, auto make) {
-    return TableJob{experiments * static_cast<int>(resolutions.size()), [=](Checkpoint& checkpoint) {
-                      checkpoint.show(fmt::format("exact solution of {}", name));
-                      return figure(name, title, make(), resolutions, checkpoint);
-                    }};
+std::vector<Job> convergence(const Question& question) {
+  const std::vector<int> resolutions = question.quick ? std::vector{20, 28, 36, 48} : std::vector{5, 10, 20, 40, 80, 160};
+  const auto figure = [&](const char* name, const char* title, int experiments, auto make) {
+    const auto compute = [=](Checkpoint& checkpoint) {
+      checkpoint.show(fmt::format("exact solution of {}", name));
+      return equilibrium_curves(make(), resolutions, checkpoint);
+    };
+    const auto present = [=](const auto& rows) { return equilibrium_table(name, title, rows); };
+    return job(name, experiments * static_cast<int>(resolutions.size()), compute, present);
   };
-  return {job("figure-2.11a", "Figure 2.11 (a), tension: error of the equilibrium against the resolution", 2, tension),
-          job("figure-2.11b", "Figure 2.11 (b), shear: error of the equilibrium against the resolution", 4, shear),
-          job("figure-2.11c", "Figure 2.11 (c), bending: error of the equilibrium against the resolution", 6,
-              [] { return bending(); })};
+  return {figure("figure-2.11a", "Figure 2.11 (a), tension: error of the equilibrium against the resolution", 2, tension),
+          figure("figure-2.11b", "Figure 2.11 (b), shear: error of the equilibrium against the resolution", 4, shear),
+          figure("figure-2.11c", "Figure 2.11 (c), bending: error of the equilibrium against the resolution", 6,
+                 [] { return bending(); })};
 }
 
 }  // namespace drape::bench

@@ -20,7 +20,6 @@ using results::Cell;
 using results::field;
 using results::Role;
 using results::Standing;
-using results::verdict;
 
 constexpr double figure_step = 0.01;  ///< [s]
 constexpr double last = 1;            ///< part of the run that is looked at [s]
@@ -99,7 +98,7 @@ Flutter flutter(const model::Scene& scene, const char* method) {
   const Waves waves(scene);
   Flutter seen;
   seen.bending = seen.kinetic = Eigen::VectorXd::Zero(waves.count());
-  FunctionObserver look([&](const solver::StepReport& s) {
+  FunctionObserver observer([&](const solver::StepReport& s) {
     if (s.t <= scene.end - last) return;
     const Eigen::ArrayXd edge = s.y.x.col(1).head(scene.sheet.grid.nu);  // the lower one; the start is in the plane y = 0
     seen.swing.push_back(edge.mean());
@@ -107,7 +106,7 @@ Flutter flutter(const model::Scene& scene, const char* method) {
     seen.bending += waves.bending(s.y.x);
     seen.kinetic += waves.kinetic(s.y.v);
   });
-  Observer* const observers[] = {&look};
+  Observer* const observers[] = {&observer};
   seen.run = record({scene, "", &solver::method(method), figure_step, options}, observers);
   const auto steps = static_cast<double>(seen.swing.size());
   seen.wrinkles = std::sqrt(seen.wrinkles / steps);
@@ -146,7 +145,7 @@ struct Swing {
   double damping;
   const char* method;
   const Flutter* seen;
-  std::optional<std::string> verdict;  ///< in Euler's row
+  std::optional<results::Verdict> verdict;  ///< in Euler's row
 };
 
 constexpr results::ColumnOf<Swing> swing_columns[] = {
@@ -173,7 +172,8 @@ results::Table swings(const Runs& runs) {
     for (std::size_t method = 0; method < runs[k].size(); ++method)
       rows.push_back({number(dampings[k]), figure_methods[method], &runs[k][method], {}});
     const bool less = runs[k].front().peak_to_peak() < runs[k].back().peak_to_peak();
-    rows[euler].verdict = less ? verdict(Standing::met, "swings less") : verdict(Standing::missed, "does not swing less");
+    rows[euler].verdict =
+        less ? results::Verdict{Standing::met, "swings less"} : results::Verdict{Standing::missed, "does not swing less"};
   }
   return results::make_table("figure-3.2",
                              fmt::format("Figure 3.2: the sheet in the wind, h = {} s, the last second", figure_step),
@@ -187,7 +187,7 @@ struct Spectrum {
   double damping;
   std::string waves;  ///< numbers of half-waves: "3", or the first and the last
   Energies bending, kinetic;
-  std::optional<std::string> verdict;  ///< where it is not a single wave
+  std::optional<results::Verdict> verdict;  ///< where it is not a single wave
 
   double ratio(Energies Spectrum::*energy, std::size_t method) const { return (this->*energy)[method] / (this->*energy)[2]; }
 };
@@ -226,10 +226,10 @@ void add_energies(results::Table& table, const std::string& name, const std::vec
 }
 
 /// What became of the kinetic energy.
-std::string motion_verdict(const Spectrum& row) {
+results::Verdict motion_verdict(const Spectrum& row) {
   const double euler = row.ratio(&Spectrum::kinetic, 0), bdf2 = row.ratio(&Spectrum::kinetic, 1);
-  if (std::abs(std::log(bdf2)) > std::abs(std::log(euler))) return verdict(Standing::missed, "BDF(2) is not nearer");
-  return euler < smoothed ? "smoothed by Euler" : "not smoothed";
+  if (std::abs(std::log(bdf2)) > std::abs(std::log(euler))) return results::Verdict{Standing::missed, "BDF(2) is not nearer"};
+  return {Standing::open, euler < smoothed ? "smoothed by Euler" : "not smoothed"};
 }
 
 /// `n` waves from one on.
@@ -266,14 +266,14 @@ results::Table spectrum(const Runs& runs) {
 
 }  // namespace
 
-std::vector<TableJob> figure_3_2(bool quick) {
-  const auto runs = std::make_shared<Runs>();  // of the first table, for the second
-  return {{static_cast<int>(std::size(dampings) * std::size(figure_methods)),
-           [=](Checkpoint& checkpoint) {
-             for (const char* damping : dampings) runs->push_back(compare(damping, quick, checkpoint));
-             return swings(*runs);
-           }},
-          {0, [=](Checkpoint&) { return spectrum(*runs); }}};
+std::vector<Job> figure_3_2(const Question& question) {
+  const auto compute = [quick = question.quick](Checkpoint& checkpoint) {
+    Runs runs;
+    for (const char* damping : dampings) runs.push_back(compare(damping, quick, checkpoint));
+    return runs;
+  };
+  const auto present = [](const Runs& runs) { return std::vector{swings(runs), spectrum(runs)}; };
+  return {job("figure-3.2", static_cast<int>(std::size(dampings) * std::size(figure_methods)), compute, present)};
 }
 
 }  // namespace drape::bench

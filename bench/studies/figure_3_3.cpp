@@ -171,8 +171,8 @@ constexpr results::ColumnOf<Lags> lags_verdict[] = {
      Role::verdict,
      [](const Lags& row) -> results::Cell {
        return row.sbdf2.is_as_predicted(row.t) && row.imex_euler.is_as_predicted(row.t)
-                  ? results::verdict(results::Standing::met, "as predicted")
-                  : results::verdict(results::Standing::missed, "not as predicted");
+                  ? results::Verdict{results::Standing::met, "as predicted"}
+                  : results::Verdict{results::Standing::missed, "not as predicted"};
      }},
 };
 
@@ -194,28 +194,32 @@ Lags lags(double nu, double ratio) {
           .imex_euler = {lag(bdf2, fall(cloth, "imex-euler", end)), lag(bdf2, fall(strip(grid, k, d + h * k), "bdf2", end))}};
 }
 
+results::Table lags_table(const std::vector<Lags>& rows) {
+  results::Table table = results::make_table(
+      "figure-3.3", "Figure 3.3: by what time semi-implicit methods lag behind BDF(2), h = 0.01 s", lags_columns, rows);
+  const auto of = [](Lag Lags::*method) { return [method](const Lags& row) { return &(row.*method); }; };
+  results::add_columns(table, lag_columns, rows, of(&Lags::sbdf2), {"sbdf2", "sbdf2"});
+  results::add_columns(table, lag_columns, rows, of(&Lags::imex_euler), {"imex-euler", "imex-euler"});
+  results::add_columns(table, lags_verdict, rows);
+  return table;
+}
+
 }  // namespace
 
-std::vector<TableJob> figure_3_3(bool quick) {
-  const std::vector<double> stiffnesses = quick ? std::vector{1e2, 1e4} : std::vector{1e2, 1e3, 5e3, 1e4, 1e5};
-  const std::vector<double> ratios = quick ? std::vector{1.0, 100.0} : std::vector{1.0, 10.0, 100.0, 1000.0};
-  return {{static_cast<int>(stiffnesses.size() * ratios.size()), [=](Checkpoint& checkpoint) {
-             std::vector<Lags> rows;
-             for (const double nu : stiffnesses)
-               for (const double ratio : ratios) {
-                 checkpoint.show(fmt::format("ν = {}, h k/d = {}", nu, ratio));
-                 rows.push_back(checkpoint.once(fmt::format("{} {}", nu, ratio), [&] { return lags(nu, ratio); }));
-                 checkpoint.advance();
-               }
-             results::Table table = results::make_table(
-                 "figure-3.3", "Figure 3.3: by what time semi-implicit methods lag behind BDF(2), h = 0.01 s", lags_columns,
-                 rows);
-             const auto of = [](Lag Lags::*method) { return [method](const Lags& row) { return &(row.*method); }; };
-             results::add_columns(table, lag_columns, rows, of(&Lags::sbdf2), {"sbdf2", "sbdf2"});
-             results::add_columns(table, lag_columns, rows, of(&Lags::imex_euler), {"imex-euler", "imex-euler"});
-             results::add_columns(table, lags_verdict, rows);
-             return table;
-           }}};
+std::vector<Job> figure_3_3(const Question& question) {
+  const std::vector<double> stiffnesses = question.quick ? std::vector{1e2, 1e4} : std::vector{1e2, 1e3, 5e3, 1e4, 1e5};
+  const std::vector<double> ratios = question.quick ? std::vector{1.0, 100.0} : std::vector{1.0, 10.0, 100.0, 1000.0};
+  const auto compute = [=](Checkpoint& checkpoint) {
+    std::vector<Lags> rows;
+    for (const double nu : stiffnesses)
+      for (const double ratio : ratios) {
+        checkpoint.show(fmt::format("ν = {}, h k/d = {}", nu, ratio));
+        rows.push_back(checkpoint.once(fmt::format("{} {}", nu, ratio), [&] { return lags(nu, ratio); }));
+        checkpoint.advance();
+      }
+    return rows;
+  };
+  return {job("figure-3.3", static_cast<int>(stiffnesses.size() * ratios.size()), compute, lags_table)};
 }
 
 }  // namespace drape::bench

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <memory>
 #include <optional>
 #include <span>
 
@@ -28,7 +27,7 @@ model::Scene swing(bool quick) {
   return model::load_scene("box_swing", overrides);
 }
 
-RunSpec cell(const model::Scene& scene, std::string_view method) {
+RunSpec spec(const model::Scene& scene, std::string_view method) {
   return {scene, "", &solver::method(method), box_step, solver::thesis_options()};
 }
 
@@ -37,7 +36,6 @@ using results::Role;
 using results::RunRecord;
 using results::Standing;
 using results::StepRecord;
-using results::verdict;
 using Steps = std::span<const StepRecord>;
 
 /// A run against the box. The method is named alone: all runs have the thesis' solvers.
@@ -119,7 +117,7 @@ struct Ratio {
   std::string method, what;
   double value, most;
   std::optional<double> motion;  ///< kinetic energy at the end over the largest one
-  std::string verdict;
+  results::Verdict verdict;
 };
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Ratio, method, what, value, most, motion, verdict)
 
@@ -133,21 +131,21 @@ constexpr results::ColumnOf<Ratio> ratio_columns[] = {
     {"verdict", "verdict", "", "whether it keeps below the bar", Role::verdict, field<&Ratio::verdict>},
 };
 
-std::string verdict_of(const RunRecord& run, double value, double most) {
-  if (!run.succeeded()) return std::string(to_string(run.outcome));
+results::Verdict contact_verdict(const RunRecord& run, double value, double most) {
+  if (!run.succeeded()) return {Standing::open, std::string(to_string(run.outcome))};
   const bool touched = before_contact(run).size() < run.steps.size();
-  if (!touched) return verdict(Standing::open, "no contact");
-  return value <= most ? verdict(Standing::met, "below") : verdict(Standing::missed, "not below");
+  if (!touched) return results::Verdict{Standing::open, "no contact"};
+  return value <= most ? results::Verdict{Standing::met, "below"} : results::Verdict{Standing::missed, "not below"};
 }
 
 Ratio ratio(std::string_view method, const RunRecord& run, const char* what, double value, double most) {
   std::optional<double> motion;
   if (!run.steps.empty())
     motion = run.steps.back().kinetic_energy / std::ranges::max(run.steps, {}, &StepRecord::kinetic_energy).kinetic_energy;
-  return {std::string(method), what, value, most, motion, verdict_of(run, value, most)};
+  return {std::string(method), what, value, most, motion, contact_verdict(run, value, most)};
 }
 
-/// All ratios of a method, from its cells with and without box.
+/// All ratios of a method, from its runs with and without box, whose repetitions are interleaved.
 std::vector<Ratio> ratios(const Group& group, int repetitions) {
   const RunRecord with = record(group[0]), without = record(group[1]);
   const auto times = time_group(group, {steps_to_time(with), steps_to_time(without)}, repetitions, [] {});
@@ -161,7 +159,7 @@ std::vector<Ratio> ratios(const Group& group, int repetitions) {
                 most_time)};
 }
 
-results::Table bars(bool quick, Checkpoint& checkpoint) {
+std::vector<Ratio> contact_costs(bool quick, Checkpoint& checkpoint) {
   std::vector<Ratio> rows;
   const model::Scene scene = swing(quick);
   model::Scene without_box = scene;
@@ -169,31 +167,41 @@ results::Table bars(bool quick, Checkpoint& checkpoint) {
   for (const solver::Method& method : solver::thesis_methods()) {
     if (!method.implicit()) continue;
     checkpoint.show(fmt::format("cost of contact, {}", method.name));
-    const Group group{cell(scene, method.name), cell(without_box, method.name)};
+    const Group group{spec(scene, method.name), spec(without_box, method.name)};
     std::ranges::move(checkpoint.once(std::string(method.name), [&] { return ratios(group, quick ? 1 : 5); }),
                       std::back_inserter(rows));
     checkpoint.advance();
   }
+  return rows;
+}
+
+results::Table contact_costs_table(const std::vector<Ratio>& rows) {
   return results::make_table("figure-4.3-bars", "Figure 4.3: what contact costs; the sheet swings with and without the box",
                              ratio_columns, rows);
 }
 
 }  // namespace
 
-std::vector<TableJob> figure_4_3(bool quick) {
-  const auto runs = std::make_shared<std::vector<BoxRun>>();  // of the first table, for the last
+std::vector<Job> figure_4_3(const Question& question) {
+  const bool quick = question.quick;
   const auto implicit = std::ranges::count_if(solver::thesis_methods(), [](const solver::Method& m) { return m.implicit(); });
-  return {{2,
-           [=](Checkpoint& checkpoint) {
-             for (const char* method : {"bdf2", "sbdf2"}) {
-               checkpoint.show(fmt::format("{} against the box", method));
-               runs->push_back({method, checkpoint.once(method, [&] { return record(cell(swing(quick), method)); })});
-               checkpoint.advance();
-             }
-             return over_time("figure-4.3", "Figure 4.3: a sheet swings against a box; means over five steps", *runs, window);
-           }},
-          {static_cast<int>(implicit), [=](Checkpoint& checkpoint) { return bars(quick, checkpoint); }},
-          {0, [=](Checkpoint&) { return over_time("figure-4.3-steps", "Figure 4.3: every step (in the file)", *runs, 1); }}};
+  const auto swing_runs = [=](Checkpoint& checkpoint) {
+    std::vector<BoxRun> runs;
+    for (const char* method : {"bdf2", "sbdf2"}) {
+      checkpoint.show(fmt::format("{} against the box", method));
+      runs.push_back({method, checkpoint.once(method, [&] { return record(spec(swing(quick), method)); })});
+      checkpoint.advance();
+    }
+    return runs;
+  };
+  const auto present = [](const std::vector<BoxRun>& runs) {
+    return std::vector{over_time("figure-4.3", "Figure 4.3: a sheet swings against a box; means over five steps", runs, window),
+                       over_time("figure-4.3-steps", "Figure 4.3: every step (in the file)", runs, 1)};
+  };
+  return {job("figure-4.3", 2, swing_runs, present),
+          job(
+              "figure-4.3-bars", static_cast<int>(implicit),
+              [=](Checkpoint& checkpoint) { return contact_costs(quick, checkpoint); }, contact_costs_table)};
 }
 
 }  // namespace drape::bench

@@ -5,13 +5,13 @@ namespace drape::bench {
 
 /// The methods of table 3.2 and IMEX midpoint as the thesis solves them, and all methods as we do, on the 20 × 20 sheet: l =
 /// 0.8/19 m, k = 10⁴ N/m, ρ = 1 kg/m², h = 0.01 s, 1 s.
-std::vector<Group> hung_sheets(bool quick) {
+std::vector<Group> hung_sheets(const Question& question) {
   std::vector<Group> groups;
   for (const char* name : {"hung-edge", "hung-corners"})
     for (const char* damping : {"50", "0.5"}) {
       const model::Override change{"material.damping", damping};
       model::Scene scene = model::load_scene(name, {&change, 1});
-      if (quick) {
+      if (question.quick) {
         scene.end = 0.1;
         scene.sheet.grid.nu = scene.sheet.grid.nv = 8;
       }

@@ -59,22 +59,24 @@ std::vector<double> stiffnesses(bool quick) {
 using results::Role;
 using results::Standing;
 
-std::string as_theory(bool equal, const char* agreement) {
-  return equal ? results::verdict(Standing::met, agreement)
-               : results::verdict(Standing::missed, fmt::format("not {}", agreement));
+results::Verdict as_theory(bool equal, const char* agreement) {
+  return equal ? results::Verdict{Standing::met, agreement}
+               : results::Verdict{Standing::missed, fmt::format("not {}", agreement)};
 }
 
-const std::string no_theory = results::verdict(Standing::open, "no theory known");
+const results::Verdict no_theory{Standing::open, "no theory known"};
 
 /// What a step of the method makes of a mode, which some may fail at: then the row says why.
 template <class Row, class Measure>
-Row measured(Row row, const Measure& measure) {
-  try {
-    measure(row);
-  } catch (const std::exception& error) {
-    row.verdict = error.what();
-  }
-  return row;
+Row measured(Checkpoint& checkpoint, const std::string& id, Row row, const Measure& measure) {
+  return checkpoint.once(fmt::format("{} {}", row.method, id), [&] {
+    try {
+      measure(row);
+    } catch (const std::exception& error) {
+      row.verdict = {Standing::open, error.what()};
+    }
+    return row;
+  });
 }
 
 /// The running step against its characteristic polynomial.
@@ -82,7 +84,7 @@ struct Amplified {
   std::string method, mode;
   double nu, W, s;
   std::optional<double> radius, distance;
-  std::string verdict;
+  results::Verdict verdict;
 };
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Amplified, method, mode, nu, W, s, radius, distance, verdict)
 
@@ -101,14 +103,15 @@ constexpr results::ColumnOf<Amplified> amplified_columns[] = {
      results::field<&Amplified::verdict>},
 };
 
-std::vector<Amplified> amplification(const Method& method, bool quick) {
+std::vector<Amplified> amplification(const Method& method, bool quick, Checkpoint& checkpoint) {
   constexpr double agreement = 1e-10, far_outside = 1e3;
   std::vector<Amplified> rows;
   for (const NamedMode& named : modes_of_the_sheet())
     for (const double nu : stiffnesses(quick)) {
       const Mode mode = at_step(named.mode, std::sqrt(nu / named.mode.kappa));
       if (method.sub_steps && std::max(mode.W, mode.s) > far_outside) continue;  // of a single sub-step
-      rows.push_back(measured(Amplified{std::string(method.name), named.name, mode.nu, mode.W, mode.s, {}, {}, no_theory},
+      rows.push_back(measured(checkpoint, fmt::format("{} {}", named.name, nu),
+                              Amplified{std::string(method.name), named.name, mode.nu, mode.W, mode.s, {}, {}, no_theory},
                               [&](Amplified& row) {
                                 row.radius = spectral_radius(method, mode);
                                 if (!reference::has_theory(method.name)) return;
@@ -124,7 +127,7 @@ struct Limit {
   std::string method;
   double share;
   std::optional<double> limit, bound;
-  std::string verdict;
+  results::Verdict verdict;
 };
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Limit, method, share, limit, bound, verdict)
 
@@ -140,18 +143,19 @@ constexpr results::ColumnOf<Limit> limit_columns[] = {
      results::field<&Limit::verdict>},
 };
 
-std::vector<Limit> stability(const Method& method, bool) {
+std::vector<Limit> stability(const Method& method, bool, Checkpoint& checkpoint) {
   std::vector<Limit> rows;
   for (const double share : {2.5, 1.5, 1.0, 0.1, 1e-3})
-    rows.push_back(measured(Limit{std::string(method.name), share, {}, {}, no_theory}, [&](Limit& row) {
-      const double h = reference::stability_limit(method, {1 / share, 1, 0}), W = h * h;
-      row.limit = W;
-      if (!reference::has_theory(method.name)) return;
-      const double bound = reference::stability_bound(method.name, W / share, 0);
-      row.bound = bound;
-      const bool equal = std::isinf(W) ? bound > 1e6 : std::abs(W - bound) <= 1e-6 * bound || (W == 0 && bound == 0);
-      row.verdict = as_theory(equal, "as in theory");
-    }));
+    rows.push_back(measured(
+        checkpoint, fmt::format("{}", share), Limit{std::string(method.name), share, {}, {}, no_theory}, [&](Limit& row) {
+          const double h = reference::stability_limit(method, {1 / share, 1, 0}), W = h * h;
+          row.limit = W;
+          if (!reference::has_theory(method.name)) return;
+          const double bound = reference::stability_bound(method.name, W / share, 0);
+          row.bound = bound;
+          const bool equal = std::isinf(W) ? bound > 1e6 : std::abs(W - bound) <= 1e-6 * bound || (W == 0 && bound == 0);
+          row.verdict = as_theory(equal, "as in theory");
+        }));
   return rows;
 }
 
@@ -160,7 +164,7 @@ struct Artificial {
   std::string method;
   double nu;
   std::optional<double> frequency, predicted_frequency, damping, predicted_damping, inertia;
-  std::string verdict;
+  results::Verdict verdict;
 };
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Artificial, method, nu, frequency, predicted_frequency, damping, predicted_damping, inertia,
                                    verdict)
@@ -180,55 +184,61 @@ constexpr results::ColumnOf<Artificial> artificial_columns[] = {
      results::field<&Artificial::verdict>},
 };
 
-std::vector<Artificial> artificial(const Method& method, bool quick) {
+std::vector<Artificial> artificial(const Method& method, bool quick, Checkpoint& checkpoint) {
   constexpr double W = 1e-4, tolerance = 1e-3;
   std::vector<Artificial> rows;
   for (const double nu : stiffnesses(quick)) {
     if (nu < W) continue;
     const Mode mode{nu, W, 0};
-    rows.push_back(measured(Artificial{std::string(method.name), nu, {}, {}, {}, {}, {}, no_theory}, [&](Artificial& row) {
-      const auto seen = measured_behaviour(method, mode), exact = exact_behaviour(mode);
-      const double period = 2 * std::numbers::pi / exact.frequency;
-      row.frequency = seen.frequency / exact.frequency;
-      row.damping = seen.decay * period;
-      if (!reference::has_theory(method.name)) return;
-      const auto predicted = predicted_behaviour(method.name, mode);
-      row.predicted_frequency = predicted.frequency / exact.frequency;
-      row.predicted_damping = predicted.decay * period;
-      row.inertia = reference::artificial(method.name, mode).inertia;
-      const double distance = std::hypot(seen.frequency - predicted.frequency, seen.decay - predicted.decay);
-      row.verdict = as_theory(distance <= tolerance * std::hypot(predicted.frequency, predicted.decay), "as predicted");
-    }));
+    rows.push_back(measured(
+        checkpoint, fmt::format("{}", nu), Artificial{std::string(method.name), nu, {}, {}, {}, {}, {}, no_theory},
+        [&](Artificial& row) {
+          const auto seen = measured_behaviour(method, mode), exact = exact_behaviour(mode);
+          const double period = 2 * std::numbers::pi / exact.frequency;
+          row.frequency = seen.frequency / exact.frequency;
+          row.damping = seen.decay * period;
+          if (!reference::has_theory(method.name)) return;
+          const auto predicted = predicted_behaviour(method.name, mode);
+          row.predicted_frequency = predicted.frequency / exact.frequency;
+          row.predicted_damping = predicted.decay * period;
+          row.inertia = reference::artificial(method.name, mode).inertia;
+          const double distance = std::hypot(seen.frequency - predicted.frequency, seen.decay - predicted.decay);
+          row.verdict = as_theory(distance <= tolerance * std::hypot(predicted.frequency, predicted.decay), "as predicted");
+        }));
   }
   return rows;
 }
 
 /// A table with some rows for each method.
 template <class Row, std::size_t count>
-TableJob job(const char* name, const char* description, const results::ColumnOf<Row> (&columns)[count],
-             std::vector<Row> (*rows_of)(const Method&, bool quick), bool quick, const Methods& methods) {
-  return {static_cast<int>(methods.size()), [=, &columns](Checkpoint& checkpoint) {
-            std::vector<Row> rows;
-            for (const Method* method : methods) {
-              checkpoint.show(fmt::format("{} of {}", name, method->name));
-              std::ranges::move(checkpoint.once(std::string(method->name), [&] { return rows_of(*method, quick); }),
-                                std::back_inserter(rows));
-              checkpoint.advance();
-            }
-            return results::make_table(name, description, columns, rows);
-          }};
+Job table_of(const char* name, const char* description, const results::ColumnOf<Row> (&columns)[count],
+             std::vector<Row> (*rows_of)(const Method&, bool quick, Checkpoint&), bool quick, const Methods& methods) {
+  const auto compute = [=](Checkpoint& checkpoint) {
+    std::vector<Row> rows;
+    for (const Method* method : methods) {
+      checkpoint.show(fmt::format("{} of {}", name, method->name));
+      std::ranges::move(rows_of(*method, quick, checkpoint), std::back_inserter(rows));
+      checkpoint.advance();
+    }
+    return rows;
+  };
+  const auto present = [=, &columns](const std::vector<Row>& rows) {
+    return results::make_table(name, description, columns, rows);
+  };
+  return job(name, static_cast<int>(methods.size()), compute, present);
 }
 
 }  // namespace
 
-std::vector<TableJob> modes(bool quick, const Methods& methods) {
-  const Methods chosen = all_or(methods);
-  return {job("amplification", "Amplification by the running code against the characteristic polynomials", amplified_columns,
-              amplification, quick, chosen),
-          job("stability", "Largest stable W = h² ω² by bisection, for shares ω²/κ of the implicit part", limit_columns,
-              stability, quick, chosen),
-          job("artificial", "Artificial inertia and damping of a transverse mode, h ω = 0.01, undamped", artificial_columns,
-              artificial, quick, chosen)};
+std::vector<Job> modes(const Question& question) {
+  const Methods chosen = all_or(question.methods);
+  const bool quick = question.quick;
+  return {table_of("amplification", "Amplification by the running code against the characteristic polynomials",
+                   amplified_columns, amplification, quick, chosen),
+          table_of("stability", "Largest stable W = h² ω² by bisection, for shares ω²/κ of the implicit part", limit_columns,
+                   stability, quick, chosen),
+          table_of("artificial", "Artificial inertia and damping of a transverse mode, h ω = 0.01, undamped",
+                   artificial_columns, artificial, quick, chosen)};
 }
 
 }  // namespace drape::bench

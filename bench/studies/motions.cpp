@@ -5,10 +5,10 @@ namespace drape::bench {
 
 /// Where the choice of a method is seen with the naked eye: a sheet hung by two corners with little damping, in steps of half a
 /// frame. The semi-implicit methods are stable and fall too slowly; of the implicit ones the first order damps what swings.
-std::vector<Group> motions(bool quick) {
+std::vector<Group> motions(const Question& question) {
   const model::Override damping{"material.damping", "0.5"};
   model::Scene scene = model::load_scene("hung-corners", {&damping, 1});
-  if (quick) {
+  if (question.quick) {
     scene.end = 0.1;
     scene.sheet.grid.nu = scene.sheet.grid.nv = 8;
   }

@@ -24,7 +24,13 @@ std::vector<model::Scene> scenes(bool quick) {
   return all;
 }
 
-results::Table orders_on(const model::Scene& scene, bool quick, const Methods& methods, Checkpoint& checkpoint) {
+/// The curves of all methods on a scene.
+struct OrdersOnScene {
+  std::string families;  ///< behind the reference
+  std::vector<RefinedRun> runs;
+};
+
+OrdersOnScene orders_on(const model::Scene& scene, bool quick, const Methods& methods, Checkpoint& checkpoint) {
   const model::Cloth cloth = model::compile(scene);
   checkpoint.show("reference of " + scene.name);
   const auto say = [&](const std::string& pace) { checkpoint.report("reference of " + scene.name + ": " + pace); };
@@ -35,25 +41,30 @@ results::Table orders_on(const model::Scene& scene, bool quick, const Methods& m
   for (const solver::Method* method : methods) {
     checkpoint.show(fmt::format("{} on {}", method->name, scene.name));
     const std::string name(method->name);
-    auto curve = checkpoint.once(name, [&] { return refine(tight(scene, name), name, cloth, reference, quick ? 1e6 : 4e7); });
+    auto curve = refine(tight(scene, name), name, cloth, reference, quick ? 1e6 : 4e7, checkpoint);
     fit_curve(curve, method->order);
     std::ranges::move(curve, std::back_inserter(runs));
     checkpoint.advance();
   }
-  return refinement_table(
-      "orders-" + scene.name,
-      fmt::format("Order in time on {}, {:g} s; reference {} + {}", scene.name, scene.end, reference.name, reference.witness),
-      runs);
+  return {fmt::format("{} + {}", reference.name, reference.witness), std::move(runs)};
 }
 
 }  // namespace
 
-std::vector<TableJob> orders(bool quick, const Methods& methods) {
-  const Methods chosen = all_or(methods);
-  std::vector<TableJob> jobs;
-  for (const model::Scene& scene : scenes(quick))
-    jobs.push_back({1 + static_cast<int>(chosen.size()),
-                    [=](Checkpoint& checkpoint) { return orders_on(scene, quick, chosen, checkpoint); }});
+std::vector<Job> orders(const Question& question) {
+  const Methods methods = all_or(question.methods);
+  std::vector<Job> jobs;
+  for (const model::Scene& scene : scenes(question.quick)) {
+    const std::string name = "orders-" + scene.name;
+    const auto compute = [=, quick = question.quick](Checkpoint& checkpoint) {
+      return orders_on(scene, quick, methods, checkpoint);
+    };
+    const auto present = [=](const OrdersOnScene& orders) {
+      return refinement_table(
+          name, fmt::format("Order in time on {}, {:g} s; reference {}", scene.name, scene.end, orders.families), orders.runs);
+    };
+    jobs.push_back(job(name, 1 + static_cast<int>(methods.size()), compute, present));
+  }
   return jobs;
 }
 

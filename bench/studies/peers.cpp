@@ -86,36 +86,40 @@ std::vector<solver::Vectors> solve(const PeerRow& row, const Case& on) {
   return reference::positions_of(solve_by_peer(row.setup, row.value, on.size, cloth.ode, cloth.start, on.times));
 }
 
-results::Measured measure(const PeerRow& row, const Case& on, Checkpoint& checkpoint) {
+std::vector<double> times_of(const PeerRow& row, const Case& on) {
   constexpr int repetitions = 15;
   const auto prepare = [&] {
     return [&, cloth = std::make_shared<model::Cloth>(model::compile(on.scene))] {
       solve_by_peer(row.setup, row.value, on.size, cloth->ode, cloth->start, on.times);
     };
   };
-  return {0, checkpoint.once(fmt::format("{} {} {}", row.damping, row.setup.name(), row.value), [&] {
-            return time_runs(
-                {{prepare, repetitions}}, [] {}, TimeOf::process);
-          })[0]};
+  return time_runs(
+      {{prepare, repetitions}}, [] {}, TimeOf::process)[0];
+}
+
+/// What we measure of a setup.
+struct PeerMeasured {
+  double error, over_motion;
+  std::vector<double> times;  ///< [ms]
+};
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PeerMeasured, error, over_motion, times)
+
+PeerMeasured measure(const PeerRow& row, const Case& on) {
+  const auto positions = solve(row, on);
+  return {.error = on.error(positions, {7, 9, 10}),
+          .over_motion = on.error(positions, {1, 2, 3, 4, 5, 6, 7, 8, 9, 10}),
+          .times = times_of(row, on)};
 }
 
 /// What the driver measured, and what we do.
 struct Reproduced {
   PeerRow row;
-  double error, over_motion;
-  results::Quartiles times;
+  PeerMeasured ours;
+
+  results::Quartiles times() const { return results::quartiles(ours.times); }
 };
 
-Reproduced reproduced(const PeerRow& row, const Case& on, Checkpoint& checkpoint) {
-  const auto positions = solve(row, on);
-  return {.row = row,
-          .error = on.late_error(positions),
-          .over_motion = on.error(positions),
-          .times = results::quartiles(measure(row, on, checkpoint).times)};
-}
-
 using results::Cell;
-using results::field;
 using results::Role;
 
 constexpr results::ColumnOf<Reproduced> reproduced_columns[] = {
@@ -124,36 +128,45 @@ constexpr results::ColumnOf<Reproduced> reproduced_columns[] = {
     {"setup", "setup", "", "of SUNDIALS", Role::key, [](const Reproduced& r) -> Cell { return r.row.setup.name(); }},
     {"value", "value", "1", "step [s] or tolerance", Role::key, [](const Reproduced& r) -> Cell { return r.row.value; }},
     {"error", "error", "1", "largest at 0.7, 0.9 and 1 of the end, over the scene's size", Role::error,
-     field<&Reproduced::error>},
+     [](const Reproduced& r) -> Cell { return r.ours.error; }},
     {"theirs", "driver's", "1", "the same by an independent driver", Role::quantity,
      [](const Reproduced& r) -> Cell { return r.row.their_error; }},
-    {"over_motion", "over motion", "1", "largest error at all tenths", Role::error, field<&Reproduced::over_motion>},
-    {"time", "CPU", "ms", "median CPU time", Role::time, [](const Reproduced& r) -> Cell { return r.times.median; }},
-    {"lower", "", "ms", "lower quartile", Role::time, [](const Reproduced& r) -> Cell { return r.times.lower; }},
-    {"upper", "", "ms", "upper quartile", Role::time, [](const Reproduced& r) -> Cell { return r.times.upper; }},
+    {"over_motion", "over motion", "1", "largest error at all tenths", Role::error,
+     [](const Reproduced& r) -> Cell { return r.ours.over_motion; }},
+    {"time", "CPU", "ms", "median CPU time", Role::time, [](const Reproduced& r) -> Cell { return r.times().median; }},
+    {"lower", "", "ms", "lower quartile", Role::time, [](const Reproduced& r) -> Cell { return r.times().lower; }},
+    {"upper", "", "ms", "upper quartile", Role::time, [](const Reproduced& r) -> Cell { return r.times().upper; }},
     {"their_time", "driver's", "ms", "the driver's, the minimum of three, with SUNDIALS built with our flags", Role::time,
      [](const Reproduced& r) -> Cell { return r.row.their_ms; }},
 };
 
-results::Table reproduce(bool quick, Checkpoint& checkpoint) {
+std::vector<Reproduced> reproduce(bool quick, Checkpoint& checkpoint) {
   std::vector<Reproduced> all;
   std::string damping;
   std::optional<Case> on;
   for (const PeerRow& row : rows(quick)) {
     checkpoint.show(fmt::format("d = {}, {}: {:g}", row.damping, row.setup.name(), row.value));
-    if (row.damping != damping) on = make_case(damping = row.damping, quick);
-    all.push_back(reproduced(row, *on, checkpoint));
+    all.push_back({row, checkpoint.once(fmt::format("{} {} {}", row.damping, row.setup.name(), row.value), [&] {
+                     if (row.damping != damping) on = make_case(damping = row.damping, quick);
+                     return measure(row, *on);
+                   })});
     checkpoint.advance();
   }
+  return all;
+}
+
+results::Table reproduced_table(const std::vector<Reproduced>& rows) {
   return results::make_table("peers",
                              fmt::format("SUNDIALS as an independent driver has set it up; {}", reference::sundials_build()),
-                             reproduced_columns, all);
+                             reproduced_columns, rows);
 }
 
 }  // namespace
 
-std::vector<TableJob> peers(bool quick) {
-  return {{static_cast<int>(rows(quick).size()), [quick](Checkpoint& checkpoint) { return reproduce(quick, checkpoint); }}};
+std::vector<Job> peers(const Question& question) {
+  const bool quick = question.quick;
+  const auto compute = [quick](Checkpoint& checkpoint) { return reproduce(quick, checkpoint); };
+  return {job("peers", static_cast<int>(rows(quick).size()), compute, reproduced_table)};
 }
 
 }  // namespace drape::bench

@@ -71,9 +71,9 @@ using results::field;
 using results::Role;
 using results::Standing;
 
-std::string agreement(double distance) {
-  return distance <= closest ? results::verdict(Standing::met, "agrees")
-                             : results::verdict(Standing::missed, "not in agreement");
+results::Verdict agreement(double distance) {
+  return distance <= closest ? results::Verdict{Standing::met, "agrees"}
+                             : results::Verdict{Standing::missed, "not in agreement"};
 }
 
 constexpr ColumnOf<PeerSolution> compared_columns[] = {
@@ -109,11 +109,15 @@ std::vector<PeerSolution> compared_on(const std::string& name, const std::string
   return rows;
 }
 
-results::Table compare(bool quick, Checkpoint& checkpoint) {
+std::vector<PeerSolution> compare(bool quick, Checkpoint& checkpoint) {
   std::vector<PeerSolution> rows;
   for (const std::string& name : reference_scenes)
     for (const std::string& damping : reference_dampings)
       std::ranges::move(compared_on(name, damping, quick, checkpoint), std::back_inserter(rows));
+  return rows;
+}
+
+results::Table compared_table(const std::vector<FamilySolution>& rows) {
   return results::make_table(
       "references", fmt::format("Three families of solvers on the same equation of motion, rtol = {:g}", reference_rtol),
       compared_columns, rows);
@@ -121,10 +125,10 @@ results::Table compare(bool quick, Checkpoint& checkpoint) {
 
 }  // namespace
 
-std::vector<TableJob> references(bool quick) {
+std::vector<Job> references(const Question& question) {
   const auto parts = static_cast<int>(reference_scenes.size() * reference_dampings.size() * compared_peers.size());
-  return {{parts, [quick](Checkpoint& checkpoint) { return compare(quick, checkpoint); }},
-          {growth_parts, [quick](Checkpoint& checkpoint) { return growth_of_perturbations(quick, checkpoint); }}};
+  const auto compute = [quick = question.quick](Checkpoint& checkpoint) { return compare(quick, checkpoint); };
+  return {job("references", parts, compute, compared_table), growth_of_perturbations(question.quick)};
 }
 
 }  // namespace drape::bench

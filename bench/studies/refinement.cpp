@@ -1,5 +1,7 @@
 #include "bench/studies/refinement.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -14,37 +16,49 @@
 namespace drape::bench {
 namespace {
 
+/// A run with what it took, and whether its error is lost in the reference's.
+struct MeasuredStep {
+  RefinedRun run;
+  double work;
+  bool unresolved;
+};
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(MeasuredStep, run, work, unresolved)
+
 /// Runs one method with ever smaller steps.
 class Refinement {
  public:
-  Refinement(const RunSpec& cell, const std::string& name, const model::Cloth& cloth, const reference::Reference& reference)
-      : cell_(cell), name_(name), cloth_(cloth), reference_(reference) {}
+  Refinement(const RunSpec& spec, const std::string& name, const model::Cloth& cloth, const reference::Reference& reference,
+             Checkpoint& checkpoint)
+      : spec_(spec), name_(name), cloth_(cloth), reference_(reference), checkpoint_(checkpoint) {}
 
   std::vector<RefinedRun> runs(double most_work) {
     constexpr std::int64_t coarsest = 5, most = std::int64_t(1) << 22;
-    const auto first = static_cast<double>(cell_.method->sub_steps ? std::max(coarsest, substeps(coarsest)) : coarsest);
+    const auto first = static_cast<double>(spec_.method->sub_steps ? std::max(coarsest, substeps(coarsest)) : coarsest);
     std::vector<RefinedRun> all;
     for (int k = 0;; ++k) {
       const std::int64_t n = std::llround(first * std::pow(refinement(), k));
       if (n > most) break;
-      const results::RunRecord run = run_of(n);
-      if (!add(all, run) || work(run) > most_work) break;
+      const auto [run, work, unresolved] = checkpoint_.once(fmt::format("{} {}", name_, n), [&] { return refined(n); });
+      add(all, run);
+      if (unresolved || work > most_work) break;
     }
     return all;
   }
 
  private:
   /// Halved steps take errors of order 4 and 5 through all digits in a few refinements.
-  double refinement() const { return cell_.method->order > 3 ? std::numbers::sqrt2 : 2; }
+  double refinement() const { return spec_.method->order > 3 ? std::numbers::sqrt2 : 2; }
 
   results::RunRecord run_of(std::int64_t steps) const {
-    RunSpec cell = cell_;
-    cell.step = cell.scene.end / static_cast<double>(steps);
-    return record(cell);
+    RunSpec spec = spec_;
+    spec.step = spec.scene.end / static_cast<double>(steps);
+    return record(spec);
   }
 
   /// Some methods divide longer steps: their coarsest is the stability limit.
-  std::int64_t substeps(std::int64_t n) const { return results::work_count(run_of(n), "substeps"); }
+  std::int64_t substeps(std::int64_t n) const {
+    return checkpoint_.once(fmt::format("{} substeps", name_), [&] { return results::work_count(run_of(n), "substeps"); });
+  }
 
   /// Evaluations of forces, which every method needs, or steps, a particle each.
   static double work(const results::RunRecord& run) {
@@ -53,26 +67,30 @@ class Refinement {
     return static_cast<double>(count) * static_cast<double>(run.final_state.x.rows());
   }
 
-  /// False where it makes no sense to go on.
-  bool add(std::vector<RefinedRun>& runs, const results::RunRecord& run) {
-    RefinedRun& refined = runs.emplace_back(RefinedRun{cell_.scene.name, name_, run.step, run.outcome});
-    if (run.outcome == solver::Outcome::failed) refined.reason = run.message;
-    if (!run.succeeded()) return true;
-    const results::ErrorRecord error = distance(run, reference_, cell_.scene, cloth_);
-    refined.error = error.rms;
-    refined.uncertainty = error.reference_error;
-    if (last_error_) refined.order = base::exponent(last_step_, *last_error_, run.step, error.rms);
-    last_error_ = error.rms;
-    last_step_ = run.step;
-    return resolved(error);
+  MeasuredStep refined(std::int64_t n) const {
+    const results::RunRecord run = run_of(n);
+    MeasuredStep measured{{spec_.scene.name, name_, run.step, run.outcome}, work(run), false};
+    if (run.outcome == solver::Outcome::failed) measured.run.reason = run.message;
+    if (!run.succeeded()) return measured;
+    const results::ErrorRecord error = distance(run, reference_, spec_.scene, cloth_);
+    measured.run.error = error.rms;
+    measured.run.uncertainty = error.reference_error;
+    measured.unresolved = !resolved(error);
+    return measured;
   }
 
-  const RunSpec& cell_;
+  /// With the order between this step and the last one that has an error.
+  static void add(std::vector<RefinedRun>& runs, RefinedRun run) {
+    const auto last = std::find_if(runs.rbegin(), runs.rend(), [](const RefinedRun& other) { return other.error.has_value(); });
+    if (run.error && last != runs.rend()) run.order = std::log(*last->error / *run.error) / std::log(last->step / run.step);
+    runs.push_back(std::move(run));
+  }
+
+  const RunSpec& spec_;
   const std::string& name_;
   const model::Cloth& cloth_;
   const reference::Reference& reference_;
-  std::optional<double> last_error_;
-  double last_step_ = 0;
+  Checkpoint& checkpoint_;
 };
 
 constexpr results::ColumnOf<RefinedRun> refined_columns[] = {
@@ -102,18 +120,18 @@ model::Scene smooth_scene() {
 }
 
 RunSpec tight(const model::Scene& scene, const std::string& name) {
-  RunSpec cell{scene, "", nullptr, scene.end, solver::thesis_options()};
-  cell.options.loop_tolerance = 1e-11;
-  cell.options.cg_tolerance = 1e-12;
-  cell.options.stage_accuracy = 1e-4;
-  cell.options.linear_solver = &solver::linear_solver("cholesky");
-  choose_method(cell, name);
-  return cell;
+  RunSpec spec{scene, "", nullptr, scene.end, solver::thesis_options()};
+  spec.options.loop_tolerance = 1e-11;
+  spec.options.cg_tolerance = 1e-12;
+  spec.options.stage_accuracy = 1e-4;
+  spec.options.linear_solver = &solver::linear_solver("cholesky");
+  choose_method(spec, name);
+  return spec;
 }
 
-std::vector<RefinedRun> refine(const RunSpec& cell, const std::string& name, const model::Cloth& cloth,
-                               const reference::Reference& reference, double most_work) {
-  return Refinement(cell, name, cloth, reference).runs(most_work);
+std::vector<RefinedRun> refine(const RunSpec& spec, const std::string& name, const model::Cloth& cloth,
+                               const reference::Reference& reference, double most_work, Checkpoint& checkpoint) {
+  return Refinement(spec, name, cloth, reference, checkpoint).runs(most_work);
 }
 
 void fit_curve(std::vector<RefinedRun>& runs, int declared_order) {

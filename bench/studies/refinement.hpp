@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/runs/checkpoint_json.hpp"
+#include "bench/runs/checkpoint.hpp"
 #include "bench/runs/run.hpp"
 #include "reference/reference.hpp"
 #include "results/analysis/order_fit.hpp"
@@ -30,10 +30,10 @@ struct RefinedRun {
 };
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RefinedRun, scene, method, step, outcome, reason, error, uncertainty, order)
 
-/// Runs a cell with ever smaller steps, until its error is as small as the reference's, or a run takes too much work:
-/// evaluations of forces times particles, counted, so that the curve ends at the same step on every machine.
-std::vector<RefinedRun> refine(const RunSpec& cell, const std::string& name, const model::Cloth& cloth,
-                               const reference::Reference& reference, double most_work);
+/// Runs a spec with ever smaller steps, each a checkpoint, until its error is as small as the reference's, or a run takes too
+/// much work: evaluations of forces times particles, counted, so that the curve ends at the same step on every machine.
+std::vector<RefinedRun> refine(const RunSpec& spec, const std::string& name, const model::Cloth& cloth,
+                               const reference::Reference& reference, double most_work, Checkpoint& checkpoint);
 
 /// Gives the first run its curve.
 void fit_curve(std::vector<RefinedRun>& runs, int declared_order);

@@ -1,15 +1,13 @@
 #pragma once
 
-#include <filesystem>
-#include <functional>
+#include <optional>
 #include <span>
-#include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
+#include "bench/runs/recording.hpp"
 #include "bench/runs/run.hpp"
-#include "bench/runs/table_jobs.hpp"
-#include "results/table.hpp"
 
 namespace drape::bench {
 
@@ -19,19 +17,26 @@ using Methods = std::vector<const solver::Method*>;
 /// All methods if none were asked for.
 Methods all_or(Methods methods);
 
-/// A study: a fixed question, answered by a list of runs or by tables. A row of the table, in a file of its own under
-/// bench/studies/. quick: a short form for tests.
+/// What one asks a study.
+struct Question {
+  bool quick = false;                      ///< a short form for tests
+  Methods methods = {};                    ///< for studies of any methods
+  std::optional<model::Scene> scene = {};  ///< for studies of any scene; without one they have their own
+};
+
+/// A study: a fixed question, answered by groups of runs, compared with references, or by jobs that make tables. A row of the
+/// table, in a file of its own under bench/studies/.
 struct Study {
+  using Runs = std::vector<Group> (*)(const Question& question);
+  using Tables = std::vector<Job> (*)(const Question& question);
+
   std::string_view name;
   std::string_view description;
-  std::vector<Group> (*groups)(bool quick) = nullptr;                                 ///< runs, compared with references
-  std::vector<TableJob> (*tables)(bool quick) = nullptr;                              ///< or tables
-  std::vector<TableJob> (*of_methods)(bool quick, const Methods& methods) = nullptr;  ///< or tables of any methods
-  std::vector<TableJob> (*of_scene)(const model::Scene& scene, bool quick,
-                                    const Methods& methods) = nullptr;  ///< the same about another scene
+  std::variant<Runs, Tables> answer;
+  bool any_methods = false;  ///< whether one may choose its methods
+  bool any_scene = false;    ///< whether one may choose its scene
 
-  /// Whether one may choose its methods.
-  bool takes_methods() const { return groups != nullptr || of_methods != nullptr; }
+  bool makes_runs() const { return std::holds_alternative<Runs>(answer); }
 };
 
 /// All studies.
@@ -40,24 +45,23 @@ std::span<const Study> studies();
 /// The study with this name. Throws std::invalid_argument, naming all that there are.
 const Study& study(std::string_view name);
 
-std::vector<Group> motions(bool quick);
-std::vector<Group> hung_sheets(bool quick);
-std::vector<TableJob> convergence(bool quick);
-std::vector<TableJob> orders(bool quick, const Methods& methods);
-std::vector<TableJob> modes(bool quick, const Methods& methods);
-std::vector<TableJob> references(bool quick);
-std::vector<TableJob> peers(bool quick);
-std::vector<TableJob> table_3_1(bool quick);
-std::vector<TableJob> table_3_2(bool quick);
-std::vector<TableJob> figure_3_2(bool quick);
-std::vector<TableJob> figure_3_3(bool quick);
-std::vector<TableJob> figure_4_3(bool quick);
-std::vector<TableJob> scaling(bool quick);
-std::vector<TableJob> stability(bool quick, const Methods& methods);
-std::vector<TableJob> tolerance(bool quick, const Methods& methods);
-std::vector<TableJob> work_precision(bool quick, const Methods& methods);
-std::vector<TableJob> bars(bool quick);
-std::vector<TableJob> choice(bool quick);
-std::vector<TableJob> work_precision_of(const model::Scene& scene, bool quick, const Methods& methods);
+std::vector<Group> motions(const Question& question);
+std::vector<Group> hung_sheets(const Question& question);
+std::vector<Job> convergence(const Question& question);
+std::vector<Job> orders(const Question& question);
+std::vector<Job> modes(const Question& question);
+std::vector<Job> references(const Question& question);
+std::vector<Job> peers(const Question& question);
+std::vector<Job> table_3_1(const Question& question);
+std::vector<Job> table_3_2(const Question& question);
+std::vector<Job> figure_3_2(const Question& question);
+std::vector<Job> figure_3_3(const Question& question);
+std::vector<Job> figure_4_3(const Question& question);
+std::vector<Job> scaling(const Question& question);
+std::vector<Job> stability(const Question& question);
+std::vector<Job> tolerance(const Question& question);
+std::vector<Job> work_precision(const Question& question);
+std::vector<Job> bars(const Question& question);
+std::vector<Job> choice(const Question& question);
 
 }  // namespace drape::bench

@@ -59,7 +59,7 @@ using RunsOfBlock = std::array<std::array<results::RunRecord, 2>, 2>;  ///< by k
 
 /// The thesis: "increasing Young's modulus leads to a larger number of iterations … a larger damping coefficient smoothes the
 /// trajectories and fewer iterations are necessary".
-std::string verdict(const RunsOfBlock& runs) {
+results::Verdict verdict(const RunsOfBlock& runs) {
   bool grows = true, falls = true;
   for (const char* work : {"updates", "cg_iterations"})
     for (const int i : {0, 1}) {
@@ -67,9 +67,9 @@ std::string verdict(const RunsOfBlock& runs) {
       falls = falls && cost(runs[i][1], work) < cost(runs[i][0], work);
     }
   const bool as_told = grows && falls;
-  return results::verdict(
+  return {
       as_told ? results::Standing::met : results::Standing::missed,
-      fmt::format("{} with k, {} with d", grows ? "grows" : "does not always grow", falls ? "falls" : "does not always fall"));
+      fmt::format("{} with k, {} with d", grows ? "grows" : "does not always grow", falls ? "falls" : "does not always fall")};
 }
 
 /// One of the runs of a block.
@@ -77,7 +77,7 @@ struct BlockRun {
   std::string block;
   double k, d;
   Draping run;
-  std::optional<std::string> verdict;  ///< in the last row of a block
+  std::optional<results::Verdict> verdict;  ///< in the last row of a block
 };
 
 constexpr results::ColumnOf<BlockRun> block_columns[] = {
@@ -106,9 +106,13 @@ std::vector<BlockRun> rows_of(const Block& block, bool quick, Checkpoint& checkp
   return rows;
 }
 
-results::Table compute(bool quick, Checkpoint& checkpoint) {
+std::vector<BlockRun> run_blocks(bool quick, Checkpoint& checkpoint) {
   std::vector<BlockRun> rows;
   for (const Block& block : blocks()) std::ranges::move(rows_of(block, quick, checkpoint), std::back_inserter(rows));
+  return rows;
+}
+
+results::Table block_table(const std::vector<BlockRun>& rows) {
   results::Table table = results::make_table(
       "table-3.1", "Table 3.1: the work of BDF(2) on the tablecloth against stiffness k and damping d", block_columns, rows);
   results::add_columns(table, draping_columns, rows, [](const BlockRun& row) { return &row.run; });
@@ -117,8 +121,9 @@ results::Table compute(bool quick, Checkpoint& checkpoint) {
 
 }  // namespace
 
-std::vector<TableJob> table_3_1(bool quick) {
-  return {{static_cast<int>(4 * blocks().size()), [quick](Checkpoint& checkpoint) { return compute(quick, checkpoint); }}};
+std::vector<Job> table_3_1(const Question& question) {
+  const auto compute = [quick = question.quick](Checkpoint& checkpoint) { return run_blocks(quick, checkpoint); };
+  return {job("table-3.1", static_cast<int>(4 * blocks().size()), compute, block_table)};
 }
 
 }  // namespace drape::bench

@@ -100,26 +100,34 @@ MethodRun row_of(const TableclothBlock& block, const RunSpec& cell, const result
   return row;
 }
 
-std::vector<results::RunRecord> timed_runs(const Group& group, int count) {
+/// Each run is a checkpoint, and so are their repetitions together, which must be interleaved.
+std::vector<results::RunRecord> timed_runs(const std::string& block, const Group& group, int count, Checkpoint& checkpoint) {
   std::vector<results::RunRecord> runs;
   std::vector<std::size_t> steps;
-  for (const RunSpec& spec : group) steps.push_back(steps_to_time(runs.emplace_back(record(spec))));
-  const auto times = time_group(group, steps, count, [] {});
+  for (const RunSpec& spec : group) {
+    runs.push_back(checkpoint.once(fmt::format("{} {}", block, spec.method->name), [&] { return record(spec); }));
+    steps.push_back(steps_to_time(runs.back()));
+  }
+  const auto times = checkpoint.once("times " + block, [&] { return time_group(group, steps, count, [] {}); });
   for (std::size_t k = 0; k < runs.size(); ++k) runs[k].times_ms = times[k];
   return runs;
 }
 
-results::Table compute_tablecloth(bool quick, Checkpoint& checkpoint) {
+std::vector<MethodRun> run_tablecloths(bool quick, Checkpoint& checkpoint) {
   std::vector<MethodRun> rows;
   for (const TableclothBlock& block : tablecloth_blocks()) {
     checkpoint.show("tablecloth, " + block.name);
     const Group group = cells(block, quick);
-    const auto runs = checkpoint.once(block.name, [&] { return timed_runs(group, repetitions(quick)); });
+    const auto runs = timed_runs(block.name, group, repetitions(quick), checkpoint);
     for (std::size_t k = 0; k < group.size(); ++k) {
       rows.push_back(row_of(block, group[k], runs[k]));
       checkpoint.advance();
     }
   }
+  return rows;
+}
+
+results::Table tablecloth_table(const std::vector<MethodRun>& rows) {
   results::Table table =
       results::make_table("table-3.2", "Table 3.2: the methods on the tablecloth; the thesis' figures are from a Pentium III",
                           method_columns, rows);
@@ -130,10 +138,12 @@ results::Table compute_tablecloth(bool quick, Checkpoint& checkpoint) {
 
 }  // namespace
 
-std::vector<TableJob> table_3_2(bool quick) {
+std::vector<Job> table_3_2(const Question& question) {
+  const bool quick = question.quick;
   int parts = 0;
   for (const TableclothBlock& block : tablecloth_blocks()) parts += static_cast<int>(cells(block, quick).size());
-  return {{parts, [quick](Checkpoint& checkpoint) { return compute_tablecloth(quick, checkpoint); }}};
+  const auto compute = [quick](Checkpoint& checkpoint) { return run_tablecloths(quick, checkpoint); };
+  return {job("table-3.2", parts, compute, tablecloth_table)};
 }
 
 }  // namespace drape::bench

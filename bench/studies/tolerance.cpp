@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <optional>
 
 #include "bench/runs/certified_reference.hpp"
@@ -84,8 +83,11 @@ struct ControlledRun {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ControlledRun, scene, set, method, tolerance, error, uncertainty, steps, rejected, pilots,
                                    forces, largest_steps, outcome, note, proportion)
 
-/// Of all scenes.
-using ControlledRuns = std::vector<ControlledRun>;
+/// All methods and tolerances on a scene.
+struct ControlledRuns {
+  std::string setting, scene;
+  std::vector<ControlledRun> runs;
+};
 
 Proportion proportion(const ControlledRun& run) {
   if (run.outcome != solver::Outcome::success) return run.steps == 0 ? Proportion::explodes : Proportion::fails;
@@ -93,24 +95,23 @@ Proportion proportion(const ControlledRun& run) {
   return run.ratio() * band >= 1 ? Proportion::within : Proportion::under;
 }
 
-std::string verdict_under(const ControlledRun& run) {
+results::Verdict verdict_under(const ControlledRun& run) {
   const double factor = 1 / run.ratio();
-  if (run.error < results::resolution * run.uncertainty) return "under: not resolved";
-  if (run.largest_steps) return fmt::format("under by {:.2g}: largest steps", factor);
-  if (!run.note.empty()) return fmt::format("under by {:.2g}: stability", factor);
-  return results::verdict(Standing::missed, fmt::format("not within {:g}: under by {:.2g}", band, factor));
+  if (run.error < results::resolution * run.uncertainty) return {Standing::open, "under: not resolved"};
+  if (run.largest_steps) return {Standing::open, fmt::format("under by {:.2g}: largest steps", factor)};
+  if (!run.note.empty()) return {Standing::open, fmt::format("under by {:.2g}: stability", factor)};
+  return {Standing::missed, fmt::format("not within {:g}: under by {:.2g}", band, factor)};
 }
 
-std::string verdict_on(const ControlledRun& run) {
+results::Verdict verdict_on(const ControlledRun& run) {
   switch (run.proportion) {
-    case Proportion::within: return results::verdict(Standing::met, fmt::format("within {:g}", band));
-    case Proportion::over:
-      return results::verdict(Standing::missed, fmt::format("not within {:g}: over by {:.2g}", band, run.ratio()));
+    case Proportion::within: return {Standing::met, fmt::format("within {:g}", band)};
+    case Proportion::over: return {Standing::missed, fmt::format("not within {:g}: over by {:.2g}", band, run.ratio())};
     case Proportion::under: return verdict_under(run);
-    case Proportion::explodes: return "cost explodes";
-    case Proportion::fails: return "fails";
+    case Proportion::explodes: return {Standing::open, "cost explodes"};
+    case Proportion::fails: return {Standing::open, "fails"};
   }
-  return "";
+  return {};
 }
 
 /// Runs of a scene, measured at all tenths of its time.
@@ -187,24 +188,25 @@ constexpr ColumnOf<ControlledRun> controlled_columns[] = {
     {"note", "", "", "what the run says of itself", Role::note, field<&ControlledRun::note>},
 };
 
-results::Table tolerances_on(const Setting& setting, const Methods& methods, ControlledRuns& all, Checkpoint& checkpoint) {
+ControlledRuns tolerances_on(const Setting& setting, const Methods& methods, Checkpoint& checkpoint) {
+  checkpoint.begin(setting.name);
   const model::Scene scene = model::load_scene(setting.scene, setting.overrides);
   checkpoint.show("reference of " + scene.name);
   References references(SweepOptions().agreement, {}, 1e-10);
   const Measurement measure(setting, scene, references(scene, model::compile(scene)));
   checkpoint.advance();
-  ControlledRuns runs;
+  ControlledRuns all{setting.name, scene.name, {}};
   for (const Method* const chosen : methods) {
     const Method& method = *chosen;
     for (int digits = 2; digits <= setting.digits; ++digits) {
       checkpoint.show(fmt::format("{} on {}, 1e-{}", method.name, scene.name, digits));
       const double tolerance = std::pow(10.0, -digits);
-      runs.push_back(checkpoint.once(fmt::format("{} {}", method.name, digits), [&] { return measure(method, tolerance); }));
+      all.runs.push_back(
+          checkpoint.once(fmt::format("{} {}", method.name, digits), [&] { return measure(method, tolerance); }));
     }
     checkpoint.advance();
   }
-  all.insert(all.end(), runs.begin(), runs.end());
-  return results::make_table("tolerance-" + setting.name, "Error over tolerance on " + scene.name, controlled_columns, runs);
+  return all;
 }
 
 /// How many runs of a method have become what.
@@ -227,9 +229,9 @@ struct MethodSummary {
     highest = std::max(highest, run.ratio());
   }
 
-  std::string verdict() const {
-    return over + fails == 0 ? results::verdict(Standing::met, "proportional")
-                             : results::verdict(Standing::missed, "not proportional");
+  results::Verdict verdict() const {
+    return over + fails == 0 ? results::Verdict{Standing::met, "proportional"}
+                             : results::Verdict{Standing::missed, "not proportional"};
   }
 };
 
@@ -249,28 +251,38 @@ constexpr ColumnOf<MethodSummary> method_summary_columns[] = {
 };
 
 /// Of all scenes and tolerances.
-results::Table tolerance_summary(const ControlledRuns& all, const Methods& methods) {
+results::Table tolerance_summary(const std::vector<ControlledRuns>& all, const Methods& methods) {
   std::vector<MethodSummary> rows;
   for (const Method* const method : methods) {
     MethodSummary& row = rows.emplace_back(MethodSummary{std::string(method->name)});
-    for (const ControlledRun& run : all)
-      if (run.method == method->name) row.count(run);
+    for (const ControlledRuns& scene : all)
+      for (const ControlledRun& run : scene.runs)
+        if (run.method == method->name) row.count(run);
   }
   return results::make_table("tolerance-summary", "Error over tolerance, all scenes and tolerances", method_summary_columns,
                              rows);
 }
 
+std::vector<results::Table> tolerance_tables(const std::vector<ControlledRuns>& all, const Methods& methods) {
+  std::vector<results::Table> tables;
+  for (const auto& [setting, scene, runs] : all)
+    tables.push_back(results::make_table("tolerance-" + setting, "Error over tolerance on " + scene, controlled_columns, runs));
+  tables.push_back(tolerance_summary(all, methods));
+  return tables;
+}
+
 }  // namespace
 
-std::vector<TableJob> tolerance(bool quick, const Methods& chosen) {
-  const auto all = std::make_shared<ControlledRuns>();
-  const Methods methods = all_or(chosen);
-  std::vector<TableJob> jobs;
-  for (const Setting& setting : settings(quick))
-    jobs.push_back({1 + static_cast<int>(methods.size()),
-                    [=](Checkpoint& checkpoint) { return tolerances_on(setting, methods, *all, checkpoint); }});
-  jobs.push_back({0, [=](Checkpoint&) { return tolerance_summary(*all, methods); }});
-  return jobs;
+std::vector<Job> tolerance(const Question& question) {
+  const Methods methods = all_or(question.methods);
+  const std::vector<Setting> list = settings(question.quick);
+  const auto compute = [=](Checkpoint& checkpoint) {
+    std::vector<ControlledRuns> all;
+    for (const Setting& setting : list) all.push_back(tolerances_on(setting, methods, checkpoint));
+    return all;
+  };
+  const auto present = [=](const auto& all) { return tolerance_tables(all, methods); };
+  return {job("tolerance", static_cast<int>(list.size() * (1 + methods.size())), compute, present)};
 }
 
 }  // namespace drape::bench

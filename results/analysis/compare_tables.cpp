@@ -96,8 +96,8 @@ Judgement judge_quantity(double a, double b, double factor) {
   return near ? Judgement::same : Judgement::regression;
 }
 
-Judgement judge_verdict(const std::string& a, const std::string& b) {
-  return a == b ? Judgement::same : standing(b) < standing(a) ? Judgement::better : Judgement::regression;
+Judgement judge_verdict(const Verdict& a, const Verdict& b) {
+  return a == b ? Judgement::same : b.standing < a.standing ? Judgement::better : Judgement::regression;
 }
 
 /// How a run failed may differ.
@@ -127,8 +127,8 @@ struct Judge {
         return note(accuracy, judge_outcome(*column.a, before, *column.b, after), name, *column.a, before, after, 0);
       }
       case Role::verdict: {
-        const std::string before = text_in(column.a, row), after = text_in(column.b, other);
-        return note(accuracy, judge_verdict(before, after), name, *column.a, before, after, 0);
+        const Judgement judgement = judge_verdict(verdict_of(column.a->cells[row]), verdict_of(column.b->cells[other]));
+        return note(accuracy, judgement, name, *column.a, text_in(column.a, row), text_in(column.b, other), 0);
       }
       case Role::counter: return numbers(work, judge_counter(a, b), std::log((b + 0.5) / (a + 0.5)));
       case Role::error: return numbers(accuracy, judge_error(a, b, options.error_factor, noise + round_off), std::log(b / a));

@@ -37,10 +37,10 @@ std::optional<OrderFit> fit_order(std::span<const double> h, std::span<const dou
   return best;
 }
 
-std::string order_verdict(const std::optional<OrderFit>& fit, double declared) {
-  if (!fit) return verdict(Standing::open, "no order to be seen");
-  if (std::abs(fit->order - declared) <= tolerance) return verdict(Standing::met, fmt::format("{:g} as declared", declared));
-  return verdict(Standing::missed, fmt::format("not {:g}", declared));
+Verdict order_verdict(const std::optional<OrderFit>& fit, double declared) {
+  if (!fit) return Verdict{Standing::open, "no order to be seen"};
+  if (std::abs(fit->order - declared) <= tolerance) return Verdict{Standing::met, fmt::format("{:g} as declared", declared)};
+  return Verdict{Standing::missed, fmt::format("not {:g}", declared)};
 }
 
 std::string spread(const OrderFit& fit) { return fmt::format("{:.3f} … {:.3f}", fit.lowest, fit.highest); }

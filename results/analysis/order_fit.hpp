@@ -24,13 +24,13 @@ std::string spread(const OrderFit& fit);
 /// what order is hoped for. Nothing if there is no such window. `h` falls; errors that are not finite are left out.
 std::optional<OrderFit> fit_order(std::span<const double> h, std::span<const double> errors, double uncertainty);
 
-/// "met: 2 as declared", or how it is not: within ±0.1.
-std::string order_verdict(const std::optional<OrderFit>& fit, double declared);
+/// Met if within ±0.1 of what is declared; open without a fit.
+Verdict order_verdict(const std::optional<OrderFit>& fit, double declared);
 
 /// What a curve comes to: the first row of it has this.
 struct FittedCurve {
   std::optional<OrderFit> fit;
-  std::string verdict;
+  std::optional<Verdict> verdict;  ///< nothing where no order is declared
 };
 
 inline constexpr ColumnOf<FittedCurve> fit_columns[] = {

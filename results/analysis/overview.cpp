@@ -47,7 +47,7 @@ OrderRow order_row(const Table& table, const OrderCount& count) {
   std::string others;
   for (std::size_t row = 0; row < rows(table); ++row) {
     const std::string verdict = text_in(verdicts, row);
-    if (verdict.empty() || standing(verdict) == Standing::met) continue;
+    if (verdict.empty() || standing(verdicts->cells[row]) == Standing::met) continue;
     others += fmt::format("{}{}: {}{}", others.empty() ? "" : "; ", row_title(table, row, true), verdict,
                           std::isfinite(number_in(fitted, row)) ? fmt::format(" but {:.2f}", number_in(fitted, row)) : "");
   }
@@ -110,7 +110,8 @@ constexpr ColumnOf<Failure> failure_columns[] = {
 // --- Other verdicts and outcomes ------------------------------------------------------------------------------------------
 
 struct Missed {
-  std::string table, row, verdict;
+  std::string table, row;
+  Verdict verdict;
 };
 
 constexpr ColumnOf<Missed> missed_columns[] = {
@@ -121,8 +122,8 @@ constexpr ColumnOf<Missed> missed_columns[] = {
 
 /// Whether a cell says that something is not as it was wanted. Classes only say what there is.
 bool is_missed(const Column& column, std::size_t row) {
+  if (column.role == Role::verdict) return standing(column.cells[row]) == Standing::missed;
   const std::string text = text_in(&column, row);
-  if (column.role == Role::verdict) return standing(text) == Standing::missed;
   return column.role == Role::outcome && column.classes.empty() && !text.empty() && !is_good(column, text);
 }
 
@@ -130,7 +131,7 @@ bool is_missed(const Column& column, std::size_t row) {
 void add_missed(const Table& table, std::vector<Missed>& missed) {
   for (std::size_t row = 0; !table.for_file && row < rows(table); ++row)
     for (const Column& column : table.columns)
-      if (is_missed(column, row)) missed.push_back({table.name, row_title(table, row), text_in(&column, row)});
+      if (is_missed(column, row)) missed.push_back({table.name, row_title(table, row), verdict_of(column.cells[row])});
 }
 
 /// At most `most` rows, and the number of those left out.
@@ -167,7 +168,7 @@ std::vector<Table> overview(std::span<const Recording> recordings) {
   add(make_table("orders", "Orders of convergence", order_columns, orders));
   add(make_table("quickest-runs", "The quickest recorded run at each error: method and step [s]", quickest_columns, quickest));
   add(make_table("failures", "Runs that failed", failure_columns, failures));
-  add(make_table("not-met", "What is not as it was wanted", missed_columns, missed));
+  add(make_table("not-met", "Targets missed", missed_columns, missed));
   std::erase_if(tables, [](const Table& table) { return rows(table) == 0; });
   return tables;
 }

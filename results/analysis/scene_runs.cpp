@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "results/verdict.hpp"
-
 namespace drape::results {
 
 RunsOfScene by_scene(std::span<const Recording> recordings) {
@@ -26,9 +24,8 @@ OrderCount count_orders(const Table& table) {
   const Column* verdicts = find_column(table, Role::verdict);
   OrderCount count;
   for (std::size_t row = 0; row < rows(table); ++row) {
-    const std::string verdict = text_in(verdicts, row);
-    count.curves += verdict.empty() ? 0 : 1;
-    count.as_declared += standing(verdict) == Standing::met ? 1 : 0;
+    count.curves += text_in(verdicts, row).empty() ? 0 : 1;
+    count.as_declared += verdicts != nullptr && standing(verdicts->cells[row]) == Standing::met ? 1 : 0;
   }
   return count;
 }

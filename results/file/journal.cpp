@@ -96,7 +96,7 @@ std::uint64_t checksum(const std::string& id, const Journal::Bytes& value) {
   return XXH3_64bits_withSeed(value.data(), value.size(), XXH3_64bits(id.data(), id.size()));
 }
 
-bool is_unit(const json& item) {
+bool is_checkpoint(const json& item) {
   return item.is_array() && item.size() == 3 && item[0].is_string() && item[1].is_binary() && item[2].is_number_unsigned() &&
          item[2] == checksum(item[0].get<std::string>(), item[1].get_binary());
 }
@@ -118,7 +118,7 @@ Journal::Journal(const fs::path& file, const Provenance& provenance, Start start
 }
 
 Journal::~Journal() {
-  if (units_.empty()) unlink(path_.c_str());
+  if (entries_.empty()) unlink(path_.c_str());
 }
 
 void Journal::read(const Provenance& provenance, Start start) {
@@ -128,11 +128,11 @@ void Journal::read(const Provenance& provenance, Start start) {
   const Provenance theirs = facts_in(next_item(sequence));
   if (theirs.empty()) throw base::FileError(fmt::format("{}: is not a journal of this program; remove it", path_.string()));
   auto good = sequence.tellg();
-  for (json item = next_item(sequence); is_unit(item); item = next_item(sequence)) {
-    units_.insert_or_assign(item[0].get<std::string>(), Bytes(item[1].get_binary()));
+  for (json item = next_item(sequence); is_checkpoint(item); item = next_item(sequence)) {
+    entries_.insert_or_assign(item[0].get<std::string>(), Bytes(item[1].get_binary()));
     good = sequence.tellg();
   }
-  if (units_.empty()) return clear();
+  if (entries_.empty()) return clear();
   if (start == Start::fresh)
     throw base::FileError(
         fmt::format("{} is left of a sweep that did not end; continue it by --resume, or remove it", path_.string()));
@@ -142,12 +142,12 @@ void Journal::read(const Provenance& provenance, Start start) {
 }
 
 const Journal::Bytes* Journal::find(const std::string& id) const {
-  const auto unit = units_.find(id);
-  return unit == units_.end() ? nullptr : &unit->second;
+  const auto found = entries_.find(id);
+  return found == entries_.end() ? nullptr : &found->second;
 }
 
 void Journal::add(const std::string& id, Bytes value) {
-  Bytes bytes = units_.empty() ? header_ : Bytes();
+  Bytes bytes = entries_.empty() ? header_ : Bytes();
   json::to_cbor(json::array({id, json::binary(value), checksum(id, value)}), bytes);
   const off_t before = lseek(lock_.fd, 0, SEEK_END);
   try {
@@ -156,11 +156,11 @@ void Journal::add(const std::string& id, Bytes value) {
     if (ftruncate(lock_.fd, before) != 0) throw;  // then its end is incomplete, which the next reader cuts off
     throw;
   }
-  units_.insert_or_assign(id, std::move(value));
+  entries_.insert_or_assign(id, std::move(value));
 }
 
 void Journal::clear() {
-  units_.clear();
+  entries_.clear();
   if (ftruncate(lock_.fd, 0) != 0) base::fail(path_, "cannot be written");
 }
 

@@ -12,31 +12,31 @@
 
 namespace drape::results {
 
-/// What a sweep has done since it last wrote its file, unit by unit, in `FILE.journal` beside it; and the lock that keeps other
+/// The checkpoints of a sweep that is not finished, in `FILE.journal` beside its file; and the lock that keeps other
 /// processes from that file, which the system takes back when this one ends, however it ends.
 ///
 /// A CBOR sequence (RFC 8742), which keeps NaN and infinities: the facts that tell who wrote it, then [id, bytes, checksum] for
-/// each unit. What a killed process left unfinished at the end is cut off.
+/// each checkpoint. What a killed process left unfinished at the end is cut off.
 class Journal {
  public:
   using Bytes = std::vector<std::uint8_t>;
 
-  /// Throws FileError if another process holds the lock, if the folder cannot be written in, if there are units and `start` is
-  /// fresh, or if they are of another program or sweep. Removes what killed processes have left in its folder.
+  /// Throws FileError if another process holds the lock, if the folder cannot be written in, if there are checkpoints and
+  /// `start` is fresh, or if they are of another program or sweep. Removes what killed processes have left in its folder.
   Journal(const std::filesystem::path& file, const Provenance& provenance, Start start);
   ~Journal();  ///< An empty journal is removed.
   Journal(const Journal&) = delete;
   Journal& operator=(const Journal&) = delete;
 
-  bool empty() const { return units_.empty(); }
+  bool empty() const { return entries_.empty(); }
 
-  /// What was recorded of a unit, null if nothing was.
+  /// What was recorded at a checkpoint, null if nothing was.
   const Bytes* find(const std::string& id) const;
 
   /// On return it is on disk. Throws FileError, then without it, if it cannot be written.
   void add(const std::string& id, Bytes value);
 
-  /// Forgets all units: the file has what they were for.
+  /// Forgets all checkpoints: the file has what they were for.
   void clear();
 
  private:
@@ -45,7 +45,7 @@ class Journal {
   std::filesystem::path file_, path_;
   base::Descriptor lock_;
   Bytes header_;
-  std::map<std::string, Bytes> units_;
+  std::map<std::string, Bytes> entries_;
 };
 
 }  // namespace drape::results

@@ -5,8 +5,6 @@
 #include <sstream>
 #include <utility>
 
-#include "results/verdict.hpp"
-
 namespace drape::results {
 namespace {
 
@@ -31,6 +29,30 @@ std::vector<std::string> entries_of(std::string_view value) {
     if (!in_text && value[k] == '}') --depth;
   }
   return entries;
+}
+
+/// "missed: not 4"
+Cell worded(const std::string& text) {
+  const std::size_t colon = text.find(':');
+  const auto standing = standing_named(text.substr(0, colon));
+  if (!standing) return text;
+  constexpr std::size_t separator = 2;
+  return Verdict{*standing, colon == std::string::npos ? "" : text.substr(colon + separator)};
+}
+
+/// "NOT 4"
+Cell usual(const std::string& text) {
+  constexpr std::string_view no = "NOT";
+  if (text.find(no) != std::string::npos) {
+    std::string detail = text;
+    for (std::size_t place = 0; (place = detail.find(no, place)) != std::string::npos;) detail.replace(place, no.size(), "not");
+    return Verdict{Standing::missed, detail};
+  }
+  for (const std::string_view good : {"as declared", "as in theory", "as predicted", "below", "falls with d", "swings less"})
+    if (text.ends_with(good)) return Verdict{Standing::met, text};
+  if (one_of(text, {"agrees", "all converge", "as wanted", "proportional", "within 10"})) return Verdict{Standing::met, text};
+  if (text.starts_with("no ")) return Verdict{Standing::open, text};
+  return text;
 }
 
 }  // namespace
@@ -76,18 +98,7 @@ void move_to_first_rows(Table& curves) {
   }
 }
 
-std::string usual_verdict(const std::string& text) {
-  constexpr std::string_view no = "NOT";
-  if (text.find(no) != std::string::npos) {
-    std::string detail = text;
-    for (std::size_t place = 0; (place = detail.find(no, place)) != std::string::npos;) detail.replace(place, no.size(), "not");
-    return verdict(Standing::missed, detail);
-  }
-  for (const std::string_view good : {"as declared", "as in theory", "as predicted", "below", "falls with d", "swings less"})
-    if (text.ends_with(good)) return verdict(Standing::met, text);
-  if (one_of(text, {"agrees", "all converge", "as wanted", "proportional", "within 10"})) return verdict(Standing::met, text);
-  return text.starts_with("no ") ? verdict(Standing::open, text) : text;
-}
+Cell written_verdict(const std::string& text, int version) { return version > 4 ? worded(text) : usual(text); }
 
 std::vector<SceneValue> keys_in(const std::string& scene_toml) {
   std::vector<SceneValue> keys;

@@ -26,13 +26,25 @@ double number(const Cell& cell) {
   return std::numeric_limits<double>::quiet_NaN();
 }
 
+std::string standings_of(const std::string& column) { return column + ".standing"; }
+
+/// Beside the details of verdicts stand their standings.
+void write_texts(const Handle& group, const Column& column) {
+  std::vector<std::string> texts, standings;
+  for (const Cell& cell : column.cells) {
+    texts.push_back(verdict_of(cell).detail);
+    standings.emplace_back(is<Verdict>(cell) ? to_string(standing(cell)) : "");
+  }
+  hdf5::write_texts(group, column.name, texts, column.description);
+  if (std::ranges::any_of(column.cells, is<Verdict>))
+    hdf5::write_texts(group, standings_of(column.name), standings, "met, open or missed; empty: the text beside it classifies");
+}
+
 /// A column has one type in the file: text, whole numbers if all its cells are such, else real numbers, NaN for none.
 void write_column(const Handle& group, const Column& column) {
   const auto& [name, title, unit, description, role, cells, shown, classes, in_group, part] = column;
   if (unit.empty()) {
-    std::vector<std::string> texts;
-    for (const Cell& cell : cells) texts.push_back(is<std::string>(cell) ? std::get<std::string>(cell) : "");
-    hdf5::write_texts(group, name, texts, description);
+    write_texts(group, column);
   } else if (!cells.empty() && std::ranges::all_of(cells, is<std::int64_t>)) {
     std::vector<std::int64_t> counts;
     for (const Cell& cell : cells) counts.push_back(std::get<std::int64_t>(cell));
@@ -67,11 +79,26 @@ void read_newer(const Handle& group, Column& column) {
   if (hdf5::has(group, column.name + ".classes")) column.classes = hdf5::read_texts(group, column.name + ".classes");
 }
 
-std::vector<Cell> read_cells(const Handle& group, const std::string& name, const std::string& unit) {
-  if (unit.empty()) {
-    const auto texts = hdf5::read_texts(group, name);
-    return {texts.begin(), texts.end()};
+/// Texts; in a column of verdicts with their standings.
+std::vector<Cell> read_texts(const Handle& group, const std::string& name, Role role, int version) {
+  const auto texts = hdf5::read_texts(group, name);
+  if (role != Role::verdict) return {texts.begin(), texts.end()};
+  std::vector<Cell> cells;
+  if (!hdf5::has(group, standings_of(name))) {
+    for (const std::string& text : texts) cells.push_back(written_verdict(text, version));
+    return cells;
   }
+  const auto standings = hdf5::read_texts(group, standings_of(name));
+  if (standings.size() != texts.size()) throw hdf5::Error(fmt::format("{} must be as long as {}", standings_of(name), name));
+  for (std::size_t row = 0; row < texts.size(); ++row)
+    cells.push_back(standings[row].empty()
+                        ? Cell(texts[row])
+                        : Verdict{read_named(standings_of(name), standings[row], standing_named), texts[row]});
+  return cells;
+}
+
+std::vector<Cell> read_cells(const Handle& group, const std::string& name, const std::string& unit, Role role, int version) {
+  if (unit.empty()) return read_texts(group, name, role, version);
   const auto numbers = hdf5::read_numbers<double>(group, name);
   std::vector<Cell> cells;
   for (const double value : numbers) cells.push_back(value == value ? Cell(value) : Cell());
@@ -107,15 +134,14 @@ Table read_table(const Handle& tables, const std::string& name, int version) {
   for (const std::string& column : column_names(group, version)) {
     const auto info = std::ranges::find(infos, column, &hdf5::DatasetInfo::name);
     if (info == infos.end()) throw hdf5::Error(fmt::format("the column {} of the table {} is missing", column, name));
+    const Role role = version > 4 ? read_role(group, column) : usual_role(column, info->unit);
     table.columns.push_back({column,
                              hdf5::read_text(group, column + ".title"),
                              info->unit,
                              info->description,
-                             version > 4 ? read_role(group, column) : usual_role(column, info->unit),
-                             read_cells(group, column, info->unit),
+                             role,
+                             read_cells(group, column, info->unit, role, version),
                              {}});
-    if (version == 4 && table.columns.back().role == Role::verdict)
-      for (Cell& cell : table.columns.back().cells) cell = usual_verdict(std::get<std::string>(cell));
     if (version > 5) read_newer(group, table.columns.back());
     if (table.columns.back().cells.size() != rows(table))
       throw hdf5::Error(fmt::format("the columns of the table {} are not equally long", name));

@@ -226,6 +226,8 @@ void check_column(Check& check, const std::string& path, SameRows& rows) {
   const bool text = column->unit.empty();
   if (text ? type != "text" : type != "float64" && type != "int64") check.note(path, fmt::format("is {}", type));
   rows.see(path, check.numbers(path, type, 1, std::nullopt));
+  const std::string standings = path + ".standing";
+  if (check.find(standings) != nullptr) rows.see(standings, check.numbers(standings, "text", 1, std::nullopt));
 }
 
 /// The names of a table's columns, if they are as they must be; in versions 4 and 5 they are one text.

@@ -280,7 +280,7 @@ TEST(Score, SaysInOneLineWhatIsWrongWithAFile) {
   EXPECT_THAT(complaint({"text.h5"}), HasSubstr("text.h5: cannot be read"));
   EXPECT_THAT(complaint({"none.h5"}), HasSubstr("none.h5: there is no such file"));
   program.write("0.obj", obj(x)), program.write("1.obj", obj(x.topRows(11))), program.write("2.ply", "no mesh");
-  EXPECT_THAT(complaint({"0.obj", "1.obj"}), HasSubstr("--frame-time: expected beside meshes"));
+  EXPECT_THAT(complaint({"0.obj", "1.obj"}), HasSubstr("mesh files need --frame-time"));
   EXPECT_THAT(complaint({"0.obj", "1.obj", "--frame-time", "0.1"}),
               HasSubstr("1.obj: expected 12 vertices as in 0.obj, not 11"));
   EXPECT_THAT(complaint({"0.obj", "2.ply", "--frame-time", "0.1"}), HasSubstr("2.ply: cannot be read as a mesh"));

@@ -107,10 +107,9 @@ TEST(RatioOfMedians, IsAsUncertainAsTheTimes) {
 /// The cells of a column as text; empty ones for those without.
 std::vector<std::string> texts(const Table& table, const char* name) {
   std::vector<std::string> found;
-  const auto column = std::ranges::find(table.columns, name, &results::Column::name);
-  if (column == table.columns.end()) return found;
-  for (const results::Cell& cell : column->cells)
-    found.push_back(std::holds_alternative<std::string>(cell) ? std::get<std::string>(cell) : "");
+  const results::Column* column = results::find_column(table, name);
+  for (std::size_t row = 0; column != nullptr && row < results::rows(table); ++row)
+    found.push_back(results::text_in(column, row));
   return found;
 }
 

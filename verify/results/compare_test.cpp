@@ -268,7 +268,7 @@ TEST(CompareTimes, SayWhyTheyCannotBeCompared) {
 
 // --- Tables --------------------------------------------------------------------------------------------------------------
 
-Table orders(double order, const std::string& verdict, double rms, std::int64_t updates, double wall) {
+Table orders(double order, const Cell& verdict, double rms, std::int64_t updates, double wall) {
   return {"orders",
           "",
           {column("method", "", Role::key, {"bdf2"}), column("fitted_order", "1", Role::order, {order}),
@@ -277,14 +277,15 @@ Table orders(double order, const std::string& verdict, double rms, std::int64_t 
 }
 
 TEST(CompareTables, JudgeOrdersErrorsAndCountersButNoTimes) {
-  const Table good = orders(2.01, "met: 2 as declared", 1e-4, 10, 1);
+  const Verdict met{Standing::met, "2 as declared"}, missed{Standing::missed, "not 2"};
+  const Table good = orders(2.01, met, 1e-4, 10, 1);
   const auto against = [&](const Table& b) { return compare({{}, {}, {good}}, {{}, {}, {b}}); };
-  EXPECT_EQ(exit_code(against(orders(2.02, "met: 2 as declared", 1e-4, 10, 5))), 0);
-  EXPECT_EQ(against(orders(1.9, "met: 2 as declared", 1e-4, 10, 1)).accuracy.judgement, Judgement::regression);
-  EXPECT_EQ(against(orders(2.01, "missed: not 2", 1e-4, 10, 1)).accuracy.judgement, Judgement::regression);
-  EXPECT_EQ(against(orders(2.01, "met: 2 as declared", 1.1e-4, 10, 1)).accuracy.judgement, Judgement::regression);
-  EXPECT_EQ(against(orders(2.01, "met: 2 as declared", 0.9e-4, 10, 1)).accuracy.judgement, Judgement::better);
-  EXPECT_EQ(against(orders(2.01, "met: 2 as declared", 1e-4, 11, 1)).work.judgement, Judgement::regression);
+  EXPECT_EQ(exit_code(against(orders(2.02, met, 1e-4, 10, 5))), 0);
+  EXPECT_EQ(against(orders(1.9, met, 1e-4, 10, 1)).accuracy.judgement, Judgement::regression);
+  EXPECT_EQ(against(orders(2.01, missed, 1e-4, 10, 1)).accuracy.judgement, Judgement::regression);
+  EXPECT_EQ(against(orders(2.01, met, 1.1e-4, 10, 1)).accuracy.judgement, Judgement::regression);
+  EXPECT_EQ(against(orders(2.01, met, 0.9e-4, 10, 1)).accuracy.judgement, Judgement::better);
+  EXPECT_EQ(against(orders(2.01, met, 1e-4, 11, 1)).work.judgement, Judgement::regression);
   EXPECT_THAT(against(good).work.reason, HasSubstr("1 cells"));
   EXPECT_EQ(compare({{}, {}, {good}}, {{}, {}, {}}).accuracy.judgement, Judgement::not_comparable);
 }
@@ -312,6 +313,16 @@ TEST(CompareTables, JudgeOutcomesByWhetherTheyAreGood) {
   EXPECT_EQ(between("unstable", "accurate"), Judgement::better);
   EXPECT_EQ(between("accurate", "stable but wrong"), Judgement::regression);
   EXPECT_EQ(between("stable but wrong", "unstable"), Judgement::changed);
+}
+
+TEST(CompareTables, JudgeVerdictsByTheirStandings) {
+  const Cell met = Verdict{Standing::met, "below"}, open = Verdict{Standing::open, "no contact"}, classified = "no contact";
+  const auto judgement = [](const Cell& a, const Cell& b) {
+    return compare({{}, {}, {orders(2, a, 1e-4, 10, 1)}}, {{}, {}, {orders(2, b, 1e-4, 10, 1)}}).accuracy.judgement;
+  };
+  EXPECT_EQ(judgement(open, met), Judgement::better);
+  EXPECT_EQ(judgement(met, open), Judgement::regression);
+  EXPECT_EQ(judgement(classified, open), Judgement::same) << "a text without a standing is open";
 }
 
 /// A row with one number, and what the reference of its error is uncertain by.

@@ -49,7 +49,7 @@ std::string content(const fs::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/// Leaves a journal of three units of very different sizes.
+/// Leaves a journal of three checkpoints of very different sizes.
 void write_three(const Place& place) {
   Journal journal = place.open(Start::fresh);
   journal.add("first", {1, 2, 3});
@@ -125,7 +125,7 @@ TEST(Journal, RefusesWhatIsNotItsOwn) {
   EXPECT_EQ(content(place.journal), "somebody's notes");
 }
 
-TEST(Journal, AFullDiskLosesOnlyTheLastUnit) {
+TEST(Journal, AFullDiskLosesOnlyTheLastCheckpoint) {
   const Place place;
   {
     Journal journal = place.open(Start::fresh);

@@ -11,6 +11,10 @@
 namespace drape::verify::overview_test {
 namespace {
 
+const results::Cell two = results::Verdict{results::Standing::met, "2 as declared"};
+const results::Cell not_three = results::Verdict{results::Standing::missed, "not 3"};
+const results::Cell no_order = results::Verdict{results::Standing::open, "no order to be seen"};
+
 using results::Cell;
 using results::Recording;
 using results::Role;
@@ -40,12 +44,11 @@ std::vector<std::string> conclusion(const Recording& recording) {
 }
 
 TEST(Overview, CountsOrdersThatAreAsDeclaredAndNamesTheOthers) {
-  const Table table{
-      "orders-sheet",
-      "",
-      {column("method", "", Role::key, {"bdf2", "bdf2", "bdf3", "bdf5"}),
-       column("verdict", "", Role::verdict, {{}, "met: 2 as declared", "missed: not 3", "open: no order to be seen"}),
-       column("fitted_order", "1", Role::order, {{}, 2.01, 2.5, {}})}};
+  const Table table{"orders-sheet",
+                    "",
+                    {column("method", "", Role::key, {"bdf2", "bdf2", "bdf3", "bdf5"}),
+                     column("verdict", "", Role::verdict, {{}, two, not_three, no_order}),
+                     column("fitted_order", "1", Role::order, {{}, 2.01, 2.5, {}})}};
   EXPECT_EQ(shown(recording(table), "orders"),
             "table,good,others\norders-sheet,1 of 3,bdf3: missed: not 3 but 2.50; bdf5: open: no order to be seen\n");
 }
@@ -97,7 +100,7 @@ TEST(Overview, ShowsWhatFailedAndWhy) {
 TEST(Overview, ShowsTenOfWhatIsNotAsItWasWanted) {
   const std::vector<Cell> bars(24, "faster"), errors(24, 0.1);
   std::vector<Cell> verdicts;
-  for (int k = 0; k < 24; ++k) verdicts.emplace_back(k % 2 == 0 ? "met" : "missed: not met by 2");
+  for (int k = 0; k < 24; ++k) verdicts.push_back(k % 2 == 0 ? two : not_three);
   const Table table{"bars",
                     "",
                     {column("bar", "", Role::key, bars), column("error", "1", Role::key, errors),
@@ -136,10 +139,10 @@ TEST(Conclusion, SaysOfRunsWhoIsQuickWhoIsWrongAndWhoFails) {
 }
 
 TEST(Conclusion, SaysOfTablesHowManyOrdersAreAsDeclared) {
-  const Table orders{"orders-sheet",
-                     "",
-                     {column("verdict", "", Role::verdict, {"", "met: 2 as declared", "missed: not 3"}),
-                      column("fitted_order", "1", Role::order, {2.0, 2.0, 2.0})}};
+  const Table orders{
+      "orders-sheet",
+      "",
+      {column("verdict", "", Role::verdict, {"", two, not_three}), column("fitted_order", "1", Role::order, {2.0, 2.0, 2.0})}};
   EXPECT_THAT(conclusion({{}, {}, {orders}}), ElementsAre("orders-sheet: 1 of 2 methods converge with the order they declare"));
 }
 

@@ -32,7 +32,7 @@ TEST(SchemaFour, ReadsWithRolesVerdictsAndFigures) {
   EXPECT_EQ(role("spread"), Role::note);
   int met = 0, missed = 0;
   for (std::size_t row = 0; row < rows(table); ++row) {
-    const Standing verdict = standing(text_in(find_column(table, Role::verdict), row));
+    const Standing verdict = standing(find_column(table, Role::verdict)->cells[row]);
     met += verdict == Standing::met ? 1 : 0;
     missed += verdict == Standing::missed ? 1 : 0;
   }
@@ -62,11 +62,20 @@ TEST(OldScenes, AreReadKeyByKeyFromTheirText) {
 }
 
 TEST(SchemaFour, SaysWhatIsNotAsItWasWanted) {
-  EXPECT_EQ(usual_verdict("NOT 4"), "missed: not 4");
-  EXPECT_EQ(usual_verdict("BDF(2) is NOT nearer"), "missed: BDF(2) is not nearer");
-  EXPECT_EQ(usual_verdict("as in theory"), "met: as in theory");
-  EXPECT_EQ(usual_verdict("no theory known"), "open: no theory known");
-  EXPECT_EQ(usual_verdict("stable but wrong"), "stable but wrong");
+  const auto usual = [](const char* text) { return written_verdict(text, 4); };
+  EXPECT_EQ(usual("NOT 4"), Cell(Verdict{Standing::missed, "not 4"}));
+  EXPECT_EQ(usual("BDF(2) is NOT nearer"), Cell(Verdict{Standing::missed, "BDF(2) is not nearer"}));
+  EXPECT_EQ(usual("as in theory"), Cell(Verdict{Standing::met, "as in theory"}));
+  EXPECT_EQ(usual("no theory known"), Cell(Verdict{Standing::open, "no theory known"}));
+  EXPECT_EQ(usual("stable but wrong"), Cell("stable but wrong"));
+}
+
+TEST(SchemaFive, OfTheFirstFilesBeginsVerdictsWithTheirStandings) {
+  const auto worded = [](const char* text) { return written_verdict(text, 5); };
+  EXPECT_EQ(worded("missed: not met by 1.30: never"), Cell(Verdict{Standing::missed, "not met by 1.30: never"}));
+  EXPECT_EQ(worded("met"), Cell(Verdict{Standing::met}));
+  EXPECT_EQ(worded("under: not resolved"), Cell("under: not resolved"));
+  EXPECT_EQ(worded("methodical"), Cell("methodical"));
 }
 
 }  // namespace

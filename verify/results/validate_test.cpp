@@ -163,6 +163,16 @@ TEST_P(Planted, DeviationIsFoundAndNothingElse) {
 
 INSTANTIATE_TEST_SUITE_P(All, Planted, testing::ValuesIn(deviations), [](const auto& d) { return d.param.name; });
 
+TEST(Verdicts, LieInFilesAsDetailsWithStandings) {
+  const base::TemporaryFolder folder;
+  const std::vector<Cell> cells{Verdict{Standing::met, "below: by far"}, Verdict{Standing::missed}, "met: a text", ""};
+  RunFile(folder / "a.h5", provenance("test")).add({"t", "about t", {{"verdict", "", "", "what", Role::verdict, cells, {}}}});
+  EXPECT_EQ(read_tables(folder / "a.h5").at(0).columns.at(0).cells, cells);
+  EXPECT_THAT(validate(folder / "a.h5"), IsEmpty());
+  const Handle group = hdf5::open_group(hdf5::open_for_reading(folder / "a.h5"), "tables/t");
+  EXPECT_THAT(hdf5::read_texts(group, "verdict.standing"), testing::ElementsAre("met", "missed", "", ""));
+}
+
 TEST(Validate, KnowsOneVersion) {
   const base::TemporaryFolder folder;
   const Handle file = hdf5::create_in_memory();

@@ -47,7 +47,7 @@ std::vector<double> force_times(int n) {
   return times;
 }
 
-/// What was asked for, and what was measured in some turns.
+/// A target, and what was measured in some turns.
 struct Asked {
   std::string what;
   Bar bar;
@@ -61,20 +61,19 @@ using results::ColumnOf;
 using results::Role;
 
 constexpr ColumnOf<Asked> bar_columns[] = {
-    {"what", "asked for", "", "what is compared", Role::key, results::field<&Asked::what>},
-    {"bar", "bar", "", "what it may be", Role::key, [](const Asked& asked) -> Cell { return to_string(asked.bar); }},
+    {"what", "target", "", "what is compared", Role::key, results::field<&Asked::what>},
+    {"bar", "target value", "", "bound of the value", Role::key,
+     [](const Asked& asked) -> Cell { return to_string(asked.bar); }},
     {"value", "value", "1", "median of turns", Role::time, [](const Asked& asked) -> Cell { return asked.value(); }},
     {"lowest", "from", "1", "lowest of turns", Role::time,
      [](const Asked& asked) -> Cell { return std::ranges::min(asked.values); }},
     {"highest", "to", "1", "highest of turns", Role::time,
      [](const Asked& asked) -> Cell { return std::ranges::max(asked.values); }},
-    {"verdict", "verdict", "", "whether the bar is met", Role::verdict,
+    {"verdict", "verdict", "", "whether the target is met", Role::verdict,
      [](const Asked& asked) -> Cell { return verdict(asked.bar, asked.value()); }},
 };
 
-}  // namespace
-
-results::Table bars(bool quick, Checkpoint& checkpoint) {
+std::vector<Asked> asked(bool quick, Checkpoint& checkpoint) {
   const int large = sizes(quick).back(), small = quick ? 20 : 100;
   std::vector<Asked> rows;
   checkpoint.show("bars: a step");
@@ -92,7 +91,18 @@ results::Table bars(bool quick, Checkpoint& checkpoint) {
                     return force_times(large);
                   })});
   checkpoint.advance();
-  return results::make_table("scaling-bars", "What was asked for, one thread", bar_columns, rows);
+  return rows;
+}
+
+results::Table asked_table(const std::vector<Asked>& rows) {
+  return results::make_table("scaling-bars", "Targets, one thread", bar_columns, rows);
+}
+
+}  // namespace
+
+Job bars(bool quick) {
+  return job(
+      "scaling-bars", 3, [quick](Checkpoint& checkpoint) { return asked(quick, checkpoint); }, asked_table);
 }
 
 }  // namespace drape::bench::scaling_study

@@ -65,7 +65,8 @@ class BareIteration {
 
   IterationCost operator()() {
     double sum = 0;
-    const double time = seconds([&] { sum = solver::update_direction(star_, z_, 0.1, p_, q_) + solver::advance(1e-9, p_, q_, d_, r_); });
+    const double time =
+        seconds([&] { sum = solver::update_direction(star_, z_, 0.1, p_, q_) + solver::advance(1e-9, p_, q_, d_, r_); });
     if (!std::isfinite(sum)) throw std::runtime_error("an iteration of conjugate gradients is not finite");
     return {time, static_cast<double>(star_.bytes() + solver::vector_bytes(z_.rows(), 10))};
   }
@@ -167,34 +168,59 @@ IterationRow row_of(int n, int threads, const std::string& name, const Turns& tu
           .triad = 1e-9 * median(turns.triad)};
 }
 
+/// What is timed on one size.
+struct TimedSheet {
+  model::Cloth cloth;
+  SparseMatrix A;
+  Triad triad;
+
+  explicit TimedSheet(int n) : cloth(hung_sheet(n)), A(stage_matrix(cloth.ode)), triad(n * n) {}
+
+  Turns of(const std::string& preconditioner) {
+    constexpr int count = 11;
+    if (preconditioner == "none") return turns(count, triad, BareIteration(A));
+    return turns(count, triad, Iterations(A, *cloth.ode.work, preconditioner));
+  }
+};
+
 /// All preconditioners on one size.
-std::vector<IterationRow> iterations_on(int n) {
-  constexpr int count = 11;
-  const model::Cloth cloth = hung_sheet(n);
-  const SparseMatrix A = stage_matrix(cloth.ode);
-  Triad triad(n * n);
+std::vector<IterationRow> iterations_on(int n, Checkpoint& checkpoint) {
+  std::optional<TimedSheet> sheet;  // made for the first row that no process before this one has made
   std::vector<IterationRow> rows;
   with_threads(n, [&](int threads) {
-    rows.push_back(row_of(n, threads, "none", turns(count, triad, BareIteration(A))));
-    for (const char* name : {"ic0", "mic0", "multigrid", "cholesky"})
-      if (name != std::string_view("cholesky") || n <= 316)
-        rows.push_back(row_of(n, threads, name, turns(count, triad, Iterations(A, *cloth.ode.work, name))));
+    for (const std::string name : {"none", "ic0", "mic0", "multigrid", "cholesky"}) {
+      if (name == "cholesky" && n > 316) continue;
+      rows.push_back(checkpoint.once(fmt::format("{} {} {}", n, threads, name), [&] {
+        if (!sheet) sheet.emplace(n);
+        return row_of(n, threads, name, sheet->of(name));
+      }));
+    }
   });
   return rows;
 }
 
-}  // namespace
-
-results::Table iterations(bool quick, Checkpoint& checkpoint) {
+std::vector<IterationRow> all_iterations(bool quick, Checkpoint& checkpoint) {
   std::vector<IterationRow> rows;
   for (const int n : sizes(quick)) {
     checkpoint.show(fmt::format("{} x {}, conjugate gradients", n, n));
-    std::ranges::move(checkpoint.once(std::to_string(n), [&] { return iterations_on(n); }), std::back_inserter(rows));
+    std::ranges::move(iterations_on(n, checkpoint), std::back_inserter(rows));
     checkpoint.advance();
   }
+  return rows;
+}
+
+results::Table iterations_table(const std::vector<IterationRow>& rows) {
   return results::make_table("scaling-iterations",
                              "An iteration of conjugate gradients, by size, in turns with the triad a = b + 3 c",
                              iteration_columns, rows);
+}
+
+}  // namespace
+
+Job iterations(bool quick) {
+  return job(
+      "scaling-iterations", static_cast<int>(sizes(quick).size()),
+      [quick](Checkpoint& checkpoint) { return all_iterations(quick, checkpoint); }, iterations_table);
 }
 
 std::vector<double> bandwidth_of_bare_iterations(int n, int count) {

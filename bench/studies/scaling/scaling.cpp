@@ -151,9 +151,7 @@ StepRow growth_of(const std::vector<StepRow>& rows, const std::string& method) {
   return {.method = method, .exponent = base::exponent(particles, times)};
 }
 
-}  // namespace
-
-results::Table steps(bool quick, Checkpoint& checkpoint) {
+std::vector<StepRow> all_steps(bool quick, Checkpoint& checkpoint) {
   std::vector<StepRow> rows;
   for (const int n : sizes(quick))
     for (const std::string& method : methods) {
@@ -165,6 +163,10 @@ results::Table steps(bool quick, Checkpoint& checkpoint) {
       checkpoint.advance();
     }
   for (const std::string& method : methods) rows.push_back(growth_of(rows, method));
+  return rows;
+}
+
+results::Table steps_table(const std::vector<StepRow>& rows) {
   results::Table table = results::make_table(
       "scaling", fmt::format("A step of {:g} s of the sheet hung by its edge, by size; all solvers: auto", step), run_columns,
       rows);
@@ -173,13 +175,18 @@ results::Table steps(bool quick, Checkpoint& checkpoint) {
   return table;
 }
 
+}  // namespace
+
+Job steps(bool quick) {
+  return job(
+      "scaling", static_cast<int>(sizes(quick).size() * std::size(methods)),
+      [quick](Checkpoint& checkpoint) { return all_steps(quick, checkpoint); }, steps_table);
+}
+
 }  // namespace scaling_study
 
-std::vector<TableJob> scaling(bool quick) {
-  const int count = static_cast<int>(scaling_study::sizes(quick).size());
-  return {{2 * count, [quick](Checkpoint& checkpoint) { return scaling_study::steps(quick, checkpoint); }},
-          {count, [quick](Checkpoint& checkpoint) { return scaling_study::iterations(quick, checkpoint); }},
-          {3, [quick](Checkpoint& checkpoint) { return scaling_study::bars(quick, checkpoint); }}};
+std::vector<Job> scaling(const Question& question) {
+  return {scaling_study::steps(question.quick), scaling_study::iterations(question.quick), scaling_study::bars(question.quick)};
 }
 
 }  // namespace drape::bench

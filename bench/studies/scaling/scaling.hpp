@@ -58,9 +58,9 @@ constexpr int first_steps = 2;  ///< they make the matrices
 void run_steps(int n, const std::string& method, const model::Cloth& cloth, int steps, StepClock& clock);
 
 /// A table each: a step by size; an iteration of conjugate gradients by size; and whether the bars are met.
-results::Table steps(bool quick, Checkpoint& checkpoint);
-results::Table iterations(bool quick, Checkpoint& checkpoint);
-results::Table bars(bool quick, Checkpoint& checkpoint);
+Job steps(bool quick);
+Job iterations(bool quick);
+Job bars(bool quick);
 
 /// The bandwidth of an iteration of conjugate gradients without a preconditioner over that of the triad, in this number of
 /// turns.

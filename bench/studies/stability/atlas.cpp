@@ -7,7 +7,6 @@
 #include <iterator>
 #include <limits>
 #include <map>
-#include <memory>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -105,7 +104,7 @@ struct AtlasCell {
   bool is_as_predicted() const { return expected && expected->good() == run.stable(); }
 };
 
-/// The atlas as the jobs share it.
+/// All runs; they point into sheets and rows.
 struct Atlas {
   std::vector<Sheet> sheets;
   std::vector<Row> rows;
@@ -165,36 +164,45 @@ results::Table cells_table(std::string name, std::string description, const std:
   return table;
 }
 
-/// All methods that are tried on a sheet of one stiffness and one damping.
-std::vector<ClassifiedRun> try_rows(const std::vector<Row>& rows, const Sheet& sheet, double nu, double ratio) {
+/// A sheet of one stiffness and one damping with its reference, for all methods that are tried on it.
+struct TestedSheet {
+  CompiledScene hung;
+  CrossCheckedReference reference;
+
+  TestedSheet(const Sheet& sheet, double k, double d) : hung(hung_by_corners(sheet.n, k, d)), reference(hung, sheet.effort) {}
+};
+
+/// Tries all methods on a sheet of one stiffness and one damping.
+void explore(Atlas& atlas, const Sheet& sheet, double nu, double ratio, Predictions& predictions, Checkpoint& checkpoint) {
   const double l = 0.8 / (sheet.n - 1), h = sheet.step, k = nu * l * l / (h * h);
-  const CompiledScene hung = hung_by_corners(sheet.n, k, h * k / ratio);
-  const CrossCheckedReference reference(hung, sheet.effort);
-  std::vector<ClassifiedRun> runs;
-  for (const Row& row : rows) {
+  std::optional<TestedSheet> tested;  // made for the first run that no process before this one has made
+  for (const Row& row : atlas.rows) {
     if (!tries(sheet, row)) continue;
     const Limits limits{.evaluations = static_cast<std::int64_t>(sheet.effort * static_cast<double>(row.evaluations))};
-    runs.push_back(classified(run_guarded({hung.scene, "", row.method, h, row.options}, hung.cloth, limits), reference));
+    const ClassifiedRun run = checkpoint.once(fmt::format("{} {} {} {} {}", sheet.n, h, nu, ratio, row.name), [&] {
+      if (!tested) tested.emplace(sheet, k, h * k / ratio);
+      const RunSpec spec{tested->hung.scene, "", row.method, h, row.options};
+      return classified(run_guarded(spec, tested->hung.cloth, limits), tested->reference);
+    });
+    atlas.cells.push_back({&sheet, &row, nu, ratio, predictions.of(row, sheet, nu, ratio), run});
   }
-  return runs;
 }
 
-/// All runs, for the file.
-results::Table explore(Atlas& atlas, Checkpoint& checkpoint) {
+Atlas explored(bool quick, const Methods& methods, Checkpoint& checkpoint) {
+  Atlas atlas{sheets(quick), rows(all_or(methods)), {}};
   Predictions predictions;
   for (const Sheet& sheet : atlas.sheets)
     for (const double nu : sheet.stiffnesses)
       for (const double ratio : sheet.ratios) {
         checkpoint.show(fmt::format("{0} x {0}, h = {1}, ν = {2:g}, h k/d = {3:g}", sheet.n, sheet.step, nu, ratio));
-        const auto runs = checkpoint.once(fmt::format("{} {} {} {}", sheet.n, sheet.step, nu, ratio),
-                                          [&] { return try_rows(atlas.rows, sheet, nu, ratio); });
-        for (std::size_t k = 0, run = 0; k < atlas.rows.size(); ++k) {
-          const Row& row = atlas.rows[k];
-          if (!tries(sheet, row)) continue;
-          atlas.cells.push_back({&sheet, &row, nu, ratio, predictions.of(row, sheet, nu, ratio), runs[run++]});
-        }
+        explore(atlas, sheet, nu, ratio, predictions, checkpoint);
         checkpoint.advance();
       }
+  return atlas;
+}
+
+/// All runs: for the file, so without titles.
+results::Table runs_of_atlas(const Atlas& atlas) {
   results::Table table = cells_table("stability-atlas", "Every run of the atlas", atlas.cells);
   table.for_file = true;
   draw(table, results::Figure::stability,
@@ -276,8 +284,8 @@ constexpr results::ColumnOf<Converging> converging_columns[] = {
      results::field<&Converging::rise>},
     {"verdict", "verdict", "", "whether all of them do", Role::verdict,
      [](const Converging& row) -> results::Cell {
-       return row.converge == row.stable ? results::verdict(results::Standing::met, "all converge")
-                                         : results::verdict(results::Standing::missed, "not all converge");
+       return row.converge == row.stable ? results::Verdict{results::Standing::met, "all converge"}
+                                         : results::Verdict{results::Standing::missed, "not all converge"};
      }},
 };
 
@@ -314,14 +322,14 @@ results::Table list_surprises(const Atlas& atlas) {
 
 }  // namespace
 
-std::vector<TableJob> stability_atlas(bool quick, const Methods& methods) {
-  const auto atlas = std::make_shared<Atlas>(Atlas{sheets(quick), rows(all_or(methods)), {}});
-  int cells = 0;
-  for (const Sheet& sheet : atlas->sheets) cells += static_cast<int>(sheet.stiffnesses.size() * sheet.ratios.size());
-  std::vector<TableJob> jobs{{cells, [=](Checkpoint& checkpoint) { return explore(*atlas, checkpoint); }}};
-  for (auto* summarise : {count_verdicts, check_bar, list_surprises})
-    jobs.push_back({0, [=](Checkpoint&) { return summarise(*atlas); }});
-  return jobs;
+Job stability_atlas(bool quick, const Methods& methods) {
+  int parts = 0;
+  for (const Sheet& sheet : sheets(quick)) parts += static_cast<int>(sheet.stiffnesses.size() * sheet.ratios.size());
+  const auto compute = [=](Checkpoint& checkpoint) { return explored(quick, methods, checkpoint); };
+  const auto present = [](const Atlas& atlas) {
+    return std::vector{runs_of_atlas(atlas), count_verdicts(atlas), check_bar(atlas), list_surprises(atlas)};
+  };
+  return job("stability-atlas", parts, compute, present);
 }
 
 }  // namespace drape::bench

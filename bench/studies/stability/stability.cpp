@@ -39,11 +39,9 @@ CompiledScene hung_by_corners(int n, double k, double d) {
   return {scene, model::compile(scene)};
 }
 
-std::vector<TableJob> stability(bool quick, const Methods& methods) {
-  std::vector<TableJob> jobs = stability_atlas(quick, methods);
-  jobs.push_back(largest_steps(quick, methods));
-  jobs.push_back(stress_cases(quick, methods));
-  return jobs;
+std::vector<Job> stability(const Question& question) {
+  const auto& [quick, methods, scene] = question;
+  return {stability_atlas(quick, methods), largest_steps(quick, methods), stress_cases(quick, methods)};
 }
 
 }  // namespace drape::bench

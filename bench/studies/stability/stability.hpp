@@ -104,8 +104,8 @@ inline constexpr results::ColumnOf<LargestSteps> largest_columns[] = {
      [](const LargestSteps& row) { return row.stable > 0 ? results::Cell(row.stable) : results::Cell(); }},
 };
 
-std::vector<TableJob> stability_atlas(bool quick, const Methods& methods);
-TableJob largest_steps(bool quick, const Methods& methods);
-TableJob stress_cases(bool quick, const Methods& methods);
+Job stability_atlas(bool quick, const Methods& methods);
+Job largest_steps(bool quick, const Methods& methods);
+Job stress_cases(bool quick, const Methods& methods);
 
 }  // namespace drape::bench

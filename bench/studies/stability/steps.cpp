@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
+#include <optional>
+#include <utility>
 
 #include "bench/runs/energy_guard.hpp"
 #include "bench/studies/stability/stability.hpp"
@@ -83,14 +85,29 @@ constexpr results::ColumnOf<StepLimits> limits_uncertainty[] = {
      results::field<&StepLimits::uncertainty>},
 };
 
-std::vector<StepLimits> step_limits(int n, const Softness& softness, const Methods& methods) {
+std::vector<StepLimits> step_limits(int n, const Softness& softness, const Methods& methods, Checkpoint& checkpoint) {
   const auto [k, d] = softness;
   const CompiledScene sheet = hung_by_corners(n, k, d);
-  const CrossCheckedReference reference(sheet);
+  std::optional<CrossCheckedReference> reference;  // made for the first row that no process before this one has made
   std::vector<StepLimits> rows;
   for (const solver::Method* method : methods)
-    rows.push_back({k, d, std::string(method->name), largest_steps(sheet, reference, *method, {}), reference.uncertainty()});
+    rows.push_back(checkpoint.once(fmt::format("{} {} {}", k, d, method->name), [&, k = k, d = d] {
+      if (!reference) reference.emplace(sheet);
+      return StepLimits{k, d, std::string(method->name), largest_steps(sheet, *reference, *method, {}),
+                        reference->uncertainty()};
+    }));
   return rows;
+}
+
+results::Table step_limits_table(const std::vector<StepLimits>& rows) {
+  results::Table table =
+      results::make_table("stability-steps",
+                          fmt::format("The largest usable step of every method by bisection, at least {:.2g} s, to {} s",
+                                      horizon / most_parts, horizon),
+                          limits_columns, rows);
+  results::add_columns(table, largest_columns, rows, [](const StepLimits& row) { return &row.largest; });
+  results::add_columns(table, limits_uncertainty, rows);
+  return table;
 }
 
 }  // namespace
@@ -104,27 +121,19 @@ LargestSteps largest_steps(const CompiledScene& sheet, const CrossCheckedReferen
   return {step(accurate), step(search.fewest([](const ClassifiedRun& run) { return uncut(run) && run.stable(); }))};
 }
 
-TableJob largest_steps(bool quick, const Methods& methods) {
+Job largest_steps(bool quick, const Methods& methods) {
   const std::vector<Softness> sheets =
       quick ? std::vector<Softness>{{1e4, 50}} : std::vector<Softness>{{1e4, 50}, {1e4, 5}, {1e4, 0.5}, {1e6, 5}};
-  return {static_cast<int>(sheets.size()), [=](Checkpoint& checkpoint) {
-            std::vector<StepLimits> rows;
-            for (const Softness& sheet : sheets) {
-              checkpoint.show(fmt::format("largest steps, k = {}, d = {}", sheet.k, sheet.d));
-              std::ranges::move(checkpoint.once(fmt::format("{} {}", sheet.k, sheet.d),
-                                                [&] { return step_limits(quick ? 6 : particles, sheet, all_or(methods)); }),
-                                std::back_inserter(rows));
-              checkpoint.advance();
-            }
-            results::Table table = results::make_table(
-                "stability-steps",
-                fmt::format("The largest usable step of every method by bisection, at least {:.2g} s, to {} s",
-                            horizon / most_parts, horizon),
-                limits_columns, rows);
-            results::add_columns(table, largest_columns, rows, [](const StepLimits& row) { return &row.largest; });
-            results::add_columns(table, limits_uncertainty, rows);
-            return table;
-          }};
+  const auto compute = [=](Checkpoint& checkpoint) {
+    std::vector<StepLimits> rows;
+    for (const Softness& sheet : sheets) {
+      checkpoint.show(fmt::format("largest steps, k = {}, d = {}", sheet.k, sheet.d));
+      std::ranges::move(step_limits(quick ? 6 : particles, sheet, all_or(methods), checkpoint), std::back_inserter(rows));
+      checkpoint.advance();
+    }
+    return rows;
+  };
+  return job("stability-steps", static_cast<int>(sheets.size()), compute, step_limits_table);
 }
 
 }  // namespace drape::bench

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <numbers>
+#include <optional>
 
 #include "bench/runs/energy_guard.hpp"
 #include "bench/studies/stability/stability.hpp"
@@ -111,40 +112,45 @@ constexpr results::ColumnOf<Endured> endured_columns[] = {
     {"method", "method", "", "time integrator", results::Role::key, results::field<&Endured::method>},
 };
 
-std::vector<Endured> endured(const StressCase& stress, int n, const Methods& methods) {
+std::vector<Endured> endured(const StressCase& stress, int n, const Methods& methods, Checkpoint& checkpoint) {
   const auto run = [&](const RunSpec& spec, const Limits& limits) { return endure(stress, n, spec, limits); };
-  const CompiledScene sheet = stress.make(n);
-  const CrossCheckedReference reference(sheet, run);
+  std::optional<CompiledScene> sheet;  // made for the first row that no process before this one has made
+  std::optional<CrossCheckedReference> reference;
   std::vector<Endured> rows;
   for (const solver::Method* method : methods)
-    rows.push_back(
-        {stress.name, std::string(method->name),
-         classified(run({sheet.scene, "", method, stress_step, {}}, {.evaluations = method->sub_steps ? 100'000 : 4'000}),
-                    reference)});
+    rows.push_back(checkpoint.once(fmt::format("{}, {}", stress.name, method->name), [&] {
+      if (!sheet) reference.emplace(sheet.emplace(stress.make(n)), run);
+      const Limits limits{.evaluations = method->sub_steps ? 100'000 : 4'000};
+      return Endured{stress.name, std::string(method->name),
+                     classified(run({sheet->scene, "", method, stress_step, {}}, limits), *reference)};
+    }));
   return rows;
 }
 
 }  // namespace
 
-TableJob stress_cases(bool quick, const Methods& methods) {
+Job stress_cases(bool quick, const Methods& methods) {
   const int n = quick ? 6 : 10;
   const bool few = quick && methods.empty();
   const Methods chosen = few ? Methods{&solver::method("bdf2"), &solver::method("verlet")} : all_or(methods);
-  return {static_cast<int>(std::size(stresses)), [=](Checkpoint& checkpoint) {
-            std::vector<Endured> rows;
-            for (const StressCase& stress : stresses) {
-              checkpoint.show(stress.name);
-              std::ranges::move(checkpoint.once(stress.name, [&] { return endured(stress, n, chosen); }),
-                                std::back_inserter(rows));
-              checkpoint.advance();
-            }
-            results::Table table = results::make_table(
-                "stability-stress",
-                fmt::format("What no scene should do to a solver, h = 0.01 s{}", few ? "; --quick: bdf2 and verlet only" : ""),
-                endured_columns, rows);
-            results::add_columns(table, classified_columns, rows, [](const Endured& row) { return &row.run; });
-            return table;
-          }};
+  const auto compute = [=](Checkpoint& checkpoint) {
+    std::vector<Endured> rows;
+    for (const StressCase& stress : stresses) {
+      checkpoint.show(stress.name);
+      std::ranges::move(endured(stress, n, chosen, checkpoint), std::back_inserter(rows));
+      checkpoint.advance();
+    }
+    return rows;
+  };
+  const auto present = [=](const std::vector<Endured>& rows) {
+    results::Table table = results::make_table(
+        "stability-stress",
+        fmt::format("What no scene should do to a solver, h = 0.01 s{}", few ? "; --quick: bdf2 and verlet only" : ""),
+        endured_columns, rows);
+    results::add_columns(table, classified_columns, rows, [](const Endured& row) { return &row.run; });
+    return table;
+  };
+  return job("stability-stress", static_cast<int>(std::size(stresses)), compute, present);
 }
 
 }  // namespace drape::bench

@@ -23,21 +23,22 @@ struct BarRow {
   std::optional<double> value;  ///< nothing: not reached
   std::string detail;
 
-  std::string verdict() const {
+  results::Verdict verdict() const {
     if (value) return bench::verdict(bar, *value);
-    return bar.at_least ? results::verdict(Standing::met, "they do not reach it in time")
-                        : results::verdict(Standing::missed, "not met: not reached");
+    return bar.at_least ? results::Verdict{Standing::met, "they do not reach it in time"}
+                        : results::Verdict{Standing::missed, "not met: not reached"};
   }
 };
 
 constexpr results::ColumnOf<BarRow> bar_row_columns[] = {
     {"scene", "scene", "", "its name", Role::key, field<&BarRow::scene>},
-    {"bar", "bar", "", "what is compared", Role::key, field<&BarRow::name>},
+    {"bar", "target", "", "what is compared", Role::key, field<&BarRow::name>},
     {"error", "error", "1", "at most", Role::key, field<&BarRow::error>},
-    {"wanted", "wanted", "", "what is asked for", Role::key, [](const BarRow& row) -> Cell { return to_string(row.bar); }},
+    {"wanted", "target value", "", "bound of the value", Role::key,
+     [](const BarRow& row) -> Cell { return to_string(row.bar); }},
     {"detail", "", "", "what was compared", Role::note, field<&BarRow::detail>},
-    {"value", "value", "1", "what was measured", Role::time, field<&BarRow::value>},
-    {"verdict", "verdict", "", "whether the bar is met", Role::verdict,
+    {"value", "value", "1", "measured value", Role::time, field<&BarRow::value>},
+    {"verdict", "verdict", "", "whether the target is met", Role::verdict,
      [](const BarRow& row) -> Cell { return row.verdict(); }},
 };
 
@@ -119,7 +120,7 @@ results::Table bars_table(const std::vector<SceneRuns>& scenes) {
     else if (scene.problem.scene.sheet.grid.nu == 100)
       add_peer_bars(rows, scene);
   }
-  return results::make_table("bars", "What was asked for", bar_row_columns, rows);
+  return results::make_table("bars", "Targets", bar_row_columns, rows);
 }
 
 }  // namespace drape::bench

@@ -70,7 +70,7 @@ constexpr ColumnOf<Summary> summary_columns[] = {
 results::Table quickest_table(const std::vector<SceneRuns>& scenes) {
   std::vector<Quickest> rows;
   for (const SceneRuns& scene : scenes) std::ranges::move(quickest_on(scene), std::back_inserter(rows));
-  results::Table table = results::make_table("quickest", "The quickest at each error", quickest_columns, rows);
+  results::Table table = results::make_table("quickest", "Fastest configuration at each error level", quickest_columns, rows);
   table.headline = true;
   return table;
 }

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
 #include "bench/runs/certified_reference.hpp"
 #include "bench/runs/run.hpp"
@@ -158,7 +157,8 @@ const SceneRuns* find(const All& all, const std::string& name) {
   return found == all.end() ? nullptr : &*found;
 }
 
-results::Table run_scene(const StudiedScene& studied, const Methods& methods, All& all, Checkpoint& checkpoint) {
+void run_scene(const StudiedScene& studied, const Methods& methods, All& all, Checkpoint& checkpoint) {
+  checkpoint.begin(studied.name);
   checkpoint.show("reference of " + studied.name);
   SceneRuns& scene = all.emplace_back(SceneRuns{problem(studied), {}, {}, find(all, studied.training)});
   Problem& problem = scene.problem;
@@ -170,7 +170,13 @@ results::Table run_scene(const StudiedScene& studied, const Methods& methods, Al
   scene.runs = run_all(problem, scene.configurations, studied.effort, checkpoint);
   checkpoint.show("timing " + studied.name);
   time_fronts(problem, scene.runs, studied.effort, named_configurations(scene), checkpoint);
-  return runs_table(scene);
+}
+
+All run_scenes(const std::vector<StudiedScene>& list, const Methods& methods, Checkpoint& checkpoint) {
+  All all;
+  all.reserve(list.size());  // runs point into what is in it
+  for (const StudiedScene& studied : list) run_scene(studied, methods, all, checkpoint);
+  return all;
 }
 
 /// A method that is not tried on a scene.
@@ -193,21 +199,27 @@ results::Table left_out_table(const std::vector<StudiedScene>& list, const Metho
   return results::make_table("left-out", "Methods that were not tried", absent_columns, rows);
 }
 
-std::vector<TableJob> jobs(const std::vector<StudiedScene>& list, const Methods& methods, bool with_bars = false) {
-  const auto all = std::make_shared<All>();
-  std::vector<TableJob> jobs;
-  all->reserve(list.size());  // runs point into what is in it
-  for (const StudiedScene& studied : list)
-    jobs.push_back({static_cast<int>(configurations(studied.scene, studied.search, methods).size()),
-                    [=](Checkpoint& checkpoint) { return run_scene(studied, methods, *all, checkpoint); }});
+std::vector<results::Table> all_tables(const All& all) {
+  std::vector<results::Table> tables;
+  for (const SceneRuns& scene : all) tables.push_back(runs_table(scene));
   for (auto* table :
        {held_out_table, recommended_table, winners_table, quickest_table, peers_summary_table, defaults_table, peers_table})
-    jobs.push_back({0, [=](Checkpoint&) { return table(*all); }});
-  if (list.size() > 1) jobs.push_back({0, [=](Checkpoint&) { return ranking_table(*all); }});
-  if (with_bars) jobs.push_back({0, [=](Checkpoint&) { return bars_table(*all); }});
-  if (const results::Table table = left_out_table(list, methods); results::rows(table) > 0)
-    jobs.push_back({0, [=](Checkpoint&) { return table; }});
-  return jobs;
+    tables.push_back(table(all));
+  if (all.size() > 1) tables.push_back(ranking_table(all));
+  return tables;
+}
+
+std::vector<Job> jobs(const std::vector<Entry>& list, const Methods& methods, bool with_bars = false) {
+  int parts = 0;
+  for (const Entry& entry : list) parts += static_cast<int>(families(entry.scene, entry.search, methods).size());
+  const auto compute = [=](Checkpoint& checkpoint) { return try_scenes(list, methods, checkpoint); };
+  const auto present = [=](const All& all) {
+    std::vector<results::Table> tables = all_tables(all);
+    if (with_bars) tables.push_back(bars_table(all));
+    if (results::Table table = left_out_table(list, methods); results::rows(table) > 0) tables.push_back(std::move(table));
+    return tables;
+  };
+  return {job("work-precision", parts, compute, present)};
 }
 
 }  // namespace
@@ -218,22 +230,20 @@ Problem certified_problem(const std::string& name, const model::Scene& scene, Ch
   return result;
 }
 
-std::vector<TableJob> work_precision(bool quick, const Methods& methods) {
-  return jobs(quick ? quick_scenes() : with_all_scenes(chosen_scenes()), methods);
-}
-
-std::vector<TableJob> bars(bool quick) { return jobs(quick ? quick_scenes() : chosen_scenes(), {}, true); }
-
-std::vector<TableJob> work_precision_of(const model::Scene& scene, bool quick, const Methods& methods) {
+std::vector<Job> work_precision(const Question& question) {
+  const auto& [quick, methods, scene] = question;
+  if (!scene) return jobs(quick ? quick_scenes() : with_all_scenes(chosen_scenes()), methods);
   constexpr int large = 50'000;  // particles
-  StudiedScene studied{scene.name, scene, Search::full};
+  StudiedScene studied{scene->name, *scene, Search::full};
   if (quick)
     studied.search = Search::quick, studied.effort = quick_effort;
-  else if (scene.sheet.grid.particles() >= large)
+  else if (scene->sheet.grid.particles() >= large)
     studied.search = Search::large, studied.effort = large_effort;
   studied.with_other_codes = std::ranges::any_of(
-      chosen_scenes(), [&](const StudiedScene& one) { return one.with_other_codes && one.scene.name == scene.name; });
+      chosen_scenes(), [&](const StudiedScene& one) { return one.with_other_codes && one.scene.name == scene->name; });
   return jobs({studied}, methods);
 }
+
+std::vector<Job> bars(const Question& question) { return jobs(question.quick ? quick_entries() : entries(), {}, true); }
 
 }  // namespace drape::bench

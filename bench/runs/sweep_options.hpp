@@ -1,0 +1,28 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "bench/runs/limits.hpp"
+#include "bench/runs/run_spec.hpp"
+#include "results/provenance.hpp"
+#include "solver/integrator.hpp"
+
+namespace drape::bench {
+
+/// How jobs are run and recorded.
+struct SweepOptions {
+  int repetitions = 3;      ///< timed runs of every spec, besides the one that is recorded
+  bool reference = true;    ///< whether errors are measured
+  double agreement = 1e-7;  ///< largest disagreement of the families behind a reference, over the size of the scene
+  Limits limits;            ///< of every run; repetitions have none, and runs that exceeded them are not repeated
+  std::filesystem::path out;
+  results::Start start = results::Start::fresh;  ///< whether a file that is there is continued
+  std::string command_line;
+  std::optional<double> frames_every;  ///< [s] between the frames of trajectories; none are kept without
+  std::function<solver::Observer(const RunSpec&)> observer_for;  ///< of runs that are recorded; may be empty
+};
+
+}  // namespace drape::bench
