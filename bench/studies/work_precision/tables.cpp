@@ -27,11 +27,6 @@ struct TrialRow {
   double uncertainty;  ///< of the reference
 };
 
-Cell kind(const TrialRow& row) {
-  const Family& family = *row.trial.family;
-  return !family.method.empty() ? "automatic" : family.code == "drape" ? "" : family.code;
-}
-
 constexpr ColumnOf<TrialRow> tried_columns[] = {
     {"code", "", "", "whose it is", Role::key, [](const TrialRow& row) -> Cell { return row.trial.family->code; }},
     {"family", "", "", "ways that differ in one number", Role::key,
@@ -47,7 +42,10 @@ constexpr ColumnOf<TrialRow> tried_columns[] = {
      [](const TrialRow& row) -> Cell { return row.trial.outcome; }},
     {"side", "", "", "whose search it is of", Role::note,
      [](const TrialRow& row) -> Cell { return is_ours(row.trial.family->code) ? "ours" : "SUNDIALS"; }},
-    {"kind", "", "", "what it is compared as beside its side; none: as that only", Role::note, kind},
+    {"solvers", "", "", "of ours, whether the program chose them", Role::note,
+     [](const TrialRow& row) -> Cell { return row.trial.family->method.empty() ? "" : "automatic"; }},
+    {"kind", "", "", "of its side, unless it is usual there", Role::note,
+     [](const TrialRow& row) -> Cell { return row.trial.family->code == "drape" ? "" : row.trial.family->code; }},
     {"uncertainty", "", "1", "of the reference, as the error", Role::uncertainty, field<&TrialRow::uncertainty>},
     {"steps", "", "1", "steps", Role::counter, [](const TrialRow& row) -> Cell { return row.trial.steps; }},
     {"forces", "", "1", "evaluations of forces", Role::counter, [](const TrialRow& row) -> Cell { return row.trial.forces; }},
@@ -262,6 +260,7 @@ results::Table trials_table(const SceneTrials& scene) {
   using results::Part;
   draw(table, results::Figure::work_precision,
        {{Part::side, "side"},
+        {Part::curve, "solvers"},
         {Part::curve, "kind"},
         {Part::x, "error"},
         {Part::y, "time"},
