@@ -87,8 +87,7 @@ const curveSymbols = ["square", "triangle-up", "triangle-down", "star", "cross",
 
 /** A study's trials: all of them as dots, and those that no other of a side or a kind beats in both as curves. */
 function trialsFigure(file, table) {
-  const [x, y, lower, upper, side, kind] =
-      ["x", "y", "lower", "upper", "side", "curve"].map((part) => partOf(table, part));
+  const [x, y, lower, upper, side] = ["x", "y", "lower", "upper", "side"].map((part) => partOf(table, part));
   const details = detailsOf(table), caption = partOf(table, "caption");
   const rows =
       rowsOf(table)
@@ -98,7 +97,8 @@ function trialsFigure(file, table) {
           .filter((row) => finitePositive(row.error) && finitePositive(row.time));
   if (!rows.length) return [];
   const sides = [...groupBy(rows, (row) => row[side.name])],
-        kinds = [...groupBy(rows.filter((row) => row[kind.name]), (row) => row[kind.name])];
+        kinds = partsOf(table, "curve")
+                    .flatMap(({name}) => [...groupBy(rows.filter((row) => row[name]), (row) => row[name])]);
   const uncertainty = largestUncertainty(table, rows);
   const make = (width, colours) => {
     const dots = ([name, of], k) => ({

@@ -73,7 +73,7 @@ constexpr results::ColumnOf<Window> time_column[] = {
     {"t", "until", "s", "end of the last of these steps", Role::key, field<&Window::until>},
 };
 constexpr results::ColumnOf<Means> curves[] = {
-    {"{}_updates", "{}: updates", "1", "updates of the fixed-point loop a step", Role::counter, field<&Means::updates>},
+    {"{}_updates", "{}: updates", "1", "updates a step", Role::counter, field<&Means::updates>},
     {"{}_CG", "{}: CG", "1", "CG iterations a step", Role::counter, field<&Means::cg_iterations>},
     {"{}_contacts", "{}: contacts", "1", "particles in contact", Role::quantity, field<&Means::contacts>},
 };

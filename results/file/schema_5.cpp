@@ -40,16 +40,18 @@ void find_outcomes(Table& table) {
 
 /// Who made a trial was known by codes.
 void add_sides(Table& trials) {
-  Column side{"side", "", "", "", Role::note, {}, {}}, kind{"kind", "", "", "", Role::note, {}, {}};
-  side.part = Part::side, kind.part = Part::curve;
+  Column side{"side", "", "", "", Role::note, {}, {}}, solvers = side, kind = side;
+  solvers.name = "solvers", kind.name = "kind";
+  side.part = Part::side, solvers.part = kind.part = Part::curve;
   for (std::size_t row = 0; row < rows(trials); ++row) {
     const std::string code = text_in(find_column(trials, "code"), row);
-    const bool automatic = !text_in(find_column(trials, "method"), row).empty();
     const bool ours = code == "drape" || code == "explicit" || code == "thesis";
     side.cells.emplace_back(ours ? "ours" : "SUNDIALS");
-    kind.cells.emplace_back(automatic ? "automatic" : code == "drape" ? "" : code);
+    solvers.cells.emplace_back(text_in(find_column(trials, "method"), row).empty() ? "" : "automatic");
+    kind.cells.emplace_back(code == "drape" ? "" : code);
   }
   trials.columns.push_back(std::move(side));
+  trials.columns.push_back(std::move(solvers));
   trials.columns.push_back(std::move(kind));
 }
 

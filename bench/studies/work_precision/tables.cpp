@@ -27,13 +27,6 @@ struct RunRow {
   double uncertainty;  ///< of the reference
 };
 
-/// None: only as that of its side.
-Cell kind(const RunRow& row) {
-  const Configuration& configuration = *row.run.configuration;
-  if (configuration.is_default()) return "automatic";
-  return configuration.code == Code::drape ? "" : std::string(to_string(configuration.code));
-}
-
 constexpr ColumnOf<RunRow> run_columns[] = {
     {"code", "", "", "whose it is", Role::key,
      [](const RunRow& row) -> Cell { return std::string(to_string(row.run.configuration->code)); }},
@@ -52,7 +45,13 @@ constexpr ColumnOf<RunRow> run_columns[] = {
      [](const RunRow& row) -> Cell { return row.run.counts() ? "success" : row.run.reason; }},
     {"side", "", "", "whose search it is of", Role::note,
      [](const RunRow& row) -> Cell { return row.run.configuration->is_ours() ? "ours" : "SUNDIALS"; }},
-    {"kind", "", "", "what it is compared as beside its side; none: as that only", Role::note, kind},
+    {"solvers", "", "", "of ours, whether the program chose them", Role::note,
+     [](const RunRow& row) -> Cell { return row.run.configuration->is_default() ? "automatic" : ""; }},
+    {"kind", "", "", "of its side, unless it is usual there", Role::note,
+     [](const RunRow& row) {
+       const Code code = row.run.configuration->code;
+       return to_cell(code == Code::drape ? "" : to_string(code));
+     }},
     {"uncertainty", "", "1", "of the reference, as the error", Role::uncertainty, field<&RunRow::uncertainty>},
     {"steps", "", "1", "steps", Role::counter, [](const RunRow& row) -> Cell { return row.run.steps; }},
     {"forces", "", "1", "evaluations of forces", Role::counter, [](const RunRow& row) -> Cell { return row.run.forces; }},
@@ -270,6 +269,7 @@ results::Table runs_table(const SceneRuns& scene) {
   using results::Part;
   draw(table, results::Figure::work_precision,
        {{Part::side, "side"},
+        {Part::curve, "solvers"},
         {Part::curve, "kind"},
         {Part::x, "error"},
         {Part::y, "time"},
