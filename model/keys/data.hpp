@@ -6,7 +6,7 @@
 #include <variant>
 #include <vector>
 
-#include "model/sheet/material.hpp"
+#include "model/sheet/sheet.hpp"
 
 namespace drape::model {
 

@@ -9,7 +9,7 @@
 
 #include "model/keys/data.hpp"
 #include "model/keys/value.hpp"
-#include "model/sheet/material.hpp"
+#include "model/sheet/sheet.hpp"
 
 /// A key is a row: what it is called, its unit, what it means, where its value is and what is right. Reading, writing, help,
 /// JSON and the record follow from the row.

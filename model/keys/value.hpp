@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "model/keys/scene_error.hpp"
-#include "model/sheet/material.hpp"
+#include "model/sheet/sheet.hpp"
 
 namespace drape::model {
 
