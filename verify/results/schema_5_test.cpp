@@ -27,8 +27,8 @@ TEST(SchemaFive, ReadsWithOutcomesAndParts) {
   EXPECT_FALSE(atlas->timed_rows);
   const Column& ending = *find_column(*atlas, Role::outcome);
   EXPECT_EQ(ending.part, Part::colour);
+  ASSERT_EQ(ending.classes.size(), 6U);
   EXPECT_EQ(ending.classes.front(), "accurate");
-  EXPECT_EQ(ending.classes.size(), 6U);
   EXPECT_THAT(find_column(*atlas, "predicted")->classes, ElementsAre("stable", "unstable", "loop too slow"));
   EXPECT_EQ(find_column(*atlas, "nu")->part, Part::y);
 }
