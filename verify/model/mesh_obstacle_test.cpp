@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "model/obstacles/mesh_shape.hpp"
 #include "model/obstacles/obstacle.hpp"
 #include "verify/support/distance_field.hpp"
 #include "verify/support/mesh_files.hpp"
@@ -34,7 +35,7 @@ using testing::HasSubstr;
 using testing::StartsWith;
 
 Obstacle read(const std::string& file, double scale = 1) {
-  return Obstacle(obstacle(fmt::format("shape = 'mesh', file = '{}', scale = {}", file, scale)));
+  return Obstacle(verify::obstacle(fmt::format("shape = 'mesh', file = '{}', scale = {}", file, scale)));
 }
 
 /// The mesh as it comes back from a file.
@@ -55,7 +56,7 @@ std::vector<Vector3d> random_points(int count, double extent) {
 // --- A box, from each format -------------------------------------------------------------------------------------------------
 
 void expect_box(const Obstacle& mesh, const Vector3d& size) {
-  const Obstacle box(obstacle(fmt::format("shape = 'box', size = [{}, {}, {}]", size[0], size[1], size[2])));
+  const Obstacle box(verify::obstacle(fmt::format("shape = 'box', size = [{}, {}, {}]", size[0], size[1], size[2])));
   for (const Vector3d& p : random_points(300, size.maxCoeff())) {
     EXPECT_NEAR(mesh.nearest(p).distance, box.nearest(p).distance, 1e-12);
     EXPECT_LE((mesh.nearest(p).normal - box.nearest(p).normal).norm(), 1e-12);
@@ -168,7 +169,7 @@ TEST(Mesh, MayBeFarFromItsOrigin) {
 
 std::string refusal(const std::string& file) {
   try {
-    read(file);
+    model::mesh_shape(file, 1);
   } catch (const std::invalid_argument& error) {
     return error.what();
   }
