@@ -65,7 +65,7 @@ void add_lead(BarRows& rows, const SceneRuns& scene, double error) {
 void add_search_bar(BarRows& rows, const SceneRuns& scene) {
   const int ours = number_of_configurations(scene, true), theirs = number_of_configurations(scene, false);
   rows.push_back({scene.problem.name,
-                  "configurations of SUNDIALS / of ours",
+                  "families of SUNDIALS / of ours",
                   {1, true},
                   std::nullopt,
                   static_cast<double>(theirs) / ours,
@@ -89,7 +89,7 @@ void add_bars(BarRows& rows, const SceneRuns& scene, const DefaultChoice& usual)
       rows.push_back({scene.problem.name, name + " / our best", {default_bar, false}, error, ratio(one), names(one)});
     };
     add("any method, auto", &Configuration::is_default);
-    add(usual.name(), usual);
+    add("default " + usual.name(), usual);
   }
 }
 

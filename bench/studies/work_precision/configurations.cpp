@@ -35,7 +35,7 @@ Solved solve_ours(const RunSpec& spec, const model::Cloth& cloth, std::span<cons
   if (times.size() > 1)
     solved.states = std::move(samples).states();
   else
-    solved.states.push_back(solved.end.state);
+    solved.states.push_back(std::move(solved.end.state));
   return solved;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <optional>
 
 #include "bench/runs/energy_guard.hpp"
 #include "bench/runs/interruption.hpp"
@@ -35,11 +36,11 @@ PeerSetup by_steps(const char* name, double stage_tolerance, bool deduced = fals
 Solved solve_within(const PeerSetup& setup, double value, double size, const model::Cloth& cloth, std::span<const double> times,
                     const Limits& limits) {
   Meter meter(limits);
-  solver::SplitOde ode = cloth.ode;
-  if (limits.within_steps()) meter.watch(ode);
+  std::optional<solver::SplitOde> watched;
+  if (limits.within_steps()) meter.watch(watched.emplace(cloth.ode));
   Solved solved;
   try {
-    solved.states = solve_by_peer(setup, value, size, ode, cloth.start, times);
+    solved.states = solve_by_peer(setup, value, size, watched ? *watched : cloth.ode, cloth.start, times);
   } catch (const std::exception& error) {
     check_interruption();  // it may have been the reason
     solved.end.result = {.outcome = solver::Outcome::failed, .message = error.what()};
