@@ -20,9 +20,9 @@ std::optional<Standing> standing_named(std::string_view name) {
 }
 
 std::string to_string(const Verdict& verdict) {
-  std::string text(to_string(verdict.standing));
-  if (!verdict.detail.empty()) text.append(": ").append(verdict.detail);
-  return text;
+  const std::string word(to_string(verdict.standing));
+  if (verdict.detail.empty()) return word;
+  return verdict.standing == Standing::open ? verdict.detail : word + ": " + verdict.detail;
 }
 
 }  // namespace drape::results

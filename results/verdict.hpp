@@ -23,7 +23,7 @@ struct Verdict {
   bool operator==(const Verdict&) const = default;
 };
 
-/// "met: 2 as declared", or "met" without a detail.
+/// "met: 2 as declared", or "met" without a detail; of an open one the detail alone: "no theory known".
 std::string to_string(const Verdict& verdict);
 
 }  // namespace drape::results

@@ -251,7 +251,7 @@ TEST_F(ProgramStudies, ModesAreAsInTheory) {
     EXPECT_THAT(verdicts(table), SizeIs(table.columns[0].cells.size())) << table.name << ": one for each row";
     EXPECT_THAT(verdicts(table), Each(Not(StartsWith("missed")))) << table.name;
     for (const solver::Method& method : solver::methods()) {
-      const std::size_t unknown = std::ranges::count(verdicts_of(table, std::string(method.name)), "open: no theory known");
+      const std::size_t unknown = std::ranges::count(verdicts_of(table, std::string(method.name)), "no theory known");
       EXPECT_EQ(unknown > 0, !method.in_thesis) << method.name << " in " << table.name;
       EXPECT_FALSE(verdicts_of(table, std::string(method.name)).empty()) << method.name << " is left out of " << table.name;
     }
@@ -295,7 +295,7 @@ TEST_F(ProgramStudies, TheChoiceIsTheQuickestWithItsError) {
 TEST_F(ProgramStudies, ErrorsAreNearTheirTolerances) {
   const auto all = tables("tolerance");
   ASSERT_THAT(all, SizeIs(3));
-  const auto known = AnyOf("met: within 10", HasSubstr("under by"), "open: cost explodes");
+  const auto known = AnyOf("met: within 10", HasSubstr("under by"), "cost explodes");
   for (const char* name : {"tolerance-hung-edge", "tolerance-chain"}) {
     const auto found = verdicts(*std::ranges::find(all, name, &Table::name));
     EXPECT_THAT(found, AllOf(SizeIs(2 * solver::methods().size()), Each(known))) << name << ": one for each row";
@@ -349,7 +349,7 @@ TEST_F(ProgramStudies, EulerSmoothsTheSheetInTheWindAndBdf2Less) {
   const auto all = tables("figure-3.2");
   ASSERT_THAT(all, SizeIs(2));
   EXPECT_THAT(verdicts(all[0]), AllOf(SizeIs(3), Each("met: swings less")));
-  EXPECT_THAT(verdicts(all[1]), AllOf(SizeIs(9), Each("open: smoothed by Euler")));
+  EXPECT_THAT(verdicts(all[1]), AllOf(SizeIs(9), Each("smoothed by Euler")));
   EXPECT_THAT(numbers(all[1], "bending_ratio_bdf2", "waves", "1"), Contains(DoubleNear(1, 1e-2))) << "where damping is strong";
 }
 

@@ -50,7 +50,7 @@ TEST(Overview, CountsOrdersThatAreAsDeclaredAndNamesTheOthers) {
                      column("verdict", "", Role::verdict, {{}, two, not_three, no_order}),
                      column("fitted_order", "1", Role::order, {{}, 2.01, 2.5, {}})}};
   EXPECT_EQ(shown(recording(table), "orders"),
-            "table,good,others\norders-sheet,1 of 3,bdf3: missed: not 3 but 2.50; bdf5: open: no order to be seen\n");
+            "table,good,others\norders-sheet,1 of 3,bdf3: missed: not 3 but 2.50; bdf5: no order to be seen\n");
 }
 
 TEST(Overview, ShowsHeadlineTablesWhole) {
