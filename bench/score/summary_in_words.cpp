@@ -42,10 +42,10 @@ std::string penetration_line(const Summary& s) {
                      1e3 * s.reference_depth);
 }
 
-std::string best_line(const Trial* best, const char* question) {
+std::string best_line(const ComparedRun* best, const char* question) {
   if (best == nullptr) return "";
-  return fmt::format("ours         {}: {}, {:.2g}: error {:.3g} in {:.3g} ms\n", question, best->family->name,
-                     best->configuration().value, best->measured.error, results::quartiles(best->measured.times).median);
+  return fmt::format("ours         {}: {}, {:.2g}: error {:.3g} in {:.3g} ms\n", question, best->configuration->name,
+                     best->variant().value, best->measured.error, results::quartiles(best->measured.times).median);
 }
 
 std::string best_lines(const Answers& best) {

@@ -130,16 +130,16 @@ results::Table choice_table(const std::vector<SheetRuns>& all) {
                              rows);
 }
 
-std::vector<TriedSheet> try_sheets(const std::vector<HungSheet>& list, Checkpoint& checkpoint) {
-  std::vector<TriedSheet> all;
-  all.reserve(list.size());  // trials point into what is in it
-  for (const HungSheet& sheet : list) try_defaults(all.emplace_back(TriedSheet{sheet, {}}), checkpoint);
+std::vector<SheetRuns> run_sheets(const std::vector<HungSheet>& list, Checkpoint& checkpoint) {
+  std::vector<SheetRuns> all;
+  all.reserve(list.size());  // runs point into what is in it
+  for (const HungSheet& sheet : list) run_defaults(all.emplace_back(SheetRuns{sheet, {}}), checkpoint);
   return all;
 }
 
-std::vector<results::Table> choice_tables(const std::vector<TriedSheet>& all) {
+std::vector<results::Table> choice_tables(const std::vector<SheetRuns>& all) {
   std::vector<results::Table> tables;
-  for (const TriedSheet& tried : all) tables.push_back(trials_table(tried.scene));
+  for (const SheetRuns& runs : all) tables.push_back(runs_table(runs.scene));
   tables.push_back(choice_table(all));
   return tables;
 }
@@ -151,7 +151,7 @@ std::vector<Job> choice(const Question& question) {
   int parts = 0;
   for (const HungSheet& sheet : list) parts += static_cast<int>(default_configurations(sheet).size());
   return {job(
-      "choice", parts, [=](Checkpoint& checkpoint) { return try_sheets(list, checkpoint); }, choice_tables)};
+      "choice", parts, [=](Checkpoint& checkpoint) { return run_sheets(list, checkpoint); }, choice_tables)};
 }
 
 }  // namespace drape::bench

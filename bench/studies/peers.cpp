@@ -106,9 +106,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PeerMeasured, error, over_motion, times)
 
 PeerMeasured measure(const PeerRow& row, const Case& on) {
   const auto positions = solve(row, on);
-  return {.error = on.error(positions, {7, 9, 10}),
-          .over_motion = on.error(positions, {1, 2, 3, 4, 5, 6, 7, 8, 9, 10}),
-          .times = times_of(row, on)};
+  return {.error = on.late_error(positions), .over_motion = on.error(positions), .times = times_of(row, on)};
 }
 
 /// What the driver measured, and what we do.

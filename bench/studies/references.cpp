@@ -117,7 +117,7 @@ std::vector<PeerSolution> compare(bool quick, Checkpoint& checkpoint) {
   return rows;
 }
 
-results::Table compared_table(const std::vector<FamilySolution>& rows) {
+results::Table compared_table(const std::vector<PeerSolution>& rows) {
   return results::make_table(
       "references", fmt::format("Three families of solvers on the same equation of motion, rtol = {:g}", reference_rtol),
       compared_columns, rows);

@@ -209,10 +209,11 @@ std::vector<results::Table> all_tables(const All& all) {
   return tables;
 }
 
-std::vector<Job> jobs(const std::vector<Entry>& list, const Methods& methods, bool with_bars = false) {
+std::vector<Job> jobs(const std::vector<StudiedScene>& list, const Methods& methods, bool with_bars = false) {
   int parts = 0;
-  for (const Entry& entry : list) parts += static_cast<int>(families(entry.scene, entry.search, methods).size());
-  const auto compute = [=](Checkpoint& checkpoint) { return try_scenes(list, methods, checkpoint); };
+  for (const StudiedScene& studied : list)
+    parts += static_cast<int>(configurations(studied.scene, studied.search, methods).size());
+  const auto compute = [=](Checkpoint& checkpoint) { return run_scenes(list, methods, checkpoint); };
   const auto present = [=](const All& all) {
     std::vector<results::Table> tables = all_tables(all);
     if (with_bars) tables.push_back(bars_table(all));
@@ -244,6 +245,6 @@ std::vector<Job> work_precision(const Question& question) {
   return jobs({studied}, methods);
 }
 
-std::vector<Job> bars(const Question& question) { return jobs(question.quick ? quick_entries() : entries(), {}, true); }
+std::vector<Job> bars(const Question& question) { return jobs(question.quick ? quick_scenes() : chosen_scenes(), {}, true); }
 
 }  // namespace drape::bench
