@@ -70,7 +70,7 @@ build() {
 }
 
 # run_tests <preset> [GoogleTest option]...: in eight parts, as many at a time as there are cores; not by ctest, which would start the
-# program anew for each of some two thousand tests.
+# program again for each of some two thousand tests.
 run_tests() {
   local status=0
   seq 0 7 | GTEST_TOTAL_SHARDS=8 xargs -P "$(nproc)" -I '{}' env GTEST_SHARD_INDEX='{}' \

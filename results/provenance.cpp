@@ -31,7 +31,7 @@ std::string operating_system() {
   return uname(&host) == 0 ? fmt::format("{} {} {}", host.sysname, host.release, host.machine) : "unknown";
 }
 
-/// Of the file that this process runs: what was changed without a commit shows here.
+/// Checksum of the file that this process runs: what was changed without a commit shows here.
 std::string program_hash() {
   std::ifstream file("/proc/self/exe", std::ios::binary | std::ios::ate);
   if (!file) return "unknown";

@@ -24,7 +24,7 @@ std::string value_of(const Provenance& facts, std::string_view name);
 /// nothing else.
 Provenance provenance(std::string command_line, std::string sweep = "none");
 
-/// Whether a sweep begins anew or continues what a process before it has recorded, if there is something.
+/// Whether a sweep starts from the beginning or continues what a process before it has recorded, if there is something.
 enum class Start { fresh, resumed };
 
 /// The facts that all processes share which may write parts of the same sweep: all but time and command line of the start and

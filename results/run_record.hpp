@@ -109,7 +109,7 @@ inline bool comparable(const ErrorRecord& error) {
 inline constexpr double resolution = 10;
 inline bool resolved(const ErrorRecord& error) { return error.rms >= resolution * error.reference_error; }
 
-/// All that is kept of one run: plain data, filled by whoever runs, written by whoever records.
+/// All that is kept of one run: plain data, filled by the run engine, written by the recording.
 struct RunRecord {
   std::string cell;  ///< identity of what was run: equal in all files where the same was asked for; empty outside of sweeps
   std::string scene;

@@ -1,4 +1,4 @@
-// The recorded tables of chapters 2 and 3: computed anew, errors and orders are the same, and work is, count by count.
+// The recorded tables of chapters 2 and 3: computed again, errors and orders are the same, and work is, count by count.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

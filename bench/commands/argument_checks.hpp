@@ -14,7 +14,8 @@ CLI::Validator between(double least, double most);
 CLI::Validator between(int least, int most);
 CLI::Validator not_empty();
 
-/// Of a file or folder to be made. One that begins with '-' is more likely an option, or meant to be the standard output.
+/// Checks the name of a file or folder to be made. One that begins with '-' is more likely an option, or meant to be the
+/// standard output.
 CLI::Validator output_name();
 
 /// A text "every=X" with X finite and above 0, and this X.

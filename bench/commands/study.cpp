@@ -66,7 +66,7 @@ void check_options_of_tables(const Study& chosen, const SweepOptions& options) {
         fmt::format("--time-limit, --memory-limit: expected run, or one of the studies {}, not {}", of_runs(), chosen.name));
 }
 
-/// Of the tables that a study makes.
+/// Hash of all that determines the tables of a study.
 std::string identity(const StudyArguments& a, const std::optional<model::Scene>& scene) {
   return hash_of(fmt::format("{}{}{}{}\n{}", a.name, a.quick ? " quick" : "", a.methods.empty() ? "" : " by ",
                              fmt::join(a.methods, ","), scene ? model::to_toml(*scene) : ""));

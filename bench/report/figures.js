@@ -209,7 +209,7 @@ function convergenceFigures(file, table) {
   });
 }
 
-// Of classes, the best first: colours of Okabe and Ito, and marks for those who print in black and white.
+// Looks of classes, the best first: colours of Okabe and Ito, and marks for those who print in black and white.
 const classLooks =
     [["#56B4E9", ""], ["#F0E442", "–"], ["#CFE8F7", "·"], ["#D55E00", "×"], ["#CC79A7", "+"], ["#999999", "…"]];
 

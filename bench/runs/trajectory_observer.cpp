@@ -11,7 +11,7 @@
 namespace drape::bench {
 namespace {
 
-/// Of the edges that meet in each particle.
+/// The mean strain of the edges that meet in each particle.
 Eigen::VectorXd mean_strain(const std::vector<model::Edge>& edges, const solver::Vectors& x) {
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(x.rows()), count = sum;
   for (const model::Edge& edge : edges) {

@@ -20,7 +20,7 @@ struct ScoreOptions {
 /// Records the tables `score` (over time), `score-summary`, `score-ours` and, for files, `score-trials`, with a summary.
 Job score_job(const model::Scene& scene, const ExternalMotion& external, const ScoreOptions& options);
 
-/// Of all that determines them.
+/// Hash of all that determines the tables.
 std::string score_identity(const model::Scene& scene, const ExternalMotion& external, const ScoreOptions& options);
 
 }  // namespace drape::bench

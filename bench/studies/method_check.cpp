@@ -19,7 +19,7 @@ namespace {
 using results::Role;
 using results::Standing;
 
-/// Methods that everybody knows.
+/// Well-known methods that it is compared with.
 constexpr const char* neighbours[] = {"bdf2", "midpoint", "implicit-euler", "verlet"};
 
 std::vector<RefinedRun> order(const RunSpec& spec, const std::string& method, Checkpoint& checkpoint) {
@@ -165,7 +165,7 @@ constexpr results::ColumnOf<Cost> cost_columns[] = {
     {"wanted", "error", "1", "at most, over the scene's size", Role::key, results::field<&Cost::wanted>},
 };
 
-/// Of those that reach it. Who is the quickest depends on times, and so does all that is said of him.
+/// The quickest variant that reaches the error. Which one that is depends on times, and so do all its numbers.
 constexpr results::ColumnOf<Quickest> best_columns[] = {
     {"control", "h", "s", "step, or fraction of the stability limit, that is the quickest", Role::time,
      results::field<&Quickest::value>},

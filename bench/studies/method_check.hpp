@@ -62,10 +62,10 @@ struct MethodCheck {
 /// std::invalid_argument as choose_method() does.
 Job method_check(const std::string& method);
 
-/// Of the table `check-order`.
+/// Title of the table `check-order`.
 std::string order_title(const MethodCheck& check);
 
-/// On one screen.
+/// The check on one screen.
 std::string summary(const MethodCheck& check);
 
 }  // namespace drape::bench

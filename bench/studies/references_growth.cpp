@@ -28,7 +28,7 @@ struct GrowthScene {
 constexpr std::array<GrowthScene, 4> growing{
     {{"hung-corners", "0", 0.3}, {"hung-corners", "0.05", 0.4}, {"hung-corners", "5", 0.3}, {"wind", "5", 0.3, "[1, 35]"}}};
 
-/// Of the perturbation that each number of rounds finds, and the largest of all.
+/// Growth of the perturbation that each number of rounds finds, and the largest of all.
 struct Growths {
   std::vector<double> found;
   double largest = 0;

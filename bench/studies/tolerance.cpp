@@ -250,7 +250,7 @@ constexpr ColumnOf<MethodSummary> method_summary_columns[] = {
      [](const MethodSummary& summary) -> Cell { return summary.verdict(); }},
 };
 
-/// Of all scenes and tolerances.
+/// The summary of all scenes and tolerances.
 results::Table tolerance_summary(const std::vector<ControlledRuns>& all, const Methods& methods) {
   std::vector<MethodSummary> rows;
   for (const Method* const method : methods) {

@@ -12,7 +12,7 @@
 namespace drape::results {
 namespace {
 
-/// Of the times of the repetitions.
+/// A quantile of the times of the repetitions.
 Cell time_quantile(const RunRecord& run, double share) {
   return run.times_ms.empty() ? Cell() : Cell(base::quantile(run.times_ms, share));
 }
@@ -40,7 +40,7 @@ std::string shown_error(Run run) {
   return fmt::format("{:.4g}", run.error->rms);
 }
 
-/// Of the whole motion, as shown_error() has the error at the end.
+/// The error of the whole motion, as shown_error() has the error at the end.
 std::string shown_in_motion(Run run, double MotionErrorRecord::*value, double unit) {
   if (!run.motion_error || !run.error || !comparable(*run.error)) return {};
   const double least = resolution * run.error->reference_error * unit, error = (*run.motion_error).*value;

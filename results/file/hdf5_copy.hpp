@@ -12,7 +12,7 @@ struct Sealed {
   bool sealed;
 };
 
-/// A file written anew with what of another is of the types that are written here. Only a process of its own lets the library
+/// A copy of a file with all of it that is of the types that are written here. Only a process of its own lets the library
 /// see that other: on hostile bytes it crashes, loops and takes all memory. Links that do not lead to a new object in the file,
 /// and values of other types, stand there as "other". Throws Error if the file is stored in other files, declares more than it
 /// stores or than `most_numbers` allows, or if that process does not end well.

@@ -24,7 +24,7 @@ Value read_value(const Handle& from, const std::string& path, std::size_t most_t
 void write_attribute(const Handle& object, const std::string& name, const Value& value);
 void write_dataset(const Handle& group, const std::string& name, const Value& value);
 
-/// Of type, shape and content.
+/// Hash of type, shape and content.
 std::uint64_t hash_of(const Value& value);
 
 /// Attributes of an object, its content and the names of its members as it was when sign() saw it: hashes by the hash of a

@@ -40,7 +40,7 @@ inline constexpr std::tuple run_fields{
     Field{"times_ms", &RunRecord::times_ms, "ms", "solver wall time of every repetition, in the order they ran"},
 };
 
-/// Of `scene_keys`, which is absent in older files of the same version: see schema_4.hpp.
+/// Datasets of `scene_keys`, which is absent in older files of the same version: see schema_4.hpp.
 inline constexpr std::tuple scene_key_fields{
     Field{"key", &SceneValue::key, "", "key of scene files; the key of a list of tables stands once for each of them"},
     Field{"value", &SceneValue::value, "", "its value, in TOML"},
@@ -71,7 +71,8 @@ inline constexpr std::tuple state_fields{
     Field{"v", &solver::State::v, "m/s", "velocities, one row for each particle"},
 };
 
-/// Of `trajectory`, with a frame for each of the times t; the states' frames are written under the names of state_fields.
+/// Datasets of `trajectory`, with a frame for each of the times t; the states' frames are written under the names of
+/// state_fields.
 inline constexpr std::tuple trajectory_fields{
     Field{"nu", &TrajectoryRecord::nu, "1", "particles along u, the weft; the particle (a, b) is row a + nu b"},
     Field{"nv", &TrajectoryRecord::nv, "1", "particles along v, the warp"},
@@ -95,7 +96,7 @@ inline constexpr std::tuple error_fields{
     Field{"centre_spread", &ErrorRecord::centre_spread, "1", "what the perturbation does to the centre, in the same measure"},
 };
 
-/// Of `motion_error`, which is absent in older files of the same version.
+/// Datasets of `motion_error`, which is absent in older files of the same version.
 inline constexpr std::tuple motion_error_fields{
     Field{"position", &MotionErrorRecord::position, "1",
           "largest root of the mean squared distance to the reference at any of its times, divided by the size of the scene"},

@@ -9,7 +9,7 @@ namespace drape::solver {
 /// Estimate of the error of v in a stage that is solved by updates d = P⁻¹ r.
 ///
 /// It is the larger of two: |d| divided by the smallest |Δd|/|Δv| observed in this stage; and, since the error lies between
-/// |P⁻¹ r| and |M⁻¹ r|, their geometric mean. The first alone is too small where P is so much stiffer than the cloth that |d|
+/// |P⁻¹ r| and |M⁻¹ r|, their geometric mean. The first alone is too small where P is stiffer than the cloth that |d|
 /// hardly responds to v. Both estimate the error before the update; the observed reduction of |d| from update to update gives
 /// the error after it   [as in CVODE].
 class ErrorEstimate {

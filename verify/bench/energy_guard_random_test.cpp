@@ -29,7 +29,7 @@ constexpr int scenes = 3;  // sanitizers make them ten times slower
 constexpr int scenes = 25;
 #endif
 
-/// A run of some steps that has so many times what the motion was given, above its energy, must not go on: the 3 that the guard
+/// A run of some steps must not go on with an energy above this multiple of what the motion was given: the 3 that the guard
 /// tolerates, what a free fall gives in the first steps, and as much again for work along a wrong way. In fewer steps the free
 /// fall is most of the run, or a single step does all the work: some hundred times were seen.
 constexpr double miss = 8;

@@ -19,7 +19,7 @@ using testing::StartsWith;
 
 const Words tiny{"run", "--scene", "hung-edge", "--set", "grid.n=[5, 4]", "--until", "0.05", "--no-reference", "--repeat", "1"};
 
-/// A file as it is read by somebody who knows nothing but the format.
+/// A file as it is read by a program that knows only the format.
 struct Obj {
   double t = 0;
   std::vector<Vector3d> vertices;

@@ -18,7 +18,7 @@ using testing::IsEmpty;
 using testing::Not;
 using testing::StartsWith;
 
-/// A good command but for one option; without any, a good command.
+/// A good command except for one option; without any, a good command.
 Words run_with(const std::string& option = "", const Words& values = {}) {
   Words words{"run"};
   for (const Words& good : {Words{"--scene", "hung-edge"}, {"--method", "bdf2"}, {"--step", "0.01"}, {"--until", "0.05"}})
@@ -172,7 +172,7 @@ void fill(const BenchIntegrators& program) {
   program.write("nan.toml", "name = \"nan\"\nmaterial.density = nan\n");
   program.write("one.toml", "name = \"one\"\ngrid.n = [1, 1]\n");
   program.write("nameless.toml", "grid.n = 5\n");
-  program.write("exists.h5", "somebody's results");
+  program.write("exists.h5", "a user's results");
   program.write("results", "a file, where by default a folder is made");
   std::filesystem::create_directory(program.folder() / "folder.toml");
 }

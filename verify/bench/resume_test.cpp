@@ -1,5 +1,5 @@
 // Sweeps that are killed, interrupted or too large: nothing that was finished is lost, and the resumed file is the one that an
-// uninterrupted sweep writes, but for times.
+// uninterrupted sweep writes, except for times.
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -53,7 +53,7 @@ std::string all_but_times(const std::filesystem::path& file) {
   return text;
 }
 
-/// Kills a sweep so many times at random moments, resuming it in between, beginning anew whenever it is finished. In the end it
+/// Kills a sweep repeatedly at random moments, resuming it in between, starting again whenever it is finished. In the end it
 /// is finished once more.
 void kill_and_resume(const Words& sweep, int kills, std::mt19937& random) {
   const BenchIntegrators program;
@@ -150,7 +150,7 @@ TEST(Resume, IsRefusedForAnotherSweepAndForFilesThatAreNone) {
               AllOf(HasSubstr("a.h5: cannot be continued"), HasSubstr("something else"), HasSubstr("--out")));
   EXPECT_THAT(refusal(program, small_sweep + Words{"--out", "a.h5", "--resume", "--time-limit", "9"}),
               HasSubstr("something else"));
-  program.write("text.h5", "somebody's results");
+  program.write("text.h5", "a user's results");
   EXPECT_THAT(refusal(program, small_sweep + Words{"--out", "text.h5", "--resume"}), HasSubstr("text.h5: "));
   std::filesystem::resize_file(program.folder() / "a.h5", std::filesystem::file_size(program.folder() / "a.h5") / 2);
   EXPECT_THAT(refusal(program, small_sweep + Words{"--out", "a.h5", "--resume"}),

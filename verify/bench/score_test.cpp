@@ -62,7 +62,7 @@ json summary(const BenchIntegrators& program, const Words& scene, const Words& f
 
 double number(const json& row, const char* column) { return row.at(column).get<double>(); }
 
-/// A motion so much late: it rests at its start before.
+/// A motion that is late by `delay`: it rests at its start before.
 Motion delayed(const Motion& motion, std::size_t frames) {
   Motion late{motion.times, {}, {}};
   for (std::size_t k = 0; k < motion.times.size(); ++k) late.positions.push_back(motion.positions[k < frames ? 0 : k - frames]);

@@ -119,7 +119,7 @@ double distance_to_triangle(const Vector3d& p, const Corners& c) {
   return std::min({distance_to_segment(p, c[0], c[1]), distance_to_segment(p, c[1], c[2]), distance_to_segment(p, c[2], c[0])});
 }
 
-/// Of a triangle seen from p [van Oosterom, Strackee 1983].
+/// Solid angle of a triangle seen from p [van Oosterom, Strackee 1983].
 double solid_angle(const Vector3d& p, const Corners& corners) {
   const Vector3d a = corners[0] - p, b = corners[1] - p, c = corners[2] - p;
   return 2 * std::atan2(a.dot(b.cross(c)),

@@ -1,4 +1,4 @@
-// HDF5 files whose bytes or values are altered at random and sealed anew: whatever reads them ends well.
+// HDF5 files whose bytes or values are altered at random and sealed again: every reader ends well.
 // --gtest_filter='FuzzHdf5.*'
 // --gtest_repeat=100 goes on with others.
 

@@ -1,4 +1,4 @@
-// HDF5 files that are altered and sealed anew, or changed by h5py: read, or refused in one line, in bounded memory and time.
+// HDF5 files that are altered and sealed again, or changed by h5py: read, or refused in one line, in bounded memory and time.
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -27,7 +27,7 @@ class HostileHdf5 : public testing::Test {
     base::publish(program.folder() / name, bytes, base::Existing::replace);
   }
 
-  /// Lets h5py change a file; sealed anew, it claims to be ours.
+  /// Lets h5py change a file; sealed again, it claims to be ours.
   void change(const std::string& kind, const std::string& name) const {
     const ProgramResult result = run_program({.program = "/usr/bin/python3",
                                               .arguments = {sources / "verify/support/hostile_hdf5.py", kind, name},

@@ -120,9 +120,9 @@ TEST(Journal, RefusesWhatIsNotItsOwn) {
   EXPECT_THAT(complaint([&] { place.open(Start::resumed, other_program); }), HasSubstr("program_hash is 1 there and 2 here"));
   EXPECT_THAT(complaint([&] { place.open(Start::resumed, other_sweep); }), HasSubstr("something else"));
   EXPECT_EQ(content(place.journal), whole);
-  std::ofstream(place.journal) << "somebody's notes";
+  std::ofstream(place.journal) << "a user's notes";
   EXPECT_THAT(complaint([&] { place.open(); }), HasSubstr("runs.h5.journal: is not a journal"));
-  EXPECT_EQ(content(place.journal), "somebody's notes");
+  EXPECT_EQ(content(place.journal), "a user's notes");
 }
 
 TEST(Journal, AFullDiskLosesOnlyTheLastCheckpoint) {

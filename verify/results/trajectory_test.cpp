@@ -131,7 +131,7 @@ TEST(Trajectory, TellsParticlesInContact) {
   EXPECT_THAT(all[0].trajectory->constraint[1], Each(int(results::Constraint::in_contact)));
 }
 
-// --- XDMF, read by somebody who knows nothing but the format ---------------------------------------------------------------
+// --- XDMF, read by a program that knows only the format ------------------------------------------------------------------
 
 /// What read_xdmf.py prints of a trajectory.
 std::string as_read(const TrajectoryRecord& trajectory, std::size_t k) {

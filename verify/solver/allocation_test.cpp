@@ -62,7 +62,7 @@ std::int64_t allocations_of(const F& f) {
 
 void* volatile last_used = nullptr;
 
-/// Keeps the compiler from leaving out an allocation that nobody uses.
+/// Keeps the compiler from leaving out an unused allocation.
 void* used(void* memory) {
   last_used = memory;
   return memory;

@@ -24,7 +24,7 @@ struct Relaxation {
   Vectors update(const Vectors& v) const { return b - theta.cwiseProduct(v); }
   Vectors solution() const { return b.cwiseQuotient(theta); }
 
-  /// |d| after so many accelerated updates from 0.
+  /// |d| after this number of accelerated updates from 0.
   double left(Anderson& anderson, int updates) const {
     Vectors v = Vectors::Zero(2, 3);
     for (int k = 0; k < updates; ++k) {

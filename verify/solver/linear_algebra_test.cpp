@@ -156,7 +156,7 @@ TEST(IncompleteCholesky, IsNotTheMatrixWhereFactorsFillIn) {
   EXPECT_GE(largest(stands_for(*prepared(solver::linear_solver("ic0"), A), 20) - A), 1);
 }
 
-/// As the incomplete factor but for its diagonal, which gives back what was dropped, all but a thousandth.
+/// As the incomplete factor except for its diagonal, which gives back what was dropped, all but a thousandth.
 TEST(ModifiedIncompleteCholesky, KeepsRowSums) {
   const SparseMatrix A = sheet(5, 4);
   const auto error = [&](const char* name) -> Eigen::MatrixXd {

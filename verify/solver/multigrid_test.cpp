@@ -66,7 +66,7 @@ TEST(FivePointStar, IsFoundInEveryShapeOfSheet) {
 TEST(FivePointStar, IsNotFoundWhereThereIsNone) {
   SparseMatrix around = sheet(5, 4), one_sided = sheet(5, 4);
   for (const auto& [i, j] : {std::pair{4, 5}, {5, 4}})
-    around.coeffRef(i, j) = -1;  // from the end of a line to the begin of the next
+    around.coeffRef(i, j) = -1;  // from the end of a line to the beginning of the next
   one_sided.coeffRef(3, 4) *= 2;
   for (const SparseMatrix& A : {around, one_sided, definite(60, 0.1, 7), SparseMatrix(sheet(5, 4) * sheet(5, 4))})
     EXPECT_FALSE(solver::five_point(A));
@@ -151,7 +151,7 @@ TEST(Multigrid, CoarsensAlongTheStrongerSpringsOnly) {
 
 // --- Threads -----------------------------------------------------------------------------------------------------------------
 
-/// Allows so many threads while it lives.
+/// Allows `threads` threads during its lifetime.
 struct Threads {
   explicit Threads(int threads) { base::use_threads(threads); }
   ~Threads() { base::use_threads(1); }

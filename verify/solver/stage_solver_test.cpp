@@ -1,4 +1,5 @@
-// A stage that is called solved is solved: the residual is computed anew from the forces. Work is done only where it is needed.
+// A stage that is called solved is solved: the residual is computed again from the forces. Work is done only where it is
+// needed.
 
 #include "solver/stage/stage_solver.hpp"
 

@@ -1,4 +1,4 @@
-// The stability limit of `verlet` follows the state: it is estimated anew where modes leave it, and nowhere else.
+// The stability limit of `verlet` follows the state: it is estimated again where modes leave it, and nowhere else.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-"""Changes an HDF5 file as other programs, or people who mean harm, might.
+"""Changes an HDF5 file as other programs, or an attacker, might.
 
 usage: hostile_hdf5.py KIND FILE.h5
 """

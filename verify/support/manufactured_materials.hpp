@@ -29,7 +29,7 @@ struct NamedMaterial {
 };
 std::ostream& operator<<(std::ostream& out, const NamedMaterial& named);
 
-/// All forces together: as in the thesis but for its shear, all that have energies, and with the membrane.
+/// All forces together: as in the thesis except for its shear, all that have energies, and with the membrane.
 std::vector<NamedMaterial> joint_materials();
 
 std::vector<NamedMaterial> with_joint_materials(std::vector<NamedMaterial> materials);

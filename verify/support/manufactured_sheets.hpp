@@ -101,8 +101,8 @@ void add_load(SplitOde& ode, const SplitOde::Force& add);
 /// The compiled model alone, its border pinned to the surface unless it is free.
 Problem unloaded(const Grid& grid, const Material& material, const Motion& motion);
 
-/// The compiled model with the load of a continuum, which should be its own: then the surface is its solution but for the error
-/// of the discretisation.
+/// The compiled model with the load of a continuum, which should be its own: then the surface is its solution except for the
+/// error of the discretisation.
 Problem loaded(const Grid& grid, const Material& material, const Motion& motion, const reference::ContinuumMaterial& continuum,
                Load::CellOf cell = dual_cell);
 Problem loaded(const Grid& grid, const Material& material, const Motion& motion);

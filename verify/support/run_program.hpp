@@ -44,8 +44,8 @@ class RunningProgram {
   std::unique_ptr<Process> process_;
 };
 
-/// Runs a program with its standard error on a terminal of so many columns: to its end, or until the terminal has shown a text,
-/// when it is terminated.
+/// Runs a program with its standard error on a terminal of `columns` columns: to its end, or until the terminal has shown a
+/// text, when it is terminated.
 ProgramResult run_on_terminal(const Command& command, unsigned short columns, std::string_view until = {});
 
 }  // namespace drape::verify

@@ -22,7 +22,7 @@ SparseMatrix definite(int n, double density, unsigned seed);
 
 SparseMatrix tridiagonal(int n);
 
-/// M − K of a sheet of springs: as in the stage, but for its edges.
+/// M − K of a sheet of springs: as in the stage, except at its edges.
 SparseMatrix sheet(int nu, int nv);
 
 /// Matrices with all kinds of patterns.

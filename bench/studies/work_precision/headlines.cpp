@@ -41,7 +41,7 @@ constexpr ColumnOf<Quickest> quickest_columns[] = {
      [](const Quickest& row) { return row.sundials ? Cell(row.ratio()) : Cell(); }},
 };
 
-/// Of the ratios on a scene.
+/// Quartiles of the ratios on a scene.
 struct Summary {
   std::string scene;
   double least, median, largest;

@@ -42,7 +42,7 @@ double seconds(TimeOf time_of) {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/// Of our counters and those of SUNDIALS' packages: each run knows some.
+/// Sum of the counters with these names, ours and those of SUNDIALS' packages: each run has some of them.
 std::int64_t count(const solver::Counters& work, std::initializer_list<std::string_view> names) {
   std::int64_t sum = 0;
   for (const solver::Counters::Kind& kind : work.kinds())

@@ -17,7 +17,7 @@ struct Winner {
   std::string name() const;
 };
 
-/// Of those that were timed repeatedly.
+/// The quickest of those that were timed repeatedly.
 Winner winner(const SceneRuns& scene, const Contender& contender, double error);
 
 /// Whether the gap between two is below the noise.
