@@ -13,7 +13,9 @@ struct Method {
   std::string_view name;         ///< on command lines and in files
   std::string_view description;  ///< a few words, with the equation
   int order;
-  enum class Stages { none, linear, nonlinear } stages;  ///< linear: one system a stage; none: no use of the stage solver
+  /// linear: one system a stage, with the constant matrix; linearised: one system a stage, with the exact Jacobian and
+  /// without the stage solver; none: no systems that the program knows of.
+  enum class Stages { none, linear, nonlinear, linearised } stages;
   void (*step)(Step&);
   int history = 1;              ///< points of the history that it reads, the start of the step among them
   int forces = 0;               ///< how many of these with a force or an acceleration
@@ -21,7 +23,7 @@ struct Method {
   bool sub_steps = false;       ///< whether it divides its steps by a stability limit of its own
   bool in_thesis = false;       ///< or, as velocity Verlet, measured beside its methods
 
-  bool implicit() const { return stages != Stages::none; }
+  bool implicit() const { return stages == Stages::linear || nonlinear(); }  ///< whether it uses the stage solver
   bool nonlinear() const { return stages == Stages::nonlinear; }
 };
 

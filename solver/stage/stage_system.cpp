@@ -156,6 +156,14 @@ LinearResult StageSystem::respond(const Vectors& r, double tolerance) {
   return correct(tolerance * r_.norm());
 }
 
+LinearResult StageSystem::respond(const State& r, double tolerance) {
+  multiply(ode_.stiffness, r.x, q_);
+  ++work_.products;
+  work_.bytes += multiply_bytes(ode_.stiffness) + vector_bytes(A_.rows(), 4);
+  q_ = gamma_ * q_ + ode_.mass.asDiagonal() * r.v;
+  return respond(q_, tolerance);
+}
+
 void StageSystem::filter_residual(double gamma) {
   if (touches()) contacts_->add_friction(gamma, r_);
   filter(ode_.pins, r_);

@@ -69,6 +69,9 @@ class StageSystem {
   /// A d = r for another r; what pins and constraints bear of it does not count.
   LinearResult respond(const Vectors& r, double tolerance);
 
+  /// A d = M r_v + γ K r_x for the A that was prepared last.
+  LinearResult respond(const State& r, double tolerance);
+
   bool touches() const { return contacts_ != nullptr && !contacts_->empty(); }
   const Vectors& residual() const { return r_; }
   Vectors& correction() { return d_; }
