@@ -7,13 +7,13 @@
 
 namespace drape::model {
 
-/// Hands the blocks of a configuration to the entries, always in the same order.
+/// Adds the blocks of a configuration to the entries, always in the same order.
 using VisitBlocks = std::function<void(const JacobianEntries& entries)>;
 
 /// Blocks (i, j) in the order of a visit.
 using Blocks = std::vector<Eigen::Vector2i>;
 
-/// What records the blocks of a visit instead of adding them up.
+/// Records the blocks of a visit instead of adding them up.
 JacobianEntries::Add recorder(Blocks& blocks);
 
 /// Calls each(row, column, k) for the nine entries of a block, row by row.
@@ -23,14 +23,25 @@ void for_entries(int i, int j, const Each& each) {
     for (int b = 0; b < 3; ++b) each(3 * i + a, 3 * j + b, 3 * a + b);
 }
 
-/// Where the blocks of every visit go in a matrix whose pattern never changes.
+/// Places of the blocks of every visit in a matrix whose pattern never changes.
 class BlockSlots {
  public:
   /// `kept`: whether the matrix has an entry for (row, column).
   void find(const Blocks& blocks, const SparseMatrix& pattern, const std::function<bool(int row, int column)>& kept);
 
-  /// Adds `weight` times each block of one visit to the values of the matrix. Valid as long as this object.
-  JacobianEntries::Add adder(double* values, double weight) const;
+  /// Adds `weight` times each block of one visit to the values of the matrix. Valid as long as the slots. Visits take a
+  /// reference to it: a copy in a std::function would allocate.
+  class Adder {
+   public:
+    Adder(const BlockSlots& slots, double* values, double weight)
+        : values_(values), weight_(weight), slot_(slots.slots_.data()) {}
+    void operator()(int i, int j, const Eigen::Matrix3d& block);
+
+   private:
+    double* values_;
+    double weight_;
+    const int* slot_;
+  };
 
  private:
   std::vector<int> slots_;  ///< nine a block, -1 for entries that are not kept

@@ -16,7 +16,7 @@ using LongSparseMatrix = Eigen::SparseMatrix<double, Eigen::RowMajor, std::int64
 
 }  // namespace
 
-/// KLU sees the rows of the matrix as columns of its transpose.
+/// KLU is given the transpose: our rows are its columns.
 class KluFactor::Factors {
  public:
   explicit Factors(LongSparseMatrix A) : A_(std::move(A)) {
@@ -39,7 +39,7 @@ class KluFactor::Factors {
            std::equal(A.innerIndexPtr(), A.innerIndexPtr() + entries, A_.innerIndexPtr());
   }
 
-  /// With the pivots of the last time if they are still good ones.
+  /// Factors with the last pivots if these are still good.
   bool renew(const double* values) {
     std::copy_n(values, A_.nonZeros(), A_.valuePtr());
     if (numeric_ != nullptr && refactored()) return true;

@@ -25,18 +25,18 @@ bool newton_step(Step& s, const Stage& stage, double c) {
 // BDF(2) (3.35) with one Newton step   [Choi, Ko 2002], begun by one of the implicit midpoint rule (3.26)
 void one_newton_bdf2(Step& s) {
   const State& y0 = s.y0();
-  s.starting = s.w == 0;
+  s.starting = s.w() == 0;
   if (s.starting) {
     if (!newton_step(s, {s.h / 2, s.t + s.h / 2, y0.x, y0.v}, 1.0 / 12)) return;
     s.y1().x = 2 * s.y1().x - y0.x;
     s.y1().v = 2 * s.y1().v - y0.v;
     return;
   }
-  const auto [c1, c2, c3] = bdf2_coefficients(s.w);
+  const auto [c1, c2, c3] = bdf2_coefficients(s.w());
   Vectors &ax = s.scratch.ax, &av = s.scratch.av;
   ax = c1 * y0.x - c2 * s.ym1().x;
   av = c1 * y0.v - c2 * s.ym1().v;
-  newton_step(s, {c3 * s.h, s.t + s.h, ax, av}, bdf2_error(s.w));
+  newton_step(s, {c3 * s.h, s.t + s.h, ax, av}, bdf2_error(s.w()));
 }
 
 }  // namespace drape::solver

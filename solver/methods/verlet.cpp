@@ -7,7 +7,7 @@
 namespace drape::solver {
 namespace {
 
-/// Where a step counts as failed: at some microseconds a sub-step it would take minutes.
+/// Number of sub-steps above which a step counts as failed: at some microseconds each it would take minutes.
 constexpr double most_substeps = 1e8;
 
 double limit_at(Step& s, double t, const State& y) {
@@ -16,14 +16,14 @@ double limit_at(Step& s, double t, const State& y) {
   return verlet_limit(spectrum(s.ode, t, y));
 }
 
-/// After a sub-step to time t with the force f: whether the limit is narrower by now than the one that is used. It is
-/// estimated only if something has stretched, or modes alternate and grow.
+/// After a sub-step to time t with the force f: whether the limit is narrower now than the one in use. It is estimated only if
+/// edges have stretched, or modes alternate and grow.
 bool narrowed(Step& s, double t, const Vectors& f) {
   constexpr int stretch_period = 8;
   constexpr double worthwhile = 0.98;
   const bool alarmed = s.sub_stepping.limit_watch.alarmed(f, s.scratch.ax);
-  const bool looks = ++s.sub_stepping.substeps % stretch_period == 0;
-  if (!alarmed && !(looks && s.sub_stepping.stretch_watch.stretched(s.ode.stiffness, s.y1().x))) return false;
+  const bool due = ++s.sub_stepping.substeps % stretch_period == 0;
+  if (!alarmed && !(due && s.sub_stepping.stretch_watch.stretched(s.ode.stiffness, s.y1().x))) return false;
   const double limit = limit_at(s, t, {s.y1().x, s.scratch.av});
   if (limit < worthwhile * s.sub_stepping.limit) {
     s.sub_stepping.limit = limit;
@@ -33,8 +33,8 @@ bool narrowed(Step& s, double t, const Vectors& f) {
   return false;
 }
 
-/// The state is kept at (x1, v at the middle of the sub-step), so that all that happens between two evaluations of the force
-/// is one pass over memory. False if the limit has become narrower on the way.
+/// The state is kept at (x1, v at the middle of the sub-step), so that there is one pass over memory between two evaluations of
+/// the force. False if the limit has become narrower meanwhile.
 bool sub_steps(Step& s, double tau, double count) {
   const Eigen::Index n = s.scratch.ax.size();
   const double* const w = s.scratch.ax.data();
@@ -60,7 +60,7 @@ bool sub_steps(Step& s, double tau, double count) {
   return true;
 }
 
-/// With the impulses of obstacles between the parts of a sub-step.
+/// The same with the impulses of obstacles between the parts of a sub-step.
 bool sub_steps_with_impacts(Step& s, double tau, double count) {
   State& y = s.y1();
   Vectors& a = s.next.f;
@@ -81,20 +81,20 @@ bool sub_steps_with_impacts(Step& s, double tau, double count) {
   return true;
 }
 
-/// Goes from y0 to y1 in sub-steps inside the limit as it is known now; false if it has become narrower.
+/// Computes y1 from y0 in sub-steps inside the current limit; false if it has become narrower.
 bool whole_step(Step& s, double substeps) {
   const double tau = s.h / substeps;
   State& y = s.y1();
   y = s.y0();
   prescribe(s.ode.pins, y.v);
-  for (int c = 0; c < 3; ++c) s.scratch.ax.col(c) = s.ode.mass.cwiseInverse();  // but pins have no acceleration:
+  for (int c = 0; c < 3; ++c) s.scratch.ax.col(c) = s.ode.mass.cwiseInverse();  // 0 in pinned coordinates:
   filter(s.ode.pins, s.scratch.ax);
   if (s.now().has_f)
     s.next.f = s.now().f;
   else
     s.ode.force(s.t, y.x, y.v, s.next.f);
   const bool contacts = s.sub_stepping.impacts != nullptr && !s.sub_stepping.impacts->empty();
-  s.next.has_f = !contacts;  // what obstacles bear was taken from it
+  s.next.has_f = !contacts;  // the obstacles' reactions were subtracted from it
   s.error.constant = 1.0 / (6 * substeps * substeps);
   return (contacts ? sub_steps_with_impacts : sub_steps)(s, tau, substeps);
 }
@@ -106,7 +106,7 @@ bool whole_step(Step& s, double substeps) {
 // which is velocity Verlet where forces do not depend on velocities and of second order where they do, with one
 // evaluation a sub-step   [Verlet 1967; Groot, Warren 1997, λ = 1].
 // The limit is that of the initial state until neighbours have moved apart by a tenth, or modes alternate and grow: then it is
-// estimated anew, and where it has become narrower the step begins again.
+// estimated again, and if it has become narrower the step is repeated.
 void verlet(Step& s) {
   if (s.sub_stepping.limit == 0) s.sub_stepping.limit = limit_at(s, s.t, s.y0());
   for (bool done = false; !done;) {
