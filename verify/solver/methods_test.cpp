@@ -292,6 +292,9 @@ Path fall(std::string_view method, double constant, double growing) {
   ode.explicit_force = ode.force = [=](double t, const Vectors&, const Vectors&, Vectors& f) {
     f = (constant + growing * t) * masses().replicate<1, 3>();
   };
+  ode.jacobian = [](double, const Vectors&, const Vectors&, SparseMatrix& df_dx, SparseMatrix& df_dv) {
+    df_dx = df_dv = SparseMatrix(3 * particles, 3 * particles);
+  };
   return run(ode, method, start, unequal_steps);
 }
 

@@ -63,7 +63,7 @@ TEST(RosenbrockTableaus, FulfilTheConditionsOfTheirOrderAndOfNoHigher) {
   for (const RosenbrockTableau& T : solver::rosenbrock_tableaus()) {
     const Coefficients method(T, T.b), embedded(T, T.b_hat);
     EXPECT_LE(method.residual(T.order), 1e-14) << T.name;
-    if (T.order == 2) EXPECT_GE(method.residual(3), 1e-3) << T.name;
+    EXPECT_TRUE(T.order == 3 || method.residual(3) >= 1e-3) << T.name;
     EXPECT_LE(embedded.residual(T.order - 1), 1e-14) << T.name;
     EXPECT_GE(embedded.residual(T.order), 1e-3) << T.name;
     EXPECT_EQ(solver::method(T.name).order, T.order);
@@ -133,8 +133,7 @@ TEST(LinearisedSystem, IsSolvedInTheFreeCoordinatesAlsoWithAnotherPattern) {
     problem.ode.jacobian(start_time, y.x, y.v, K, D);
     EXPECT_LE(left_over(problem.ode, gamma, K, D, r, k), 1e-13) << gamma;
     for (const Pin& pin : problem.ode.pins)
-      for (int c = 0; c < 3; ++c)
-        if (pin.fixed[c]) EXPECT_EQ(k.v(pin.particle, c), 0);
+      for (int c = 0; c < 3; ++c) EXPECT_TRUE(!pin.fixed[c] || k.v(pin.particle, c) == 0);
   }
   EXPECT_EQ(problem.ode.work->count("factorisations"), 2);
   EXPECT_EQ(problem.ode.work->count("updates"), 2);
