@@ -57,7 +57,7 @@ solver::Point point(const Eigen::Ref<const Eigen::VectorXd>& u) {
   return p;
 }
 
-/// The points, the newest at time 0.
+/// The points, the newest at time 0, after a step of h even if it is the only one.
 solver::History history(const Lags& memory, const Eigen::VectorXd& u) {
   const auto lag = [&](Eigen::Index k) {
     solver::Point p = point(u.segment(k * memory.entries(), memory.entries()));
@@ -66,7 +66,7 @@ solver::History history(const Lags& memory, const Eigen::VectorXd& u) {
   };
   const int points = static_cast<int>(memory.states);
   solver::History all(points, points, lag(memory.states - 1));
-  for (Eigen::Index k = memory.states - 1; k-- > 0;) {
+  for (Eigen::Index k = memory.states; k-- > 0;) {
     solver::Point next = lag(k);
     all.push(next, h);
   }
