@@ -129,7 +129,8 @@ void rosenbrock(Step& s, std::string_view name) {
 void rosenbrock_w(Step& s, std::string_view name) {
   const RosenbrockTableau& T = base::find_named(rosenbrock_tableaus(), "Rosenbrock method", name);
   const double gamma = T.gamma * s.h;
-  rosenbrock(s, T, false, [&s, gamma](const State& r, State& z) { return s.accept(s.stage->solve_increment(gamma, r, z)); });
+  rosenbrock(s, T, false,
+             [&s, gamma](const State& r, State& z) { return s.accept(s.stage->solve_increment(gamma, s.y0(), r, z)); });
 }
 
 }  // namespace

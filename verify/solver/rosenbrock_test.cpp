@@ -159,7 +159,7 @@ TEST(StageSolver, SolvesIncrementsWithTheConstantMatrix) {
     solver::StageSolver stage(problem.ode, tight());
     const State r{noise(particles, 3), noise(particles, 4)};
     State k;
-    ASSERT_EQ(stage.solve_increment(0.2, r, k).outcome, Outcome::success);
+    ASSERT_EQ(stage.solve_increment(0.2, problem.start, r, k).outcome, Outcome::success);
     const Eigen::MatrixXd K = known_motions::threefold(problem.ode.stiffness),
                           D = known_motions::threefold(problem.ode.damping);
     EXPECT_LE(left_over(problem.ode, 0.2, K, D, r, k), 1e-12) << problem.name;
