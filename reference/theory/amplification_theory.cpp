@@ -50,8 +50,8 @@ std::pair<std::complex<double>, std::complex<double>> exponents(const Mode& m) {
   return {larger, square < 0 ? std::conj(larger) : m.W / larger};
 }
 
-/// Of a Rosenbrock method with so many stages that R(μ) is determined by its order and γ:
-/// R(μ) (1 − γ μ)^stages is the beginning of the series of e^μ (1 − γ μ)^stages   [Hairer, Wanner 1996, IV.7].
+/// The polynomial of a Rosenbrock method whose number of stages, order and γ determine R(μ): R(μ) (1 − γ μ)^stages is the series
+/// of e^μ (1 − γ μ)^stages up to the order   [Hairer, Wanner 1996, IV.7].
 Polynomial rosenbrock(const Mode& m, int stages, int order, double gamma) {
   const auto R = [=](std::complex<double> mu) {
     std::complex<double> numerator = 0;
