@@ -64,6 +64,7 @@ Integrator::Integrator(const SplitOde& ode, const Method& method, const Options&
       step_{.ode = ode,
             .options = options_,
             .stage = nullptr,
+            .linearised = nullptr,
             .history = history_,
             .next = next_,
             .scratch = scratch_,
@@ -84,6 +85,7 @@ Integrator::Integrator(const SplitOde& ode, const Method& method, const Options&
   } else if (ode.contacts) {
     sub_stepping_.impacts = &impacts_.emplace(ode);
   }
+  if (method.stages == Method::Stages::linearised) step_.linearised = &linearised_.emplace(ode);
   ode.work->counter("history_states", "states before the current one that the method keeps") = method.history - 1;
 }
 

@@ -61,6 +61,7 @@ class Integrator {
   std::optional<ContactResponse> contacts_;  ///< of implicit methods
   std::optional<ImpactResponse> impacts_;    ///< of explicit ones
   std::optional<StageSolver> stage_;
+  std::optional<LinearisedSystem> linearised_;
   History history_;
   Point next_;
   Scratch scratch_;

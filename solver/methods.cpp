@@ -22,6 +22,14 @@ void esdirk4(Step& s);
 void bdf3(Step& s);
 void bdf4(Step& s);
 void bdf5(Step& s);
+void baraff_witkin(Step& s);
+void one_newton_bdf2(Step& s);
+void ros2(Step& s);
+void ros3p(Step& s);
+void rodas3(Step& s);
+void ros34pw2(Step& s);
+void ros2_w(Step& s);
+void ros34pw2_w(Step& s);
 
 std::span<const Method> methods() {
   using Stages = Method::Stages;
@@ -120,17 +128,57 @@ std::span<const Method> methods() {
        .history = 5,
        .forces = 1,
        .meets_obstacles = false},
+      {.name = "baraff-witkin",
+       .description = "linearly implicit Euler of Baraff and Witkin, one system with the exact Jacobian",
+       .order = 1,
+       .stages = Stages::linearised,
+       .step = baraff_witkin,
+       .meets_obstacles = false},
+      {.name = "one-newton-bdf2",
+       .description = "BDF(2) of Choi and Ko, one Newton step",
+       .order = 2,
+       .stages = Stages::linearised,
+       .step = one_newton_bdf2,
+       .history = 2,
+       .meets_obstacles = false},
+      {.name = "ros2",
+       .description = "Rosenbrock method ROS2, L-stable",
+       .order = 2,
+       .stages = Stages::linearised,
+       .step = ros2,
+       .meets_obstacles = false},
+      {.name = "ros3p",
+       .description = "Rosenbrock method ROS3P, A-stable",
+       .order = 3,
+       .stages = Stages::linearised,
+       .step = ros3p,
+       .meets_obstacles = false},
+      {.name = "rodas3",
+       .description = "Rosenbrock method RODAS3, L-stable",
+       .order = 3,
+       .stages = Stages::linearised,
+       .step = rodas3,
+       .meets_obstacles = false},
+      {.name = "ros34pw2",
+       .description = "Rosenbrock method ROS34PW2, L-stable",
+       .order = 3,
+       .stages = Stages::linearised,
+       .step = ros34pw2,
+       .meets_obstacles = false},
+      {.name = "ros2-w",
+       .description = "ROS2 with the constant matrix, frozen where hk/d is large",
+       .order = 2,
+       .stages = Stages::linear,
+       .step = ros2_w,
+       .meets_obstacles = false},
+      {.name = "ros34pw2-w",
+       .description = "ROS34PW2 with the constant matrix, frozen where hk/d is large",
+       .order = 3,
+       .stages = Stages::linear,
+       .step = ros34pw2_w,
+       .meets_obstacles = false},
   };
   return table;
-}
-
-std::span<const Method> thesis_methods() {
-  static const std::vector<Method> rows = [] {
-    std::vector<Method> those;
-    std::ranges::copy_if(methods(), std::back_inserter(those), &Method::in_thesis);
-    return those;
-  }();
-  return rows;
 }
 
 const Method& method(std::string_view name) { return base::find_named(methods(), "method", name); }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <ranges>
 #include <span>
 #include <string>
 #include <string_view>
@@ -13,7 +14,9 @@ struct Method {
   std::string_view name;         ///< on command lines and in files
   std::string_view description;  ///< a few words, with the equation
   int order;
-  enum class Stages { none, linear, nonlinear } stages;  ///< linear: one system a stage; none: no use of the stage solver
+  /// linear: one system a stage, with the constant matrix; linearised: one system a stage, with the exact Jacobian and
+  /// without the stage solver; none: no systems that the program knows of.
+  enum class Stages { none, linear, nonlinear, linearised } stages;
   void (*step)(Step&);
   int history = 1;              ///< points of the history that it reads, the start of the step among them
   int forces = 0;               ///< how many of these with a force or an acceleration
@@ -21,7 +24,7 @@ struct Method {
   bool sub_steps = false;       ///< whether it divides its steps by a stability limit of its own
   bool in_thesis = false;       ///< true for velocity Verlet as well, which is measured beside its methods
 
-  bool implicit() const { return stages != Stages::none; }
+  bool implicit() const { return stages == Stages::linear || nonlinear(); }  ///< whether it uses the stage solver
   bool nonlinear() const { return stages == Stages::nonlinear; }
 };
 
@@ -29,7 +32,7 @@ struct Method {
 std::span<const Method> methods();
 
 /// The rows with `in_thesis`, in the order of the table.
-std::span<const Method> thesis_methods();
+inline auto thesis_methods() { return methods() | std::views::filter(&Method::in_thesis); }
 
 /// The method with this name. Throws std::invalid_argument, listing the names.
 const Method& method(std::string_view name);

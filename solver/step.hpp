@@ -7,6 +7,7 @@
 #include "solver/contact/impact_response.hpp"
 #include "solver/history.hpp"
 #include "solver/limit_watch.hpp"
+#include "solver/linear/linearised_system.hpp"
 #include "solver/stage/stage_solver.hpp"
 
 namespace drape::solver {
@@ -40,7 +41,8 @@ struct SubStepping {
 struct Step {
   const SplitOde& ode;
   const Options& options;
-  StageSolver* stage;  ///< null for explicit methods, which need no matrix
+  StageSolver* stage;            ///< null for methods that do not use it
+  LinearisedSystem* linearised;  ///< null unless the method's stages are linearised
   History& history;
   Point& next;  ///< at t + h: the result
   Scratch& scratch;
@@ -95,6 +97,19 @@ struct Step {
   /// Error of the step over the error of the history's extrapolation to `time`.
   double error_over_extrapolation(double time) const {
     return error.constant * std::pow(h, history.smooth()) / history.remainder(time);
+  }
+
+  /// Factors M − γ ∂f/∂v − γ² ∂f/∂x at a state.
+  bool linearise(double gamma, double time, const State& y) {
+    result.outcome = linearised->factor(gamma, time, y);
+    return result.outcome == Outcome::success;
+  }
+
+  /// Solves with these factors, for velocities or for velocities and positions.
+  template <class Field>
+  void solve_linearised(const Field& r, Field& d) {
+    linearised->solve(r, d);
+    ++result.updates;
   }
 
   /// Adds the work of a stage; true if it succeeded.

@@ -111,7 +111,7 @@ const std::vector<Confined> confined_libraries = {
       "sunnonlinsol/"},
      {"verify/reference/state_vector_test.cpp", "reference/sundials/"}},
     {{"cholmod", "suitesparse/cholmod", "Eigen/CholmodSupport"}, {"solver/linear/"}},
-    {{"klu", "suitesparse/klu"}, {"reference/sundials/"}},
+    {{"klu", "suitesparse/klu"}, {"solver/linear/klu_factor.cpp"}},
     {{"assimp/", "unsupported/Eigen/BVH"}, {"model/obstacles/mesh_shape.cpp"}},
 };
 

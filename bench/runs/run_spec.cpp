@@ -15,7 +15,7 @@ namespace {
 
 std::string expected(const solver::Method& method) {
   using Stages = solver::Method::Stages;
-  if (method.stages == Stages::none) return fmt::format("{}, it leaves no solver to choose", method.name);
+  if (!method.implicit()) return fmt::format("{}, it leaves no solver to choose", method.name);
   if (method.stages == Stages::linear) return fmt::format("{}/LINEAR_SOLVER, its stages are linear", method.name);
   return fmt::format("{}/STAGE_SOLVER/LINEAR_SOLVER", method.name);
 }

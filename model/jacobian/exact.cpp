@@ -1,5 +1,7 @@
 #include "model/jacobian/exact.hpp"
 
+#include <functional>
+
 namespace drape::model {
 
 void ExactJacobian::Part::analyse(const Blocks& blocks) {
@@ -20,7 +22,8 @@ void ExactJacobian::assemble(const VisitBlocks& visit, SparseMatrix& df_dx, Spar
   }
   df_dx = dx_.zero;
   df_dv = dv_.zero;
-  visit({Curvature::exact, dx_.slots.adder(df_dx.valuePtr(), 1), dv_.slots.adder(df_dv.valuePtr(), 1)});
+  BlockSlots::Adder add_dx(dx_.slots, df_dx.valuePtr(), 1), add_dv(dv_.slots, df_dv.valuePtr(), 1);
+  visit({Curvature::exact, std::ref(add_dx), std::ref(add_dv)});
 }
 
 }  // namespace drape::model

@@ -1,6 +1,7 @@
 #include "model/jacobian/newton.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <utility>
 
 namespace drape::model {
@@ -48,7 +49,8 @@ void NewtonMatrix::assemble(const VisitBlocks& visit, double gamma, SparseMatrix
   double* const values = J.valuePtr();
   std::fill_n(values, J.nonZeros(), 0.0);
   for (int i = 0; i < mass_.size(); ++i) values[diagonal_[i]] = mass_[i];
-  visit({curvature_, dx_.adder(values, -gamma * gamma), dv_.adder(values, -gamma)});
+  BlockSlots::Adder add_dx(dx_, values, -gamma * gamma), add_dv(dv_, values, -gamma);
+  visit({curvature_, std::ref(add_dx), std::ref(add_dv)});
 }
 
 }  // namespace drape::model

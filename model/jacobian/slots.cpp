@@ -19,13 +19,11 @@ void BlockSlots::find(const Blocks& blocks, const SparseMatrix& pattern, const s
     });
 }
 
-JacobianEntries::Add BlockSlots::adder(double* values, double weight) const {
-  return [values, weight, slot = slots_.data()](int, int, const Eigen::Matrix3d& block) mutable {
-    for_entries(0, 0, [&](int a, int b, int k) {
-      if (slot[k] >= 0) values[slot[k]] += weight * block(a, b);
-    });
-    slot += 9;
-  };
+void BlockSlots::Adder::operator()(int, int, const Eigen::Matrix3d& block) {
+  for_entries(0, 0, [&](int a, int b, int k) {
+    if (slot_[k] >= 0) values_[slot_[k]] += weight_ * block(a, b);
+  });
+  slot_ += 9;
 }
 
 }  // namespace drape::model

@@ -29,8 +29,19 @@ class BlockSlots {
   /// `kept`: whether the matrix has an entry for (row, column).
   void find(const Blocks& blocks, const SparseMatrix& pattern, const std::function<bool(int row, int column)>& kept);
 
-  /// Adds `weight` times each block of one visit to the values of the matrix. Valid as long as this object.
-  JacobianEntries::Add adder(double* values, double weight) const;
+  /// Adds `weight` times each block of one visit to the values of the matrix. Valid as long as the slots. Visits take a
+  /// reference to it: a copy in a std::function would allocate.
+  class Adder {
+   public:
+    Adder(const BlockSlots& slots, double* values, double weight)
+        : values_(values), weight_(weight), slot_(slots.slots_.data()) {}
+    void operator()(int i, int j, const Eigen::Matrix3d& block);
+
+   private:
+    double* values_;
+    double weight_;
+    const int* slot_;
+  };
 
  private:
   std::vector<int> slots_;  ///< nine a block, -1 for entries that are not kept

@@ -1,10 +1,10 @@
 #pragma once
 
 #include "reference/sundials/first_order.hpp"
-#include "reference/sundials/klu_factor.hpp"
 #include "reference/sundials/reduced_newton.hpp"
 #include "reference/sundials/session.hpp"
 #include "reference/trajectory.hpp"
+#include "solver/linear/klu_factor.hpp"
 
 namespace drape::reference::sundials_tools {
 
@@ -26,7 +26,7 @@ class FirstOrderNewton {
   const FirstOrderOde& ode_;
   Part part_;
   std::optional<ReducedNewton> reduced_;
-  std::optional<KluFactor> klu_;  ///< of all unknowns
+  std::optional<solver::KluFactor> klu_;  ///< of all unknowns
   WideSparseMatrix matrix_;
   double gamma_ = 0;
   std::int64_t& jacobians_;

@@ -5,10 +5,10 @@
 
 #include <cmath>
 
-#include "reference/sundials/klu_factor.hpp"
 #include "reference/sundials/reduced_newton.hpp"
 #include "reference/sundials/session.hpp"
 #include "reference/sundials/sparse_rows.hpp"
+#include "solver/linear/klu_factor.hpp"
 
 namespace drape::reference {
 namespace {
@@ -255,7 +255,7 @@ class Ida {
 
   ResidualForm& form_;
   std::optional<ReducedNewton> reduced_;
-  std::optional<KluFactor> klu_;
+  std::optional<solver::KluFactor> klu_;
   std::int64_t& jacobians_;
   double prepared_for_ = 1;
   Session session_;

@@ -57,7 +57,7 @@ solver::Point point(const Eigen::Ref<const Eigen::VectorXd>& u) {
   return p;
 }
 
-/// The points, the newest at time 0.
+/// The points, the newest at time 0, after a step of h even if it is the only one.
 solver::History history(const Lags& memory, const Eigen::VectorXd& u) {
   const auto lag = [&](Eigen::Index k) {
     solver::Point p = point(u.segment(k * memory.entries(), memory.entries()));
@@ -66,7 +66,7 @@ solver::History history(const Lags& memory, const Eigen::VectorXd& u) {
   };
   const int points = static_cast<int>(memory.states);
   solver::History all(points, points, lag(memory.states - 1));
-  for (Eigen::Index k = memory.states - 1; k-- > 0;) {
+  for (Eigen::Index k = memory.states; k-- > 0;) {
     solver::Point next = lag(k);
     all.push(next, h);
   }
@@ -75,7 +75,8 @@ solver::History history(const Lags& memory, const Eigen::VectorXd& u) {
 
 /// One step on the mode: the point at which it ends.
 solver::Point advance(const solver::Method& method, const solver::SplitOde& ode, const solver::Options& options,
-                      solver::StageSolver* stage, const Lags& memory, const Eigen::VectorXd& u) {
+                      solver::StageSolver* stage, solver::LinearisedSystem* linearised, const Lags& memory,
+                      const Eigen::VectorXd& u) {
   const solver::Vectors none = solver::Vectors::Zero(1, 3);
   std::int64_t substeps = 0, limits = 0;
   solver::History past = history(memory, u);
@@ -86,6 +87,7 @@ solver::Point advance(const solver::Method& method, const solver::SplitOde& ode,
   solver::Step step{.ode = ode,
                     .options = options,
                     .stage = stage,
+                    .linearised = linearised,
                     .history = past,
                     .next = next,
                     .scratch = scratch,
@@ -140,9 +142,11 @@ Eigen::MatrixXd amplification_matrix(const solver::Method& method, const Mode& m
   const solver::SplitOde ode = mode_ode(linear);
   const solver::Options options = exact_options();
   std::optional<solver::StageSolver> stage;
+  std::optional<solver::LinearisedSystem> linearised;
   if (method.implicit()) stage.emplace(ode, options);
+  if (method.stages == solver::Method::Stages::linearised) linearised.emplace(ode);
   const auto end = [&](const Lags& memory, const Eigen::VectorXd& u) {
-    return advance(method, ode, options, stage ? &*stage : nullptr, memory, u);
+    return advance(method, ode, options, stage ? &*stage : nullptr, linearised ? &*linearised : nullptr, memory, u);
   };
 
   Lags memory{method.history, 0};

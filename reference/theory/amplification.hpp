@@ -58,7 +58,7 @@ ModeBehaviour exact_behaviour(const Mode& mode);
 // --- In theory: those that take the name of a method throw std::invalid_argument if there is no theory of it
 // ------------------
 
-/// Whether there is one: for the methods of the thesis and `verlet`.
+/// Whether there is one: for the methods of the thesis, `verlet`, and the methods of linearised stages.
 bool has_theory(std::string_view method);
 
 /// Characteristic polynomial of the amplification matrix, coefficients from the constant to the leading one, which is 1.

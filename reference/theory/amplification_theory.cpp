@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <limits>
+#include <utility>
 
 #include "reference/theory/amplification.hpp"
 #include "solver/base/registry.hpp"
@@ -38,6 +40,40 @@ struct Theory {
 const Polynomial z{{0, 1, 0, 0, 0}};
 const Polynomial dz = z + -1, delta = 0.5 * (3 * z + -1) * dz;
 
+Polynomial implicit_euler(const Mode& m) { return dz * dz + m.s * z * dz + m.W * z * z; }
+Polynomial bdf2(const Mode& m) { return delta * delta + m.s * z * z * delta + m.W * z * z * z * z; }
+
+/// The two roots of μ² + s μ + W.
+std::pair<std::complex<double>, std::complex<double>> exponents(const Mode& m) {
+  const double square = m.s * m.s / 4 - m.W;
+  const std::complex<double> larger = -m.s / 2 - std::sqrt(std::complex<double>(square));
+  return {larger, square < 0 ? std::conj(larger) : m.W / larger};
+}
+
+/// The polynomial of a Rosenbrock method whose number of stages, order and γ determine R(μ): R(μ) (1 − γ μ)^stages is the series
+/// of e^μ (1 − γ μ)^stages up to the order   [Hairer, Wanner 1996, IV.7].
+Polynomial rosenbrock(const Mode& m, int stages, int order, double gamma) {
+  const auto R = [=](std::complex<double> mu) {
+    std::complex<double> numerator = 0;
+    double binomial = 1;  // of (−γ μ)^i
+    for (int i = 0; i <= stages; ++i) {
+      double factorial = 1;
+      for (int j = i; j <= order; ++j) {
+        numerator += binomial / factorial * std::pow(-gamma, i) * std::pow(mu, j);
+        factorial *= j + 1 - i;
+      }
+      binomial *= double(stages - i) / (i + 1);
+    }
+    return numerator / std::pow(1.0 - gamma * mu, stages);
+  };
+  const auto [mu1, mu2] = exponents(m);
+  return z * z + -(R(mu1) + R(mu2)).real() * z + (R(mu1) * R(mu2)).real();
+}
+
+double no_bound(double, double) { return infinity; }
+Artificial nothing_artificial(const Mode&) { return {0, 0}; }
+Artificial euler_artificial(const Mode& m) { return {m.s / 2, m.W}; }
+
 // With z = exp(μ), each polynomial divided by a power of z is (1 + inertia) μ² + (s + damping) μ + W up to relative O(μ²):
 // 1 − 1/z = μ − μ²/2 + …, δ/z² = μ − μ³/3 + …, and μ³ is reduced by the equation itself.
 const Theory theories[] = {
@@ -48,10 +84,7 @@ const Theory theories[] = {
        return Artificial{(m.nu + m.s) / 2, m.nu};
      }},
     {"implicit-euler", 1,  //
-     [](const Mode& m) { return dz * dz + m.s * z * dz + m.W * z * z; }, [](double, double) { return infinity; },
-     [](const Mode& m) {
-       return Artificial{m.s / 2, m.W};
-     }},
+     implicit_euler, no_bound, euler_artificial},
     {"sbdf2", 0,
      [](const Mode& m) { return delta * delta + m.s * z * z * delta + m.nu * z * z * dz * dz + m.W * z * z * (2 * z + -1); },
      [](double nu, double s) { return s > 0 ? not_known : std::min(nu * (nu + 2), (16 + 4 * nu) / 3); },
@@ -60,17 +93,10 @@ const Theory theories[] = {
        return Artificial{explicit_part + b * m.s, b * m.W};
      }},
     {"bdf2", 2.0 / 3,  //
-     [](const Mode& m) { return delta * delta + m.s * z * z * delta + m.W * z * z * z * z; },
-     [](double, double) { return infinity; },
-     [](const Mode&) {
-       return Artificial{0, 0};
-     }},
+     bdf2, no_bound, nothing_artificial},
     {"midpoint", 0.5,  //
-     [](const Mode& m) { return dz * dz + m.s / 2 * (z * z + -1) + m.W / 4 * (z + 1) * (z + 1); },
-     [](double, double) { return infinity; },
-     [](const Mode&) {
-       return Artificial{0, 0};
-     }},
+     [](const Mode& m) { return dz * dz + m.s / 2 * (z * z + -1) + m.W / 4 * (z + 1) * (z + 1); }, no_bound,
+     nothing_artificial},
     {"imex-midpoint", 0,
      [](const Mode& m) { return (1 + m.s / 2 + m.nu / 4) * z * z + -(2 + m.nu / 2 - m.W) * z + (1 - m.s / 2 + m.nu / 4); },
      [](double nu, double) { return 4 + nu; },
@@ -79,10 +105,13 @@ const Theory theories[] = {
      }},
     {"verlet", 0,  //
      [](const Mode& m) { return z * dz * dz + m.s * delta + m.W * z * z; },
-     [](double, double s) { return std::max(0.0, 4 - 4 * s); },
-     [](const Mode&) {
-       return Artificial{0, 0};
-     }},
+     [](double, double s) { return std::max(0.0, 4 - 4 * s); }, nothing_artificial},
+    {"baraff-witkin", 0, implicit_euler, no_bound, euler_artificial},
+    {"one-newton-bdf2", 0, bdf2, no_bound, nothing_artificial},
+    {"ros2", 0, [](const Mode& m) { return rosenbrock(m, 2, 2, 1 - std::sqrt(0.5)); }, no_bound, nothing_artificial},
+    {"ros3p", 0, [](const Mode& m) { return rosenbrock(m, 3, 3, 0.5 + std::sqrt(3) / 6); }, no_bound, nothing_artificial},
+    {"rodas3", 0, [](const Mode& m) { return rosenbrock(m, 4, 3, 0.5); }, no_bound, nothing_artificial},
+    {"ros34pw2", 0, [](const Mode& m) { return rosenbrock(m, 4, 3, 0.435866521508459); }, no_bound, nothing_artificial},
 };
 
 const Theory& theory(std::string_view method) { return base::find_named<Theory>(theories, "method with a theory", method); }

@@ -18,4 +18,14 @@ StageResult StageSolver::one_system(const Stage& stage, const Vectors& f_explici
   return {solved.outcome, 1, solved.iterations};
 }
 
+StageResult StageSolver::solve_increment(double gamma, const State& y, const State& r, State& k) {
+  const Outcome prepared = system_.prepare(gamma);
+  if (prepared != Outcome::success) return {prepared, 0, 0};
+  const LinearResult solved = system_.respond(r, options_.cg_tolerance, system_.noise(y, gamma));
+  k.v = system_.correction();
+  k.x = r.x + gamma * k.v;
+  ++work_.updates;
+  return {solved.outcome, 1, solved.iterations};
+}
+
 }  // namespace drape::solver

@@ -30,6 +30,10 @@ class StageSolver {
   /// The change of v [m/s], N × 3, that a change `r` of γ f would have made in the last linear stage; its linear system counts.
   const Vectors& respond(const Vectors& r, StageResult& result);
 
+  /// (1 − γ J) k = r with J the Jacobian of (v, M⁻¹ (K x + D v)): A k_v = M r_v + γ K r_x,   k_x = r_x + γ k_v; no contacts.
+  /// y: a state nearby, whose round-off is left.
+  StageResult solve_increment(double gamma, const State& y, const State& r, State& k);
+
  private:
   StageResult one_system(const Stage& stage, const Vectors& f_explicit, State& y);
 

@@ -149,11 +149,19 @@ bool StageSystem::adapt_contacts(const Stage& stage, const Vectors* f_explicit, 
   return changed;
 }
 
-LinearResult StageSystem::respond(const Vectors& r, double tolerance) {
+LinearResult StageSystem::respond(const Vectors& r, double tolerance, double noise) {
   r_ = r;
   filter(ode_.pins, r_);
   filtered()(r_);
-  return correct(tolerance * r_.norm());
+  return correct(std::max(tolerance * r_.norm(), noise));
+}
+
+LinearResult StageSystem::respond(const State& r, double tolerance, double noise) {
+  multiply(ode_.stiffness, r.x, q_);
+  ++work_.products;
+  work_.bytes += multiply_bytes(ode_.stiffness) + vector_bytes(A_.rows(), 4);
+  q_ = gamma_ * q_ + ode_.mass.asDiagonal() * r.v;
+  return respond(q_, tolerance, noise);
 }
 
 void StageSystem::filter_residual(double gamma) {

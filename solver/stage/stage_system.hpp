@@ -66,7 +66,10 @@ class StageSystem {
   }
 
   /// A d = r for another r, without its components along pins and constraints.
-  LinearResult respond(const Vectors& r, double tolerance);
+  LinearResult respond(const Vectors& r, double tolerance, double noise = 0);
+
+  /// A d = M r_v + γ K r_x for the A that was prepared last.
+  LinearResult respond(const State& r, double tolerance, double noise);
 
   bool touches() const { return contacts_ != nullptr && !contacts_->empty(); }
   const Vectors& residual() const { return r_; }

@@ -146,7 +146,7 @@ const std::vector<BadInput> bad_inputs = {
     {"ResumeWithoutOut", run_with() + Words{"--resume"}, {"--resume requires --out"}},
     {"ResumeWithFrames",
      run_with("--out", {"a.h5"}) + Words{"--resume", "--frames", "new"},
-     {"--frames", "expected no --resume"}},
+     {"--frames", "cannot be combined with --resume"}},
     {"TimeLimitZero", run_with("--time-limit", {"0"}), {"--time-limit", "above 0", "'0'"}},
     {"MemoryLimitNegative", run_with("--memory-limit", {"-1"}), {"--memory-limit", "above 0", "'-1'"}},
     {"LimitOfTables", {"study", "modes", "--quick", "--time-limit", "1"}, {"--time-limit", "hung-sheets", "not modes"}},

@@ -48,13 +48,14 @@ TEST_P(Rest, IsTheClosedFormSolution) {
 }
 
 TEST_P(Rest, NeedsNoWork) {
+  const int most_updates = method.name == "ros34pw2-w" ? 4 : 2;  // linear stages, which are solved at rest as well
   for (const double tolerance : {1e-6, 1e-12, 0.0}) {
     SCOPED_TRACE(tolerance);
     Integrator integrator(sheet.cloth.ode, method, tolerances(tolerance, tolerance), {sheet.rest, 0 * sheet.rest});
     for (int k = 0; k < 10; ++k) {
       const StageResult result = integrator.step(step);
       ASSERT_EQ(result.outcome, Outcome::success);
-      EXPECT_LE(result.updates, 2);
+      EXPECT_LE(result.updates, most_updates);
     }
     EXPECT_LE(sheet.distance(integrator.state()), 1e-12);
   }

@@ -113,13 +113,14 @@ TEST(Overview, ShowsTenOfWhatIsNotAsItWasWanted) {
 }
 
 TEST(Overview, ShowsWhatIsNotAsItWasWantedInAnyColumnOfATableForUsers) {
-  Table table{
-      "table",
-      "",
-      {column("method", "", Role::key, {"a", "b", "c"}), column("first", "", Role::verdict, {"met", "met", "missed: one"}),
-       column("second", "", Role::verdict, {"met", "missed: two", "met"}),
-       column("outcome", "", Role::outcome, {"unstable", "success", {}}),
-       column("class", "", Role::outcome, {"wrong", "wrong", "right"})}};
+  const Cell met = results::Verdict{results::Standing::met};
+  Table table{"table",
+              "",
+              {column("method", "", Role::key, {"a", "b", "c"}),
+               column("first", "", Role::verdict, {met, met, results::Verdict{results::Standing::missed, "one"}}),
+               column("second", "", Role::verdict, {met, results::Verdict{results::Standing::missed, "two"}, met}),
+               column("outcome", "", Role::outcome, {"unstable", "success", {}}),
+               column("class", "", Role::outcome, {"wrong", "wrong", "right"})}};
   table.columns.back().classes = {"right", "wrong"};
   EXPECT_EQ(shown(recording(table), "not-met"),
             "table,row,verdict\ntable,a,unstable\ntable,b,missed: two\ntable,c,missed: one\n");

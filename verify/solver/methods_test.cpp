@@ -243,6 +243,39 @@ TEST(Verlet, IsTheRecurrenceOfStoermerWithoutDamping) {
   }
 }
 
+/// Springs and dampers that belong to the explicit part, so that only the exact Jacobian knows them.
+SplitOde ode_with_an_explicit_part() {
+  SplitOde ode = linear_ode(0.5, true);
+  const SparseMatrix K = laplacian(&Spring::k), D = laplacian(&Spring::d);
+  const Pin pin{.particle = 2, .fixed = {true, false, true}, .velocity = {0.3, 0, -0.2}};
+  ode.pins = {pin};
+  ode.force = [K, D](double t, const Vectors& x, const Vectors& v, Vectors& f) {
+    f = K * x + D * v + std::sin(3 * t) * Vectors::Ones(particles, 3);
+  };
+  ode.explicit_force = [=, k = ode.stiffness, d = ode.damping](double t, const Vectors& x, const Vectors& v, Vectors& f) {
+    f = K * x + D * v + std::sin(3 * t) * Vectors::Ones(particles, 3) - k * x - d * v;
+  };
+  ode.jacobian = [K, D](double, const Vectors&, const Vectors&, SparseMatrix& df_dx, SparseMatrix& df_dv) {
+    df_dx = known_motions::threefold(K);
+    df_dv = known_motions::threefold(D);
+  };
+  return ode;
+}
+
+void expect_the_same(std::string_view one, std::string_view other, const SplitOde& ode) {
+  const auto a = run(ode, one, start, unequal_steps).states, b = run(ode, other, start, unequal_steps).states;
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    EXPECT_LE(largest(a[k].x - b[k].x), 1e-12) << one << ", step " << k;
+    EXPECT_LE(largest(a[k].v - b[k].v), 1e-12) << one << ", step " << k;
+  }
+}
+
+TEST(OneNewtonStep, SolvesStagesOfLinearForces) {
+  const SplitOde ode = ode_with_an_explicit_part();
+  expect_the_same("baraff-witkin", "implicit-euler", ode);
+  expect_the_same("one-newton-bdf2", "bdf2", ode);
+}
+
 TEST(Bdf2Coefficients, DifferentiateQuadraticsExactly) {
   for (const double w : {0.1, 0.37, 0.5, 1.0, 1.5, 2.0, 2.4}) {
     const auto [c1, c2, c3] = bdf2_coefficients(w);
@@ -258,6 +291,9 @@ Path fall(std::string_view method, double constant, double growing) {
   SplitOde ode = linear_ode(0, false);
   ode.explicit_force = ode.force = [=](double t, const Vectors&, const Vectors&, Vectors& f) {
     f = (constant + growing * t) * masses().replicate<1, 3>();
+  };
+  ode.jacobian = [](double, const Vectors&, const Vectors&, SparseMatrix& df_dx, SparseMatrix& df_dv) {
+    df_dx = df_dv = SparseMatrix(3 * particles, 3 * particles);
   };
   return run(ode, method, start, unequal_steps);
 }

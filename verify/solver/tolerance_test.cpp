@@ -106,7 +106,7 @@ TEST_P(ToleranceOf, IsThatOfTheError) {
     EXPECT_LE(ratio, 10) << tolerance;
     const bool largest_steps = ours.result.steps <= 20;  // they are accurate enough
     if (!largest_steps && ours.result.message.empty()) {
-      EXPECT_GE(ratio, 0.1) << tolerance;
+      EXPECT_GE(ratio, method.name == "ros34pw2" ? 0.08 : 0.1) << tolerance;  // its estimate is of an order less
     }
   }
 }

@@ -1,4 +1,4 @@
-#include "reference/sundials/klu_factor.hpp"
+#include "solver/linear/klu_factor.hpp"
 
 #include <klu.h>
 
@@ -6,13 +6,20 @@
 #include <cmath>
 #include <limits>
 #include <new>
+#include <utility>
 
-namespace drape::reference {
+namespace drape::solver {
+namespace {
+
+/// Rows with the 64 bit indices of KLU's long interface.
+using LongSparseMatrix = Eigen::SparseMatrix<double, Eigen::RowMajor, std::int64_t>;
+
+}  // namespace
 
 /// KLU is given the transpose: our rows are its columns.
 class KluFactor::Factors {
  public:
-  explicit Factors(const WideSparseMatrix& A) : A_(A) {
+  explicit Factors(LongSparseMatrix A) : A_(std::move(A)) {
     klu_l_defaults(&common_);
     symbolic_ = klu_l_analyze(A_.rows(), A_.outerIndexPtr(), A_.innerIndexPtr(), &common_);
     if (symbolic_ == nullptr) throw std::bad_alloc();
@@ -24,7 +31,8 @@ class KluFactor::Factors {
   Factors(const Factors&) = delete;
   Factors& operator=(const Factors&) = delete;
 
-  bool have_pattern_of(const WideSparseMatrix& A) const {
+  template <class Matrix>
+  bool have_pattern_of(const Matrix& A) const {
     const auto n = A.rows(), entries = A.nonZeros();
     return A_.rows() == n && A_.nonZeros() == entries &&
            std::equal(A.outerIndexPtr(), A.outerIndexPtr() + n + 1, A_.outerIndexPtr()) &&
@@ -32,15 +40,17 @@ class KluFactor::Factors {
   }
 
   /// Factors with the last pivots if these are still good.
-  bool renew(const WideSparseMatrix& A) {
-    std::copy_n(A.valuePtr(), A.nonZeros(), A_.valuePtr());
+  bool renew(const double* values) {
+    std::copy_n(values, A_.nonZeros(), A_.valuePtr());
     if (numeric_ != nullptr && refactored()) return true;
     klu_l_free_numeric(&numeric_, &common_);
     numeric_ = klu_l_factor(A_.outerIndexPtr(), A_.innerIndexPtr(), A_.valuePtr(), symbolic_, &common_);
     return numeric_ != nullptr;
   }
 
-  void solve(Eigen::VectorXd& b) { klu_l_tsolve(symbolic_, numeric_, b.size(), 1, b.data(), &common_); }
+  void solve(double* b, Eigen::Index size) { klu_l_tsolve(symbolic_, numeric_, size, 1, b, &common_); }
+
+  std::int64_t bytes() const { return (numeric_->lnz + numeric_->unz) * (sizeof(double) + sizeof(std::int64_t)); }
 
  private:
   bool refactored() {
@@ -49,7 +59,7 @@ class KluFactor::Factors {
            klu_l_rcond(symbolic_, numeric_, &common_) != 0 && common_.rcond > singular;
   }
 
-  WideSparseMatrix A_;
+  LongSparseMatrix A_;
   klu_l_common common_{};
   klu_l_symbolic* symbolic_ = nullptr;
   klu_l_numeric* numeric_ = nullptr;
@@ -58,14 +68,19 @@ class KluFactor::Factors {
 KluFactor::KluFactor(std::int64_t& analyses) : analyses_(analyses) {}
 KluFactor::~KluFactor() = default;
 
-bool KluFactor::factor(const WideSparseMatrix& A) {
+template <class Index>
+bool KluFactor::factor(const Eigen::SparseMatrix<double, Eigen::RowMajor, Index>& A) {
   if (!factors_ || !factors_->have_pattern_of(A)) {
     factors_ = std::make_unique<Factors>(A);
     ++analyses_;
   }
-  return factors_->renew(A);
+  return factors_->renew(A.valuePtr());
 }
+template bool KluFactor::factor(const SparseMatrix& A);
+template bool KluFactor::factor(const LongSparseMatrix& A);
 
-void KluFactor::solve(Eigen::VectorXd& b) { factors_->solve(b); }
+void KluFactor::solve(double* b, Eigen::Index size) { factors_->solve(b, size); }
 
-}  // namespace drape::reference
+std::int64_t KluFactor::bytes() const { return factors_->bytes(); }
+
+}  // namespace drape::solver
