@@ -1,8 +1,6 @@
 #include "solver/methods.hpp"
 
 #include <algorithm>
-#include <iterator>
-#include <vector>
 
 #include "solver/base/registry.hpp"
 
