@@ -26,10 +26,10 @@ struct StepError {
   double split_gamma = 0;  ///< makes it one in x [s]
 };
 
-/// What `verlet` needs, and keeps from step to step.
+/// What methods need, and keep from step to step, that divide their steps or choose their stages by a stability limit.
 struct SubStepping {
   ImpactResponse* impacts = nullptr;  ///< null if there are no obstacles
-  double limit = 0;                   ///< largest stable sub-step [s], 0 until it is known
+  double limit = 0;                   ///< largest stable sub-step, or 1 over the largest decay [s]; 0 until it is known
   LimitWatch limit_watch = {};        ///< tells when it has to be estimated anew, as does
   StretchWatch stretch_watch = {};
   std::int64_t &substeps, &limits;  ///< work counters

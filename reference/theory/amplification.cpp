@@ -81,7 +81,7 @@ solver::Point advance(const solver::Method& method, const solver::SplitOde& ode,
   solver::History past = history(memory, u);
   solver::Point next = point(Eigen::VectorXd::Zero(2));
   solver::Scratch scratch{none, none, none, {}};
-  solver::SubStepping sub_stepping{.limit = h, .substeps = substeps, .limits = limits};
+  solver::SubStepping sub_stepping{.limit = method.sub_steps ? h : 0, .substeps = substeps, .limits = limits};
   solver::Step step{.ode = ode,
                     .options = options,
                     .stage = stage,

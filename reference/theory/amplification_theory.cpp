@@ -4,6 +4,7 @@
 
 #include "reference/theory/amplification.hpp"
 #include "solver/base/registry.hpp"
+#include "solver/stability.hpp"
 
 namespace drape::reference {
 namespace {
@@ -37,6 +38,56 @@ struct Theory {
 
 const Polynomial z{{0, 1, 0, 0, 0}};
 const Polynomial dz = z + -1, delta = 0.5 * (3 * z + -1) * dz;
+
+/// z² − tr R z + det R: a Runge-Kutta method multiplies (x, h v) by its stability function R of this matrix.
+Eigen::Matrix2d exponent(const Mode& m) { return Eigen::Matrix2d{{0, 1}, {-m.W, -m.s}}; }
+Polynomial of_runge_kutta(const Eigen::Matrix2d& R) { return z * z + -R.trace() * z + R.determinant(); }
+
+/// 1 + Z + Z²/2 + … up to the power of the order.
+template <int order>
+Polynomial truncated_exponential(const Mode& m) {
+  Eigen::Matrix2d R = Eigen::Matrix2d::Identity();
+  for (int k = order; k > 0; --k) R = Eigen::Matrix2d::Identity() + exponent(m) * R / k;
+  return of_runge_kutta(R);
+}
+
+double with_safety(const Mode& m) { return solver::spectrum_safety * std::max(m.s, m.stiffest_s); }
+
+/// 1 − b + b P_s(1 + 4 Z/(s² + s − 2)), Legendre's P_s by (k + 1) P_{k+1} = (2 k + 1) X P_k − k P_{k−1}.
+Polynomial legendre(const Mode& m) {
+  const double s = solver::rkl2_stages(with_safety(m)), d = s * s + s - 2, b = d / (2 * s * (s + 1));
+  const Eigen::Matrix2d I = Eigen::Matrix2d::Identity(), X = I + 4 / d * exponent(m);
+  Eigen::Matrix2d before = I, P = X;
+  for (double k = 1; k < s; ++k) {
+    const Eigen::Matrix2d next = ((2 * k + 1) * X * P - k * before) / (k + 1);
+    before = P;
+    P = next;
+  }
+  return of_runge_kutta((1 - b) * I + b * P);
+}
+
+/// 1 − b T_s(w0) + b T_s(w0 + w1 Z), Chebyshev's T_s(cosh θ) = cosh s θ with its derivatives.
+Polynomial chebyshev(const Mode& m) {
+  const double s = solver::rkc2_stages(with_safety(m)), w0 = 1 + solver::rkc2_damping / (s * s);
+  const double theta = std::acosh(w0), sinh = std::sinh(theta), T = std::cosh(s * theta), dT = s * std::sinh(s * theta) / sinh;
+  const double ddT = (s * s * T - w0 * dT) / (sinh * sinh), b = ddT / (dT * dT);
+  const Eigen::Matrix2d I = Eigen::Matrix2d::Identity(), X = w0 * I + dT / ddT * exponent(m);
+  Eigen::Matrix2d before = I, P = X;
+  for (double k = 1; k < s; ++k) {
+    const Eigen::Matrix2d next = 2 * X * P - before;
+    before = P;
+    P = next;
+  }
+  return of_runge_kutta((1 - b * T) * I + b * P);
+}
+
+/// Methods that make undamped motion grow: with damping the limit is not known.
+double none_if_undamped(double, double s) { return s > 0 ? not_known : 0; }
+
+/// 2√2 squared.
+double rk4_bound(double, double s) { return s > 0 ? not_known : 8; }
+
+Artificial nothing(const Mode&) { return {0, 0}; }
 
 // With z = exp(μ), each polynomial divided by a power of z is (1 + inertia) μ² + (s + damping) μ + W up to relative O(μ²):
 // 1 − 1/z = μ − μ²/2 + …, δ/z² = μ − μ³/3 + …, and μ³ is reduced by the equation itself.
@@ -83,6 +134,18 @@ const Theory theories[] = {
      [](const Mode&) {
        return Artificial{0, 0};
      }},
+    {"explicit-euler", 0, truncated_exponential<1>, [](double, double s) { return s <= 2 ? s : not_known; },
+     [](const Mode& m) {
+       return Artificial{-m.s / 2, -m.W};
+     }},
+    {"explicit-midpoint", 0, truncated_exponential<2>,
+     [](double, double s) { return s <= 2 ? s + std::sqrt(s * (4 - s)) : not_known; }, nothing},
+    {"rk4", 0, truncated_exponential<4>, rk4_bound, nothing},
+    {"rk4-substeps", 0, truncated_exponential<4>, rk4_bound, nothing},
+    {"bridson", 0,  //
+     [](const Mode& m) { return dz * dz + m.s / 2 * (z * z + -1) + m.W * z; }, [](double, double) { return 4.0; }, nothing},
+    {"rkl2", 0, legendre, none_if_undamped, nothing},
+    {"rkc2", 0, chebyshev, none_if_undamped, nothing},
 };
 
 const Theory& theory(std::string_view method) { return base::find_named<Theory>(theories, "method with a theory", method); }

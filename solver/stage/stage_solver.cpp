@@ -19,6 +19,14 @@ StageResult StageSolver::solve(const Stage& stage, State& y) {
   return accelerates() ? accelerated_->solve(stage, y) : fixed_point(stage, nullptr, y);
 }
 
+const Vectors& StageSolver::solve_damping(double gamma, const Vectors& r, StageResult& result) {
+  result.outcome = system_.prepare_damping(gamma);
+  if (result.outcome != Outcome::success) return system_.correction();
+  ++work_.updates;
+  ++result.updates;
+  return respond(r, result);
+}
+
 const Vectors& StageSolver::respond(const Vectors& r, StageResult& result) {
   const LinearResult system = system_.respond(r, options_.cg_tolerance);
   result.outcome = system.outcome;

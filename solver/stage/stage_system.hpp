@@ -28,6 +28,9 @@ class StageSystem {
   /// Makes A for this γ, unless the one there is is for a γ that differs by less than this part.
   Outcome prepare(double gamma, double different = 1e-12);
 
+  /// Makes M − γ D instead of A, as `correct` and `respond` use it then: for methods whose springs are explicit.
+  Outcome prepare_damping(double gamma);
+
   /// The γ [s] that A is for.
   double gamma() const { return gamma_; }
 
@@ -77,6 +80,7 @@ class StageSystem {
   struct Merged;
   StageSystem(const SplitOde& ode, const Merged& merged, const Options& options, ContactResponse* contacts);
 
+  Outcome make(double gamma, double springs);
   const Filter& filtered() const { return touches() ? contacts_->filter() : pinned_; }
 
   const SplitOde& ode_;
