@@ -8,24 +8,17 @@
 #include "model/jacobian/exact.hpp"
 #include "model/jacobian/newton.hpp"
 #include "model/obstacles/reaction.hpp"
+#include "model/sheet/edges.hpp"
 #include "model/sheet/normals.hpp"
 
 namespace drape::model {
 namespace {
 
-/// A term with the counter of its evaluations.
 struct CountedTerm {
   Term term;
+  bool in_explicit_force;  ///< whether K x + D v is not all of it
   std::int64_t* evaluations;
 };
-
-/// A part of all forces.
-struct Part {
-  GridLaw Term::*law;
-  std::function<void(const Configuration&, Vectors& f)> Term::*force;
-};
-constexpr Part whole_part{&Term::law, &Term::force}, explicit_part{&Term::explicit_law, &Term::explicit_force},
-    active_part{&Term::active_law, &Term::active_force};
 
 /// The forces of one compiled scene with the memory they need.
 class Forces {
@@ -36,24 +29,30 @@ class Forces {
   void force(double t, const Vectors& x, const Vectors& v, Vectors& f, bool whole);
 
   /// For the energy guard, whose evaluations do not count as work of a method: sets f, uncounted.
-  void whole(double t, const Vectors& x, const Vectors& v, Vectors& f) { add_up(whole_part, {t, x, v, normals_of(x)}, f); }
-  void active(double t, const Vectors& x, const Vectors& v, Vectors& f) { add_up(active_part, {t, x, v, normals_of(x)}, f); }
+  void whole(double t, const Vectors& x, const Vectors& v, Vectors& f) { add_up(whole_law_, {t, x, v, normals_of(x)}, f); }
+  void active(double t, const Vectors& x, const Vectors& v, Vectors& f) {
+    add_up(active_law_, {t, x, v, normals_of(x)}, f, &Term::active);
+  }
   bool has_active() const;
 
   double energy(const Vectors& x) const;
   void jacobian(double t, const Vectors& x, const Vectors& v, ExactJacobian& matrix, SparseMatrix& df_dx, SparseMatrix& df_dv);
   void newton_matrix(double t, const Vectors& x, const Vectors& v, double gamma, NewtonMatrix& matrix, SparseMatrix& J);
-  SparseMatrix scalar_matrix(std::function<void(std::vector<Eigen::Triplet<double>>&)> Term::*part) const;
+
+  SparseMatrix stiffness() const { return edge_matrix(law_.edge.spring); }
+  SparseMatrix damping() const { return edge_matrix(law_.edge.drag); }
 
  private:
   const Vectors& normals_of(const Vectors& x);
   Configuration configuration(double t, const Vectors& x, const Vectors& v);
-  void add_up(const Part& part, const Configuration& c, Vectors& f);
+  SparseMatrix edge_matrix(const WeftWarp& modulus) const;
+  void add_up(const std::unique_ptr<FusedForces>& law, const Configuration& c, Vectors& f, bool Term::*which = nullptr) const;
   void visit(const Configuration& c, const JacobianEntries& entries) const;
 
-  int particles_;
+  Grid grid_;
+  GridLaw law_;
   std::vector<CountedTerm> terms_;
-  std::unique_ptr<GridSweep> whole_law_, explicit_law_, active_law_;  ///< null if the law is zero
+  std::unique_ptr<FusedForces> whole_law_, explicit_law_, active_law_;  ///< null if the law is zero
   Vectors normals_;
   Normals vertex_normals_;
   bool needs_normals_ = false;
@@ -61,14 +60,14 @@ class Forces {
 };
 
 Forces::Forces(const Sheet& sheet, solver::Counters& work, Plan& plan)
-    : particles_(sheet.grid.particles()),
+    : grid_(sheet.grid),
       vertex_normals_(sheet.grid),
       forces_(work.counter("forces", "evaluations of the whole force")),
       explicit_forces_(work.counter("explicit_forces", "evaluations of the explicit part of the force")),
       jacobians_(work.counter("jacobians", "evaluations of the exact Jacobian")),
       newton_matrices_(work.counter("newton_matrices", "assemblies of the Newton matrix from the exact Jacobian")),
       normal_evaluations_(work.counter("normals", "evaluations of all vertex normals")) {
-  GridLaw whole, rest, active;
+  GridLaw active;
   for (const TermKind& kind : term_kinds()) {
     const std::string name(kind.name);
     std::int64_t& evaluations = work.counter("force/" + name, "evaluations of: " + std::string(kind.description));
@@ -76,15 +75,16 @@ Forces::Forces(const Sheet& sheet, solver::Counters& work, Plan& plan)
     if (!term) continue;
     plan.terms.push_back(name);
     needs_normals_ = needs_normals_ || term->needs_normals;
-    whole += term->law;
-    rest += term->explicit_law;
+    law_ += term->law;
     active += term->active_law;
-    terms_.push_back({std::move(*term), &evaluations});
+    const bool in_explicit_force = term->force || term->law.explicit_part().acts();
+    terms_.push_back({std::move(*term), in_explicit_force, &evaluations});
   }
-  if (whole.acts()) whole_law_ = std::make_unique<GridSweep>(sheet.grid, whole);
-  if (rest.acts()) explicit_law_ = std::make_unique<GridSweep>(sheet.grid, rest);
-  if (active.acts()) active_law_ = std::make_unique<GridSweep>(sheet.grid, active);
-  if (needs_normals_) normals_.resize(particles_, 3);
+  const auto fused = [&](const GridLaw& law) { return law.acts() ? std::make_unique<FusedForces>(grid_, law) : nullptr; };
+  whole_law_ = fused(law_);
+  explicit_law_ = fused(law_.explicit_part());
+  active_law_ = fused(active);
+  if (needs_normals_) normals_.resize(grid_.particles(), 3);
   plan.normals = needs_normals_;
 }
 
@@ -98,33 +98,31 @@ Configuration Forces::configuration(double t, const Vectors& x, const Vectors& v
   return {t, x, v, normals_of(x)};
 }
 
-void Forces::add_up(const Part& part, const Configuration& c, Vectors& f) {
-  f.resize(particles_, 3);
-  const auto& sweep = part.law == whole_part.law ? whole_law_ : part.law == explicit_part.law ? explicit_law_ : active_law_;
-  if (sweep)
-    (*sweep)(c.x, c.v, f);
+/// Sets f to the law's forces and the terms' own, of all terms or of those with `which`.
+void Forces::add_up(const std::unique_ptr<FusedForces>& law, const Configuration& c, Vectors& f, bool Term::*which) const {
+  f.resize(grid_.particles(), 3);
+  if (law)
+    (*law)(c.x, c.v, f);
   else
     f.setZero();
-  for (const auto& [term, evaluations] : terms_)
-    if (const auto& add = term.*part.force) add(c, f);
+  for (const CountedTerm& counted : terms_)
+    if (counted.term.force && (which == nullptr || counted.term.*which)) counted.term.force(c, f);
 }
 
 void Forces::force(double t, const Vectors& x, const Vectors& v, Vectors& f, bool whole) {
   ++(whole ? forces_ : explicit_forces_);
-  const Part& part = whole ? whole_part : explicit_part;
-  add_up(part, configuration(t, x, v), f);
-  for (const auto& [term, evaluations] : terms_)
-    if (term.*part.force || (term.*part.law).acts()) ++*evaluations;
+  add_up(whole ? whole_law_ : explicit_law_, configuration(t, x, v), f);
+  for (const CountedTerm& counted : terms_) *counted.evaluations += whole || counted.in_explicit_force ? 1 : 0;
 }
 
 bool Forces::has_active() const {
-  return active_law_ || std::ranges::any_of(terms_, [](const CountedTerm& counted) { return bool(counted.term.active_force); });
+  return active_law_ || std::ranges::any_of(terms_, [](const CountedTerm& counted) { return counted.term.active; });
 }
 
 double Forces::energy(const Vectors& x) const {
   double energy = 0;
-  for (const auto& [term, evaluations] : terms_)
-    if (term.energy) energy += term.energy(x);
+  for (const CountedTerm& counted : terms_)
+    if (counted.term.energy) energy += counted.term.energy(x);
   return energy;
 }
 
@@ -136,8 +134,8 @@ void Forces::jacobian(double t, const Vectors& x, const Vectors& v, ExactJacobia
 }
 
 void Forces::visit(const Configuration& c, const JacobianEntries& entries) const {
-  for (const auto& [term, evaluations] : terms_)
-    if (term.jacobian) term.jacobian(c, entries);
+  for (const CountedTerm& counted : terms_)
+    if (counted.term.jacobian) counted.term.jacobian(c, entries);
 }
 
 void Forces::newton_matrix(double t, const Vectors& x, const Vectors& v, double gamma, NewtonMatrix& matrix, SparseMatrix& J) {
@@ -146,13 +144,8 @@ void Forces::newton_matrix(double t, const Vectors& x, const Vectors& v, double 
   matrix.assemble([&](const JacobianEntries& entries) { visit(c, entries); }, gamma, J);
 }
 
-SparseMatrix Forces::scalar_matrix(std::function<void(std::vector<Eigen::Triplet<double>>&)> Term::*part) const {
-  std::vector<Eigen::Triplet<double>> entries;
-  for (const auto& [term, evaluations] : terms_)
-    if (term.*part) (term.*part)(entries);
-  SparseMatrix matrix(particles_, particles_);
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  return matrix;
+SparseMatrix Forces::edge_matrix(const WeftWarp& modulus) const {
+  return spring_matrix(grid_, [&](const Edge& edge) { return along(modulus, edge) * edge.width / edge.length; });
 }
 
 Eigen::VectorXd masses(const Sheet& sheet) {
@@ -235,8 +228,8 @@ Cloth compile(const Scene& scene) {
   const auto forces = std::make_shared<Forces>(scene.sheet, *ode.work, cloth.plan);
   ode.mass = masses(scene.sheet);
   ode.pins = pins(scene);
-  ode.stiffness = forces->scalar_matrix(&Term::stiffness);
-  ode.damping = forces->scalar_matrix(&Term::damping);
+  ode.stiffness = forces->stiffness();
+  ode.damping = forces->damping();
   ode.force = [forces](double t, const Vectors& x, const Vectors& v, Vectors& f) { forces->force(t, x, v, f, true); };
   ode.explicit_force = [forces](double t, const Vectors& x, const Vectors& v, Vectors& f) { forces->force(t, x, v, f, false); };
   ode.potential_energy = [forces](double, const Vectors& x) { return forces->energy(x); };

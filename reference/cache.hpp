@@ -14,7 +14,7 @@ std::filesystem::path default_cache_folder();
 
 /// References on disk, one file for each key.
 ///
-/// To the caller's key text is added all that he cannot know: the source code of solver/, model/ and reference/, the
+/// To the caller's key text is added what the caller does not have: the source code of solver/, model/ and reference/, the
 /// compiler and its flags, and the versions of the libraries. A file holds the complete text, compared on reading, and a
 /// checksum; a file that fails either test, or the caller's own, counts as absent. Files are never removed, except what killed
 /// processes left unfinished: the folder may be deleted at any time. Nothing about the disk stops a run: what cannot be read is
@@ -23,7 +23,7 @@ class Cache {
  public:
   explicit Cache(std::filesystem::path folder = default_cache_folder());
 
-  /// Throws DamagedFile if a reference cannot be what the caller is looking for.
+  /// Throws DamagedFile if a reference does not match the request.
   using Check = std::function<void(const Reference&)>;
 
   /// A file whose content `check` objects to counts as damaged.

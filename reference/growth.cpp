@@ -16,9 +16,9 @@ using solver::SplitOde;
 using solver::State;
 using solver::Vectors;
 
-constexpr double perturbation = 1e-7;  ///< of the size of the scene
-constexpr double base_rtol = 1e-5;     ///< of the trajectory about which is linearised
-constexpr int fewest_steps = 30;       ///< of the linearised motion: they have to resolve what grows, not what oscillates
+constexpr double perturbation = 1e-7;  ///< relative to the size of the scene
+constexpr double base_rtol = 1e-5;     ///< rtol of the trajectory about which is linearised
+constexpr int fewest_steps = 30;       ///< of the linearised motion: enough to resolve growth, not oscillations
 constexpr int most_steps = 240;
 constexpr double alike = 1.5;       ///< factor between what steps and half of them predict, if they are short enough
 constexpr double worthwhile = 1.1;  ///< factor by which a round of the power method has to gain
@@ -28,7 +28,7 @@ double rms(const Vectors& field) { return field.norm() / std::sqrt(static_cast<d
 State scaled(const State& y, double factor) { return {factor * y.x, factor * y.v}; }
 State sum(const State& a, const State& b) { return {a.x + b.x, a.v + b.v}; }
 
-/// Of size 1, unless it is nothing.
+/// Scales it to size 1 unless it is 0.
 State unit(const State& y, double duration) {
   const double size = perturbation_size(y, duration);
   return size > 0 ? scaled(y, 1 / size) : y;
@@ -61,7 +61,7 @@ struct Counted {
   double h;
 };
 
-/// Of the positions at the ends of all steps those that count; the others are 0.
+/// The positions that count, with those at other steps' ends set to 0.
 std::vector<Vectors> kept(std::vector<Vectors> positions, const Counted& counted) {
   std::vector<bool> counts(positions.size(), false);
   for (const double t : counted.times)
@@ -116,7 +116,7 @@ State fastest_growing(const SplitOde& ode, const State& y0, double t0, std::span
       motion = std::move(finer);
     }
   } catch (const LinearMotion::NotSolved&) {
-    // what was found so far is measured as well
+    // the intermediate result is measured as well
   }
   return direction;
 }

@@ -9,7 +9,7 @@ namespace drape::reference {
 /// How a small perturbation of the start grows.
 struct Growth {
   std::vector<double> factors;  ///< at each time: of its positions (rms), over its size at the start
-  Trajectory perturbed;         ///< what the perturbed start led to
+  Trajectory perturbed;         ///< from the perturbed start
 };
 
 /// Size [m] of a perturbation: √(|x|² + |duration v|²), root mean squares over the particles.

@@ -12,7 +12,7 @@ using solver::SplitOde;
 using solver::State;
 using solver::Vectors;
 
-/// A vector field as the Jacobians see it, 3N.
+/// A vector field as one vector, as for the Jacobians: 3N.
 auto flat(const Vectors& field) { return Eigen::VectorXd::Map(field.data(), field.size()); }
 
 Eigen::VectorXd product(const SparseMatrix& matrix, const Vectors& field, bool transposed) {

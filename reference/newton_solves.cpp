@@ -7,11 +7,16 @@ namespace drape::reference {
 std::span<const NewtonSolve> newton_solves() {
   using Matrix = NewtonSolve::Matrix;
   static constexpr NewtonSolve table[] = {
-      {"klu", "KLU on positions and velocities, together", Matrix::klu},
-      {"newton", "CHOLMOD on the velocities, with the convex part of the Jacobian", Matrix::newton},
-      {"constant", "CHOLMOD on the velocities, with the constant matrix", Matrix::constant},
-      {"newton-gmres", "GMRES preconditioned by the former", Matrix::newton, true},
-      {"constant-gmres", "GMRES preconditioned by the constant matrix", Matrix::constant, true},
+      {.name = "klu", .description = "KLU on positions and velocities, together", .matrix = Matrix::klu},
+      {.name = "newton",
+       .description = "CHOLMOD on the velocities, with the convex part of the Jacobian",
+       .matrix = Matrix::newton},
+      {.name = "constant", .description = "CHOLMOD on the velocities, with the constant matrix", .matrix = Matrix::constant},
+      {.name = "newton-gmres", .description = "GMRES preconditioned by the former", .matrix = Matrix::newton, .gmres = true},
+      {.name = "constant-gmres",
+       .description = "GMRES preconditioned by the constant matrix",
+       .matrix = Matrix::constant,
+       .gmres = true},
   };
   return table;
 }

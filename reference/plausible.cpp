@@ -76,7 +76,7 @@ Trajectory loose_run(const SplitOde& ode, const State& y0, double t0, std::span<
       run.times.push_back(t);
       run.states.push_back(integrator.state());
     }
-  } catch (const Enough&) {  // what there is will do
+  } catch (const Enough&) {  // there are enough times
   }
   return run;
 }

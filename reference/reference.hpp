@@ -7,14 +7,14 @@ namespace drape::reference {
 
 /// A trajectory to measure others by, with its own uncertainty and the conditioning of the problem.
 struct Reference {
-  std::string name;            ///< of the family that computed the trajectory, for example "cvode-bdf"
-  std::string witness;         ///< of the family that it was compared with
+  std::string name;            ///< the peer solver that computed the trajectory, for example "cvode-bdf"
+  std::string witness;         ///< the peer solver that it was compared with
   double tolerance = 0;        ///< relative tolerance of the trajectory; with contact the step of both [s]
   std::vector<double> error;   ///< [m], uncertainty at each time, in the measure of rms_distance
   std::vector<double> growth;  ///< of a small perturbation of the start, at each time, over its size at the start
   Trajectory trajectory;
-  Trajectory witnessed;  ///< what the witness computed
-  Trajectory perturbed;  ///< what the perturbed start led to
+  Trajectory witnessed;  ///< trajectory of the witness
+  Trajectory perturbed;  ///< trajectory from the perturbed start
 };
 
 /// An equation of motion for each of two threads. If they are one and the same, its solutions are computed one after the other;

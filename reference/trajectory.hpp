@@ -11,7 +11,7 @@
 
 namespace drape::reference {
 
-/// What users of SUNDIALS set beside the tolerance when they know their problem; 0: as the package has it.
+/// Settings of SUNDIALS beside the tolerance, for users who know their problem; 0: the package's default.
 struct Tuning {
   double velocity_weight = 1;        ///< times which the absolute tolerance of velocities is looser than SolveOptions says
   double kept_factor = 1e-12;        ///< the constant matrix is factored again if γ has changed by more than this part

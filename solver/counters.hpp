@@ -7,8 +7,8 @@
 
 namespace drape::solver {
 
-/// Counts what a run did, one counter per kind of work. Every kind that could occur is registered with 0 before the run, so
-/// that "skipped" is a recorded number. Counters are exact and repeatable where times are not.
+/// Counts the work of a run, one counter per kind. Every kind that could occur is registered with 0 before the run, so that
+/// work that was not needed is recorded as 0. Counters are exact and repeatable where times are not.
 class Counters {
  public:
   struct Kind {

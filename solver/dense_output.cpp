@@ -12,7 +12,7 @@ State state_within(double t, double t0, const State& y0, double t1, const State&
 
 DenseOutput::DenseOutput(std::span<const double> times, double t0, State y0) : times_(times), t_(t0), before_(std::move(y0)) {}
 
-void DenseOutput::see(double t, const State& y) {
+void DenseOutput::observe(double t, const State& y) {
   const double same = 1e-9 * (t - t_);  // round-off, not intention
   while (states.size() < times_.size() && times_[states.size()] <= t + same) {
     const double at = times_[states.size()];
@@ -22,7 +22,7 @@ void DenseOutput::see(double t, const State& y) {
   before_ = y;
 }
 
-void SmoothOutput::see(double t, const State& y) {
+void SmoothOutput::observe(double t, const State& y) {
   const double same = 1e-9 * (t - last_.back().t);
   if (last_.size() == 3) last_.erase(last_.begin());
   last_.push_back({t, y});
@@ -30,7 +30,7 @@ void SmoothOutput::see(double t, const State& y) {
     positions.push_back(positions_at(times_[positions.size()]));
 }
 
-/// By divided differences, every end being a double node   [Hairer, Nørsett, Wanner 1993, II.1]
+/// Divided differences; every end is a double node   [Hairer, Nørsett, Wanner 1993, II.1]
 Vectors SmoothOutput::positions_at(double t) const {
   const auto node = [&](std::size_t k) { return last_[k / 2].t; };
   std::vector<Vectors> divided;

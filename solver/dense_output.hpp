@@ -12,16 +12,16 @@ namespace drape::solver {
 /// 1993, II.6].
 State state_within(double t, double t0, const State& y0, double t1, const State& y1);
 
-/// Takes the states at given times out of a run, whatever its steps.
+/// Interpolates the states of a run at given times, whatever its steps.
 class DenseOutput {
  public:
   /// `times` [s]: ascending, none before t0; they must outlive this object.
   DenseOutput(std::span<const double> times, double t0, State y0);
 
-  /// The end of the next step.
-  void see(double t, const State& y);
+  /// Adds the end of the next step.
+  void observe(double t, const State& y);
 
-  /// At all times that were reached.
+  /// States at all times that were reached.
   std::vector<State> states;
 
  private:
@@ -31,16 +31,16 @@ class DenseOutput {
 };
 
 /// Positions at given times of a run that meets no obstacle: the quintic with the positions and velocities of three steps'
-/// ends, so that a run of high order loses nothing by it. Its largest error is O(h⁶), in the first step O(h⁴).
+/// ends, which preserves the accuracy of methods of high order. Its largest error is O(h⁶), in the first step O(h⁴).
 class SmoothOutput {
  public:
   /// `times` [s]: ascending, none before t0; they must outlive this object.
   SmoothOutput(std::span<const double> times, double t0, const State& y0) : times_(times), last_{{t0, y0}} {}
 
-  /// The end of the next step.
-  void see(double t, const State& y);
+  /// Adds the end of the next step.
+  void observe(double t, const State& y);
 
-  /// At all times that were reached.
+  /// Positions at all times that were reached.
   std::vector<Vectors> positions;
 
  private:

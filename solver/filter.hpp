@@ -9,13 +9,13 @@ namespace drape::solver {
 /// Removes the prescribed directions of some particles from a vector field: P = I − Σ c cᵀ  [Etzmuß 2002, (4.3)].
 class Filter {
  public:
-  /// What is left to a particle.
+  /// The free directions of a particle.
   struct Block {
     int particle;
     Eigen::Matrix3d free;  ///< orthogonal projector
   };
 
-  /// The pins whose particles still have free coordinates: the others have no entries in the matrices that are filtered.
+  /// The pins whose particles still have free coordinates: the others have no entries in the filtered matrices.
   static Filter partial(const std::vector<Pin>& pins);
 
   void clear() { blocks_.clear(); }

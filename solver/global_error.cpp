@@ -42,7 +42,7 @@ struct Pilot {
   double error = unknown;
 };
 
-/// Counters that are those of the run itself.
+/// Counters that pilots do not add to.
 class OwnSteps {
  public:
   explicit OwnSteps(Counters& work)
@@ -101,7 +101,7 @@ class Planner {
   double tolerance(double scale) const { return coarsest_ * std::pow(scale, order() + 1); }
   double largest_step(double scale) const { return h_ * std::min(1.0, scale); }
 
-  /// A run with steps of that scale; false if it takes too many.
+  /// Runs with steps of this scale; false if it takes too many.
   bool fly(double scale) {
     const double expected = expected_steps(scale);
     if (expected > control_.most_steps) return false;
@@ -114,7 +114,7 @@ class Planner {
     Integrator integrator(integrator_.ode(), integrator_.method(), options, integrator_.state(), integrator_.time());
     SmoothOutput output(times_, integrator.time(), integrator.state());
     const RunResult run =
-        integrate(integrator, t_end_, largest_step(scale), [&](const StepReport& step) { output.see(step.t, step.y); });
+        integrate(integrator, t_end_, largest_step(scale), [&](const StepReport& step) { output.observe(step.t, step.y); });
     const int steps = run.steps + run.rejected_steps;
     const bool largest = steps <= std::ceil((t_end_ - integrator_.time()) / largest_step(scale));
     pilots_.push_back({scale, steps, largest, std::move(output.positions), run.message});
@@ -122,7 +122,7 @@ class Planner {
     return steps < options.error_control.most_steps;
   }
 
-  /// What the error of the first is taken for.
+  /// The assumed error of the first pilot.
   double distance(const Pilot& a, const Pilot& b) const {
     if (a.positions.size() < times_.size() || b.positions.size() < times_.size()) return unknown;
     double largest = 0;
@@ -131,18 +131,18 @@ class Planner {
     return std::isfinite(distance) ? distance : unknown;
   }
 
-  /// As long as there are no trials.
+  /// The next pilot, before there are trials.
   double last_distance() const { return pilots_.back().distance; }
   double fall() const { return pilots_[pilots_.size() - 2].distance / last_distance(); }
 
-  /// How many times finer pilot k was meant to be than the one before, and how many times as many steps it took.
+  /// Ratio of the scales of pilots k − 1 and k, and of their numbers of steps.
   double finer(std::size_t k) const { return pilots_[k - 1].scale / pilots_[k].scale; }
   double more_steps(std::size_t k) const { return static_cast<double>(pilots_[k].steps) / std::max(1, pilots_[k - 1].steps); }
 
   /// Whether pilot k took steps about as long as the one before, so that their distance does not measure an error.
   bool no_finer(std::size_t k) const { return pilots_[k].steps >= many_steps && more_steps(k) < std::sqrt(finer(k)); }
 
-  /// Runs that are wrong in the same way are near each other, but they do not converge.
+  /// Whether pilots converge: runs with the same error are near each other, but do not converge.
   bool enough() const {
     if (pilots_.size() < 3 || !std::isfinite(last_distance()) || no_finer(pilots_.size() - 1)) return false;
     const bool small = last_distance() <= negligible * control_.tolerance;
@@ -153,8 +153,8 @@ class Planner {
   /// Factor by which errors fall from pilot to pilot.
   double rate() const { return std::clamp(fall(), std::pow(refinement(), 0.9), std::pow(refinement(), 1.1)); }
 
-  /// Finds errors: that of the finest pilot by its distance from a coarser one, as errors go with a power of the scale, and
-  /// those of the others by their distances from it.
+  /// Estimates the errors: the finest pilot's from its distance to a coarser one, as errors go with a power of the scale, and
+  /// the others' from their distances to the finest.
   void measure() {
     Pilot& finest = pilots_.back();
     finest.error = unknown;
@@ -167,7 +167,7 @@ class Planner {
     for (std::size_t k = 0; k + 1 < pilots_.size(); ++k) pilots_[k].error = distance(pilots_[k], finest) + finest.error;
   }
 
-  /// That of the first pilot from which on errors are small enough, or one between it and the one before or beyond the ends
+  /// Scale of the first pilot from which on errors are small enough, or one between it and the one before, or beyond the ends,
   /// that should come nearer to the tolerance.
   double wanted_scale() const {
     std::size_t k = pilots_.size();
@@ -196,8 +196,8 @@ class Planner {
     return {0, 0, false, why};
   }
 
-  /// Where the number of steps does not go with their scale, it is not accuracy that they serve, and between pilots nothing is
-  /// certain.
+  /// Where the number of steps does not go with their scale, it is not accuracy that determines them, and errors between pilots
+  /// cannot be predicted.
   std::string remark() const {
     for (std::size_t k = 1; k < pilots_.size(); ++k) {
       const bool far_more = pilots_[k].steps >= many_steps && more_steps(k) > 2 * finer(k);
@@ -210,7 +210,7 @@ class Planner {
     return "";
   }
 
-  /// What is to be said of a run far more accurate than was wanted.
+  /// The remark on a run that is far more accurate than its tolerance.
   std::string cliff(const Pilot& chosen) const {
     if (chosen.error >= lowest * control_.tolerance || chosen.largest_steps || &chosen == pilots_.data()) return "";
     const Pilot& coarser = *(&chosen - 1);

@@ -12,7 +12,7 @@ History::History(int points, int forces, const Point& first) : points_(points), 
 void History::push(Point& next, double h) {
   std::rotate(kept_.begin(), kept_.end() - 1, kept_.end());
   std::swap(kept_.front(), next);
-  if (forces_ < points_) {  // the force of the point that has grown too old serves the next one
+  if (forces_ < points_) {  // reuses the memory of the force that is not kept any longer
     std::swap(kept_[forces_].f, next.f);
     kept_[forces_].has_f = false;
   }

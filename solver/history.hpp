@@ -6,7 +6,7 @@
 
 namespace drape::solver {
 
-/// A state on the trajectory with what a method keeps of it: f_expl for the IMEX methods, the whole force for `verlet`.
+/// A state on the trajectory with the force that the method keeps: f_expl for IMEX methods, the whole force for `verlet`.
 struct Point {
   double t = 0;  ///< [s]
   State y;
@@ -20,28 +20,27 @@ class History {
   static constexpr int most_points = 6;
   using Weights = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, most_points, 1>;
 
-  /// Begins with the first point. `points`: how many are kept at most; `forces`: how many of these with `f`, which has the size
-  /// of the first's.
+  /// Begins with the first point. `points`: the largest number that is kept; `forces`: the number of these with `f`, which has
+  /// the size of the first's.
   History(int points, int forces, const Point& first);
 
-  /// Adds `next`, which is newer than all before and a step of h [s] from the newest, and leaves memory for another in its
-  /// place.
+  /// Adds `next`, a step of h [s] after the newest point, and leaves in it the memory for another one.
   void push(Point& next, double h);
 
-  /// Forgets all but the newest point: the motion before was another one.
+  /// Discards all points except the newest.
   void restart();
 
-  /// Lets extrapolations begin with the newest point: there the motion was not smooth.
+  /// Makes later extrapolations begin with the newest point, where the motion was not smooth.
   void begin_smooth() { smooth_ = 1; }
 
-  /// The points that multistep methods may use.
+  /// Number of points for multistep methods.
   int size() const { return size_; }
 
-  /// Those of them that lie on a smooth motion.
+  /// Number of these on a smooth motion, for extrapolations.
   int smooth() const { return smooth_; }
   bool full() const { return smooth_ == points_; }
 
-  /// The k-th point back from the newest, which is 0.
+  /// Point k, counted from the newest, which is 0.
   Point& operator[](int k) { return kept_[k]; }
   const Point& operator[](int k) const { return kept_[k]; }
 
@@ -54,7 +53,7 @@ class History {
   /// Sets v, and x if it is not null, to the polynomial through all states of the smooth motion.
   void extrapolate(double t, Vectors& v, Vectors* x = nullptr) const;
 
-  /// The extrapolation of a smooth motion to t misses by its derivative of order smooth() times this [sᵏ].
+  /// The error of the extrapolation to t, over the motion's derivative of order k = smooth() [sᵏ].
   double remainder(double t) const;
 
  private:

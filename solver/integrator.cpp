@@ -15,17 +15,16 @@ namespace {
 
 constexpr double same_step = 1e-9;  ///< relative difference of steps that is round-off, not intention
 
-/// Below this part of the first step a run counts as stuck.
+/// Part of the first step below which a run counts as stuck.
 constexpr double smallest_step = 1e-6;
 
-/// The same where steps are cut for their accuracy: a pin that jerks is resolved by steps as short as its neighbours' motion,
-/// however long the others may be.
+/// The same where steps are cut for their accuracy: where a pin jerks, steps are as short as its neighbours' motion.
 constexpr double smallest_accurate_step = 1e-12;
 
 /// Part of the kinetic energy that an impact must stop to be a hard one.
 constexpr double hard_impact = 1e-2;
 
-/// A sum is finite only if all its terms are, and it is vectorised where a test of each would not be.
+/// Tests the sum, which is finite only if all its terms are: unlike a test of each term, it is vectorised.
 bool finite(const State& y) { return std::isfinite(y.x.sum() + y.v.sum()); }
 
 double controlled(const StepControl& control, double h, int updates) {
@@ -34,13 +33,14 @@ double controlled(const StepControl& control, double h, int updates) {
   return h;
 }
 
-/// How many points the history keeps: what the method needs, and one more than its order for guesses and estimates of errors.
+/// Number of points that the history keeps: those that the method needs, and one more than its order for guesses and error
+/// estimates.
 int history_points(const Method& method, const Options& options) {
   const bool estimates = (method.implicit() && options.stage->accelerated) || options.error_control.enabled();
   return std::max(method.history, estimates ? method.order + 1 : 0);
 }
 
-/// Prescribed velocities are set.
+/// The initial point, with prescribed velocities set.
 Point first_point(const SplitOde& ode, const Method& method, double t, State y) {
   prescribe(ode.pins, y.v);
   return {t, std::move(y), method.forces > 0 ? Vectors::Zero(ode.particles(), 3) : Vectors(), false};
@@ -67,7 +67,8 @@ Integrator::Integrator(const SplitOde& ode, const Method& method, const Options&
             .history = history_,
             .next = next_,
             .scratch = scratch_,
-            .sub_stepping = sub_stepping_},
+            .sub_stepping = sub_stepping_,
+            .error = step_error_},
       extrapolates_(history_points(method, options) > std::min(method.history, 2)),
       tolerance_(options.error_control.tolerance),
       steps_(ode.work->counter("steps", "accepted steps")),
@@ -89,11 +90,11 @@ Integrator::Integrator(const SplitOde& ode, const Method& method, const Options&
 StageResult Integrator::step(double h) {
   step_.t = time();
   step_.h = h;
-  step_.w = history_.last_step() > 0 ? h / history_.last_step() : 0;
+  if (history_.last_step() > 0) step_.after_impact = false;  // true if a rejected step was repeated without history
   step_.result = {};
   step_.starting = false;
-  step_.error.embedded = false;
-  step_.error.split_gamma = 0;
+  step_error_.embedded = false;
+  step_error_.split_gamma = 0;
   next_.has_f = false;
   begin_contacts(h);
   method_.step(step_);
@@ -123,46 +124,45 @@ void Integrator::begin_contacts(double h) {
   if (impacts_) impacts_->begin(step_.t, h, state());
 }
 
-/// Whether the step met an obstacle so hard that the neighbours' velocities jump too: there a history leads astray.
+/// Whether the step met an obstacle so hard that the neighbours' velocities jump as well, which makes the history useless.
 bool Integrator::hit_hard() const {
   return contacts_ && method_.history > 1 && step_.result.outcome == Outcome::success &&
          contacts_->stopped_energy() > hard_impact * kinetic_energy(step_.ode, state().v);
 }
 
 void Integrator::step_without_history() {
-  step_.w = 0;
   step_.after_impact = true;
   contacts_->begin(step_.t, step_.h, state(), true);
   method_.step(step_);
 }
 
-/// Where velocities were changed in the history, forces must be found anew.
+/// Discards the force of the history's newest point if contacts changed its velocities.
 void Integrator::finish_contacts() {
   if (contacts_ && contacts_->finish(next_.y, history_[0].y)) history_[0].has_f = false;
 }
 
-/// What the past says of the end of the step, in av, and in ax if an estimate of the error needs it.
+/// Extrapolates the history to the end of the step: v into av, and x into ax if the error estimate needs it.
 void Integrator::predict(double h) {
   if (!extrapolates_ || history_.smooth() < 2) return;
-  const bool positions = options_.error_control.enabled() && !step_.error.embedded;
+  const bool positions = options_.error_control.enabled() && !step_error_.embedded;
   history_.extrapolate(step_.t + h, scratch_.av, positions ? &scratch_.ax : nullptr);
 }
 
-/// By the method that is embedded, or from what the extrapolation of the past misses (Milne's device). While the past is short
-/// the miss itself, which is of a lower order, stands for the error.
+/// Estimate of the local error over its tolerance: from the embedded method, or from the difference to the extrapolated history
+/// (Milne's device). While the history is short that difference, which is of a lower order, stands for the error.
 double Integrator::estimate_error(double h) {
   const ErrorControl& control = options_.error_control;
   if (!control.enabled()) return 0;
-  State& error = step_.error.estimate;
-  if (!step_.error.embedded) {
+  State& error = step_error_.estimate;
+  if (!step_error_.embedded) {
     if (history_.smooth() < 2) return 0;
-    const double over_miss = step_.error_over_miss(step_.t + h);
-    const double part = history_.full() ? over_miss / (1 + over_miss) : 1;
+    const double ratio = step_.error_over_extrapolation(step_.t + h);
+    const double part = history_.full() ? ratio / (1 + ratio) : 1;
     error.x = part * (next_.y.x - scratch_.ax);
     error.v = part * (next_.y.v - scratch_.av);
-    if (step_.error.split_gamma > 0) {
-      error.x += step_.error.split_gamma * step_.error.split;
-      error.v += step_.error.split;
+    if (step_error_.split_gamma > 0) {
+      error.x += step_error_.split_gamma * step_error_.split;
+      error.v += step_error_.split;
     }
   }
   const double x = error.x.norm() / control.length, v = error.v.norm() * control.duration / control.length;
@@ -180,7 +180,8 @@ double Integrator::first_step() const {
   return 0.1 * std::pow(tolerance_, 1.0 / (method_.order + 1)) * std::min(time, control.duration);
 }
 
-/// Where the extrapolation is worse than no change at all, the motion is not smooth: extrapolations begin anew.
+/// Adds the step to the history. The motion is not smooth where its extrapolation is worse than no change at all: later
+/// extrapolations begin there.
 void Integrator::remember(double h, bool hard) {
   const Vectors& v1 = next_.y.v;
   const bool rough =
@@ -197,7 +198,7 @@ ContactReport Integrator::contacts() const {
   return {};
 }
 
-/// Compensated, or the round-off of a million steps would be a part of a step.
+/// Compensated summation: else the round-off of a million steps would reach the size of a step.
 double Integrator::end_of_step(double h) {
   const double increment = h - lost_time_;
   const double t = step_.t + increment;
@@ -224,7 +225,7 @@ class StepSizes {
 
   void accepted(double size, int updates, double error) {
     if (error_.enabled()) {
-      const double factor = std::min(pi_factor(error), cut_ ? 1.0 : 2.0);  // what was just refused is not tried again at once
+      const double factor = std::min(pi_factor(error), cut_ ? 1.0 : 2.0);  // a size just rejected is not tried again at once
       cut_ = false;
       before_ = std::max(error, 1e-3);
       if (factor < 1 || factor > worthwhile) h_ = std::min(first_, factor * size);
@@ -251,7 +252,7 @@ class StepSizes {
   static constexpr double safety = 0.9;
   static constexpr double worthwhile = 1.2;  ///< a smaller growth is not worth a new matrix
 
-  /// Proportional to the error and to how it changed   [Gustafsson 1991].
+  /// PI controller, of the error and its change   [Gustafsson 1991].
   double pi_factor(double error) const {
     const double q = order_ + 1, now = std::max(error, 1e-3);
     return std::clamp(safety * std::pow(now, -0.7 / q) * std::pow(before_ / now, 0.4 / q), 0.3, 2.0);

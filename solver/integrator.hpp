@@ -8,9 +8,9 @@
 
 namespace drape::solver {
 
-/// What obstacles did in one step.
+/// Contacts of one step.
 struct ContactReport {
-  int constrained = 0;                                ///< particles that touched something
+  int constrained = 0;                                ///< number of particles that touched an obstacle
   Eigen::Vector3d impulse = Eigen::Vector3d::Zero();  ///< given to the particles [N s]
   double work = 0;                                    ///< done on the particles by these impulses [J]
 };
@@ -18,7 +18,7 @@ struct ContactReport {
 /// Advances one ODE by one method. A step that fails leaves time and state as they were.
 class Integrator {
  public:
-  /// Allocates all that steps need. Prescribed velocities are set in the initial state.
+  /// Allocates the memory of all steps. Prescribed velocities are set in the initial state.
   Integrator(const SplitOde& ode, const Method& method, const Options& options, State y0, double t0 = 0);
   Integrator(const Integrator&) = delete;
   Integrator& operator=(const Integrator&) = delete;
@@ -40,10 +40,10 @@ class Integrator {
   const Options& options() const { return options_; }
   const SplitOde& ode() const { return step_.ode; }
 
-  /// Another tolerance of the local error than that of the options.
+  /// Replaces the options' tolerance of the local error.
   void limit_error(double tolerance) { tolerance_ = tolerance; }
 
-  /// What obstacles did in the last step.
+  /// Contacts of the last step.
   ContactReport contacts() const;
 
  private:
@@ -65,15 +65,16 @@ class Integrator {
   Point next_;
   Scratch scratch_;
   SubStepping sub_stepping_;
+  StepError step_error_;
   Step step_;
-  const bool extrapolates_;  ///< whether the past is more than what the method reads
+  const bool extrapolates_;  ///< whether the history is longer than the method needs
   double tolerance_;
   double error_ = 0;
-  double lost_time_ = 0;  ///< what rounding has added to the time [s]
+  double lost_time_ = 0;  ///< round-off added to the time [s]
   std::int64_t &steps_, &rejected_, &starting_;
 };
 
-/// An accepted step as an observer sees it.
+/// An accepted step, for observers.
 struct StepReport {
   double t;  ///< [s], at its end
   double h;  ///< [s]
@@ -87,7 +88,7 @@ using Observer = std::function<void(const StepReport&)>;
 /// How a run ended.
 struct RunResult {
   Outcome outcome = Outcome::success;
-  std::string message;        ///< why it did not reach its end, or what limited its steps; else empty
+  std::string message;        ///< why it did not reach its end, or what limited its steps; empty otherwise
   double last_good_time = 0;  ///< [s]
   int steps = 0;
   int rejected_steps = 0;

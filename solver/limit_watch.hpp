@@ -6,14 +6,14 @@
 
 namespace drape::solver {
 
-/// Notices when explicit sub-steps τ have left their stability limit, from accelerations that they compute anyway.
+/// Detects that explicit sub-steps τ have left their stability limit, from accelerations that they compute anyway.
 ///
-/// Of three in a row, |a₋ − 2a + a₊| = (ωτ)² |a| for an oscillation: at most 4 |a| within the limit, whatever modes add up.
-/// A mode outside of it alternates and grows, so that sooner or later it is all there is in the accelerations, long before
-/// it can be seen in positions, of which it then is a τ²/4. Modes of large damping that alternate and decay do not count.
+/// For an oscillation |a₋ − 2a + a₊| = (ωτ)² |a| of three in a row: at most 4 |a| within the limit, for any sum of modes. A
+/// mode outside of it alternates and grows until it dominates the accelerations, long before it is noticeable in positions,
+/// where it is τ²/4 times as large. Modes of large damping that alternate and decay do not count.
 class LimitWatch {
  public:
-  /// Takes the next force in; weight: 1/m, 0 for pinned coordinates. Whether modes alternate and grow.
+  /// Adds the next force and returns whether modes alternate and grow; weight: 1/m, 0 for pinned coordinates.
   bool alarmed(const Vectors& f, const Vectors& weight) {
     const int place = place_++;
     if (place < 0 || place > 2) {
@@ -34,7 +34,7 @@ class LimitWatch {
     return false;
   }
 
-  /// After a false alarm: rests, twice as long every time.
+  /// Pauses after a false alarm, twice as long every time.
   void rest() { place_ = -(rest_ *= 2); }
 
  private:
@@ -46,10 +46,10 @@ class LimitWatch {
   int place_ = 0, rest_ = 1000;
 };
 
-/// Notices when neighbours have moved apart, which makes sheets stiffer, before modes leave the limit.
+/// Detects that neighbours have moved apart, which makes sheets stiffer, before modes leave the limit.
 class StretchWatch {
  public:
-  /// From now on lengths are compared with those of x; neighbours are coupled by K.
+  /// Sets the lengths for later comparisons; neighbours are those coupled by K.
   void begin(const SparseMatrix& K, const Vectors& x) {
     squares_.clear();
     visit(K, x, [&](double square) { squares_.push_back(square); });
@@ -58,18 +58,19 @@ class StretchWatch {
   /// Whether any length has grown by a tenth.
   bool stretched(const SparseMatrix& K, const Vectors& x) const {
     bool any = false;
-    visit(K, x, [&, k = std::size_t{0}](double square) mutable { any |= square > much * much * squares_[k++]; });
+    std::size_t k = 0;
+    visit(K, x, [&](double square) { any |= square > much * much * squares_[k++]; });
     return any;
   }
 
  private:
   static constexpr double much = 1.1;
 
-  template <class Look>
-  static void visit(const SparseMatrix& K, const Vectors& x, Look look) {
+  template <class Each>
+  static void visit(const SparseMatrix& K, const Vectors& x, const Each& each) {
     for (int i = 0; i < K.outerSize(); ++i)
       for (SparseMatrix::InnerIterator entry(K, i); entry; ++entry)
-        if (entry.col() > i) look((x.row(entry.col()) - x.row(i)).squaredNorm());
+        if (entry.col() > i) each((x.row(entry.col()) - x.row(i)).squaredNorm());
   }
 
   std::vector<double> squares_;

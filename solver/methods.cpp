@@ -1,6 +1,8 @@
 #include "solver/methods.hpp"
 
 #include <algorithm>
+#include <iterator>
+#include <vector>
 
 #include "solver/base/registry.hpp"
 
@@ -138,13 +140,13 @@ std::span<const Method> methods() {
        .step = explicit_midpoint,
        .meets_obstacles = false},
       {.name = "rk4",
-       .description = "the classical Runge-Kutta method",
+       .description = "classical Runge-Kutta, explicit",
        .order = 4,
        .stages = Stages::none,
        .step = rk4,
        .meets_obstacles = false},
       {.name = "rk4-substeps",
-       .description = "the same, sub-stepped inside its stability limit",
+       .description = "classical Runge-Kutta, sub-stepped inside its stability limit",
        .order = 4,
        .stages = Stages::none,
        .step = rk4_substeps,
@@ -174,8 +176,12 @@ std::span<const Method> methods() {
 }
 
 std::span<const Method> thesis_methods() {
-  const auto all = methods();
-  return all.first(static_cast<std::size_t>(std::ranges::find(all, false, &Method::in_thesis) - all.begin()));
+  static const std::vector<Method> rows = [] {
+    std::vector<Method> those;
+    std::ranges::copy_if(methods(), std::back_inserter(those), &Method::in_thesis);
+    return those;
+  }();
+  return rows;
 }
 
 const Method& method(std::string_view name) { return base::find_named(methods(), "method", name); }

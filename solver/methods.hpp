@@ -19,19 +19,22 @@ struct Method {
   int forces = 0;               ///< how many of these with a force or an acceleration
   bool meets_obstacles = true;  ///< whether its stages end where contacts are defined
   bool sub_steps = false;       ///< whether it divides its steps by a stability limit of its own
-  bool in_thesis = false;       ///< or, as velocity Verlet, measured beside its methods
+  bool in_thesis = false;       ///< true for velocity Verlet as well, which is measured beside its methods
 
   bool implicit() const { return stages != Stages::none; }
   bool nonlinear() const { return stages == Stages::nonlinear; }
+
+  /// Whether springs are explicit: their stability limits the steps, and a stage costs little more than a force.
+  bool explicit_springs() const { return stages == Stages::none || sub_steps; }
 };
 
-/// All methods, those of the thesis first.
+/// All methods.
 std::span<const Method> methods();
 
-/// The thesis' methods, and velocity Verlet.
+/// The rows with `in_thesis`, in the order of the table.
 std::span<const Method> thesis_methods();
 
-/// The method with this name. Throws std::invalid_argument, naming all that there are.
+/// The method with this name. Throws std::invalid_argument, listing the names.
 const Method& method(std::string_view name);
 
 }  // namespace drape::solver

@@ -7,12 +7,25 @@ namespace drape::solver {
 std::span<const StageKind> stage_kinds() {
   using Matrix = StageKind::Matrix;
   static constexpr StageKind table[] = {
-      {"auto", "begins with anderson, goes on with newton where that is cheaper", Matrix::chosen, true},
-      {"fixed-point", "the thesis' loop with the constant matrix (3.33)-(3.36), Alg. 6", Matrix::constant, false},
-      {"anderson", "the same iteration accelerated over the last eight updates", Matrix::constant, true},
-      {"newton", "with the exact Jacobian, renewed when convergence slows; factored, or inexact by conjugate gradients",
-       Matrix::newton, true},
-      {"tension-newton", "with the Jacobian of tension and damping, without shear and bending", Matrix::tension_newton, true},
+      {.name = "auto",
+       .description = "begins with anderson, goes on with newton where that is cheaper",
+       .matrix = Matrix::chosen,
+       .accelerated = true},
+      {.name = "fixed-point",
+       .description = "the thesis' loop with the constant matrix (3.33)-(3.36), Alg. 6",
+       .matrix = Matrix::constant},
+      {.name = "anderson",
+       .description = "the same iteration accelerated over the last eight updates",
+       .matrix = Matrix::constant,
+       .accelerated = true},
+      {.name = "newton",
+       .description = "with the exact Jacobian, renewed when convergence slows; factored, or inexact by conjugate gradients",
+       .matrix = Matrix::newton,
+       .accelerated = true},
+      {.name = "tension-newton",
+       .description = "with the Jacobian of tension and damping, without shear and bending",
+       .matrix = Matrix::tension_newton,
+       .accelerated = true},
   };
   return table;
 }

@@ -17,14 +17,15 @@ struct StepControl {
   bool enabled() const { return max_updates > 0; }
 };
 
-/// Steps whose estimated local error stays below a tolerance: in the root mean square of positions relative to `length` and
-/// velocities relative to length/duration, as the references have it. Or, measured by pilot runs, a global error near it.
+/// Steps whose estimated local error stays below a tolerance: the root mean square of positions relative to `length` and
+/// velocities relative to length/duration, as in the references. Or a global error near it, measured by pilot runs.
 struct ErrorControl {
-  double tolerance = 0;      ///< 0: constant steps
-  double length = 1;         ///< size of the scene [m]
-  double duration = 1;       ///< of the run [s]
-  bool global = false;       ///< whether the tolerance is of the error of positions at all tenths of the run
-  int most_steps = 100'000;  ///< accepted or not, after which a run ends; one that needs more for a global error is not begun
+  double tolerance = 0;  ///< 0: constant steps
+  double length = 1;     ///< size of the scene [m]
+  double duration = 1;   ///< of the run [s]
+  bool global = false;   ///< whether the tolerance limits the error of positions at all tenths of the run instead
+  int most_steps =
+      100'000;  ///< accepted and rejected ones, after which a run ends; a run that needs more for a global error is not begun
 
   bool enabled() const { return tolerance > 0; }
 };
@@ -34,16 +35,16 @@ struct StageKind {
   std::string_view name;
   std::string_view description;
   enum class Matrix { constant, newton, tension_newton, chosen } matrix;
-  bool accelerated;  ///< by Anderson's method, until an estimate of the error itself is small; else until the residual is
+  bool accelerated = false;  ///< by Anderson's method, until the estimated error is small; else until the residual is small
 };
 
-/// All ways to solve a stage; the first is the default.
+/// All stage solvers; the first is the default.
 std::span<const StageKind> stage_kinds();
 
-/// The one with this name. Throws std::invalid_argument, naming all that there are.
+/// The stage solver with this name. Throws std::invalid_argument, listing the names.
 const StageKind& stage_kind(std::string_view name);
 
-/// Choices of whoever runs a method. Tolerances are relative to |b|, the right-hand side of the step's linear system.
+/// Options set by the caller. Tolerances are relative to |b|, the right-hand side of the step's linear system.
 struct Options {
   double loop_tolerance = 1e-5;  ///< of the fixed-point loop: |b(x, v) − A v| ≤ η |b|
   double cg_tolerance = 2e-4;    ///< of a linear solve; inside the loop never looser than half the loop's
@@ -57,7 +58,7 @@ struct Options {
   const LinearSolver* linear_solver = &linear_solvers().front();
 };
 
-/// The thesis' own: the fixed-point loop and CG with IC(0)   [Etzmuß 2002, 3.4].
+/// The options of the thesis: the fixed-point loop and CG with IC(0)   [Etzmuß 2002, 3.4].
 Options thesis_options();
 
 }  // namespace drape::solver

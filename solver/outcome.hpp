@@ -5,7 +5,7 @@
 
 namespace drape::solver {
 
-/// How a solve, a step or a run ended. Anything but `success` means that its result must not be used.
+/// How a solve, a step or a run ended. With any outcome except `success` its result must not be used.
 enum class Outcome {
   success,
   not_converged,       ///< an iteration reached its limit before its tolerance
@@ -19,7 +19,7 @@ enum class Outcome {
   out_of_evaluations,  ///< of evaluations of forces and Newton matrices
 };
 
-/// The outcome as it is written in tables and files, for example "not converged".
+/// The text in tables and files, for example "not converged".
 constexpr std::string_view to_string(Outcome outcome) {
   switch (outcome) {
     case Outcome::success: return "success";
@@ -36,7 +36,7 @@ constexpr std::string_view to_string(Outcome outcome) {
   return "unknown";
 }
 
-/// Nothing if no outcome is written so.
+/// The outcome with this text; absent if there is none.
 constexpr std::optional<Outcome> outcome_named(std::string_view text) {
   for (int k = 0; k <= static_cast<int>(Outcome::out_of_evaluations); ++k)
     if (to_string(static_cast<Outcome>(k)) == text) return static_cast<Outcome>(k);

@@ -5,7 +5,6 @@
 #include <memory>
 #include <vector>
 
-#include "solver/contact.hpp"
 #include "solver/counters.hpp"
 #include "solver/state.hpp"
 
@@ -20,10 +19,21 @@ struct Pin {
   bool all() const { return fixed[0] && fixed[1] && fixed[2]; }
 };
 
-/// Which part of the Jacobian a Newton matrix has.
+/// A half-space that a particle must not leave in the next step: at its end <x, n> ≥ `least`.
+struct Contact {
+  int particle = 0;
+  int obstacle = 0;        ///< identifies a particle's contact from step to step
+  Eigen::Vector3d normal;  ///< n at the end of the step: unit, away from the obstacle
+  double gap = 0;          ///< distance from the collision area at the beginning of the step [m], negative inside
+  double least = 0;        ///< [m]
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< w of the obstacle's surface, mean over the step [m/s]
+  double friction = 0;                                 ///< η, Coulomb's coefficient
+};
+
+/// The part of the Jacobian in a Newton matrix.
 enum class Jacobian {
   whole,
-  tension,  ///< nothing that couples more than the ends of an edge, which makes it several times cheaper
+  tension,  ///< without terms that couple more than the two ends of an edge: several times cheaper
 };
 
 /// The split equation of motion  M dv/dt = K x + D v + f_expl(t, x, v),  dx/dt = v   [Etzmuß 2002, (3.20)].
@@ -47,11 +57,11 @@ struct SplitOde {
   std::function<void(double t, const Vectors& x, const Vectors& v, SparseMatrix& df_dx, SparseMatrix& df_dv)> jacobian;
 
   /// Sets the upper triangle of J ≈ M − γ² ∂f/∂x − γ ∂f/∂v, 3N × 3N, for a Newton method: positive definite, because negative
-  /// curvature of single elements is left out; pinned coordinates have only their mass. J: empty, or what a call for the same
-  /// part left.
+  /// curvature of single elements is left out; pinned coordinates have only their mass. J: empty, or the result of an earlier
+  /// call for the same part.
   std::function<void(double t, const Vectors& x, const Vectors& v, double gamma, Jacobian part, SparseMatrix& J)> newton_matrix;
 
-  /// Finds what particles may touch in a step from t to t + h, ordered by particle; absent: there are no obstacles.
+  /// Finds the possible contacts of a step from t to t + h, ordered by particle; absent: there are no obstacles.
   std::function<void(double t, double h, const State& y, std::vector<Contact>& found)> contacts;
 
   std::shared_ptr<Counters> work = std::make_shared<Counters>();

@@ -12,8 +12,8 @@ namespace drape::solver {
 namespace {
 
 /// Largest |eigenvalue| of a linear map of N × 3 vectors by Arnoldi's iteration, whose eigenvalues approach the outermost
-/// from within: power iteration would need hundreds of products for what takes tens of them here, and a restarted space, as
-/// that of Spectra's GenEigsSolver, two to three times as many. The basis takes memory only as it grows.
+/// from within: it takes tens of products, power iteration would take hundreds, and a restarted space, as in Spectra's
+/// GenEigsSolver, two to three times as many. Memory is allocated as the basis grows.
 template <class Map>
 double largest_eigenvalue(const SplitOde& ode, const Map& map) {
   constexpr int most = 60, check = 6;

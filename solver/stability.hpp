@@ -10,11 +10,11 @@ struct Spectrum {
   double decay = 0;          ///< largest |eigenvalue| of M⁻¹ ∂f/∂v over the free coordinates [1/s]
 };
 
-/// What the estimated spectrum exceeds the true one by.
+/// Factor by which an estimated spectrum exceeds the true one, to be safe.
 constexpr double spectrum_safety = 1.01;
 
-/// Estimates the spectrum at a state from some tens of evaluations of the force, whose differences stand for products with its
-/// Jacobian, 1 % to the safe side. Allocates.
+/// Estimates the spectrum at a state from some tens of evaluations of the force, whose differences approximate products with
+/// its Jacobian; overestimates by 1 %. Allocates.
 Spectrum spectrum(const SplitOde& ode, double t, const State& y);
 
 /// The largest stable step of the method `verlet` for the mode x'' = −ω² x − c x' [s]; infinite if both vanish, NaN if one is

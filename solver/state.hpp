@@ -17,7 +17,7 @@ struct State {
   Vectors v;
 };
 
-/// A value of every particle once for each coordinate, as coordinates lie in memory: N in, 3N out.
+/// Repeats each particle's value for its three coordinates, as they lie in memory: N in, 3N out.
 inline Eigen::VectorXd thrice(const Eigen::VectorXd& values) { return values.replicate(1, 3).reshaped<Eigen::RowMajor>(); }
 
 }  // namespace drape::solver

@@ -17,26 +17,26 @@ struct Scratch {
   std::vector<State> rates;  ///< dy/dt of stages, for Runge-Kutta methods
 };
 
-/// What a step says of its error.
+/// The error of a step as far as its method provides it.
 struct StepError {
   double constant = 0;     ///< c of the last stage: the error in v is c h^(p+1) times a derivative, p being the order
-  bool embedded = false;   ///< whether the method has found the error itself, by one that is embedded in it,
-  State estimate;          ///< which is this
-  Vectors split;           ///< in v, of IMEX methods with error control
-  double split_gamma = 0;  ///< makes it one in x [s]
+  bool embedded = false;   ///< whether the method has set `estimate`, by an embedded method
+  State estimate;          ///< of x [m] and v [m/s]
+  Vectors split;           ///< splitting error in v [m/s] of IMEX methods with error control
+  double split_gamma = 0;  ///< splitting error in x over that in v [s]; 0: no splitting error
 };
 
-/// What methods need, and keep from step to step, that divide their steps or choose their stages by a stability limit.
+/// What methods need and keep from step to step that divide their steps, or choose their stages, by a stability limit.
 struct SubStepping {
   ImpactResponse* impacts = nullptr;  ///< null if there are no obstacles
-  double limit = 0;                   ///< largest stable sub-step, or 1 over the largest decay [s]; 0 until it is known
-  LimitWatch limit_watch = {};        ///< tells when it has to be estimated anew, as does
+  double limit = 0;                   ///< largest stable sub-step, or 1 over the largest decay [s]; 0 until it is estimated
+  LimitWatch limit_watch = {};        ///< either watch tells when the limit must be estimated again
   StretchWatch stretch_watch = {};
   std::int64_t &substeps, &limits;  ///< work counters
 };
 
-/// What a method sees of one step from t to t + h: it reads the history, whose newest point is (t, y0), writes y1 and adds up
-/// its work in `result`.
+/// One step from t to t + h, for its method: it reads the history, whose newest point is (t, y0), writes y1 and adds up its
+/// work in `result`.
 struct Step {
   const SplitOde& ode;
   const Options& options;
@@ -45,14 +45,16 @@ struct Step {
   Point& next;  ///< at t + h: the result
   Scratch& scratch;
   SubStepping& sub_stepping;
+  StepError& error;
 
   double t = 0;
   double h = 0;
-  double w = 0;               ///< h over the step before, 0 if there is none
-  bool after_impact = false;  ///< there is none because of a hard impact: velocities may jump from particle to particle
+  bool after_impact = false;  ///< no history because of a hard impact: velocities may jump from particle to particle
   bool starting = false;      ///< whether another method takes the step, for lack of a history
-  StepError error = {};
   StageResult result = {};
+
+  /// h over the step before, 0 without history.
+  double w() const { return after_impact || history.last_step() == 0 ? 0 : h / history.last_step(); }
 
   Point& now() { return history[0]; }
   const State& y0() const { return history[0].y; }
@@ -73,14 +75,14 @@ struct Step {
     error.constant = c;
     if (stage->accelerates()) {
       if (history.smooth() > 1) history.extrapolate(given.t, y.v);
-      given.accuracy = options.stage_accuracy * std::min(1.0, error_over_miss(given.t));
-      if (!history.full()) given.accuracy *= 1e-2;  // the miss is of a lower order than the error
+      given.accuracy = options.stage_accuracy * std::min(1.0, error_over_extrapolation(given.t));
+      if (!history.full()) given.accuracy *= 1e-2;  // the extrapolation is of a lower order than the step
     }
     return accept(stage->solve(given, y));
   }
 
-  /// Solves the linear stage of an IMEX method, which ends the step. With error control, what f̂ missed of f_expl at the end is
-  /// a part of the error: where hk/d is large it is all of it.
+  /// Solves the linear stage of an IMEX method, which ends the step. With error control, the difference of f_expl at the
+  /// end and f̂ is part of the error: where hk/d is large it is all of it.
   void solve_split(const Stage& given, const Vectors& f_explicit, double c) {
     next.y.v = y0().v;  // predictor (3.25), (3.32)
     error.constant = c;
@@ -90,8 +92,10 @@ struct Step {
     error.split_gamma = given.gamma;
   }
 
-  /// The error of the step over what the extrapolation of the history to time t misses.
-  double error_over_miss(double time) const { return error.constant * std::pow(h, history.smooth()) / history.remainder(time); }
+  /// Error of the step over the error of the history's extrapolation to `time`.
+  double error_over_extrapolation(double time) const {
+    return error.constant * std::pow(h, history.smooth()) / history.remainder(time);
+  }
 
   /// Adds the work of a stage; true if it succeeded.
   bool accept(const StageResult& stage_result) {

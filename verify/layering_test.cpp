@@ -36,7 +36,7 @@ struct Room {
 const std::vector<Room> rooms = {
     {"solver/base", {"solver/base/"}, {}},
     {"solver's vocabulary",
-     {"solver/contact.", "solver/counters.", "solver/filter.", "solver/outcome.", "solver/split_ode.", "solver/stage.",
+     {"solver/counters.", "solver/filter.", "solver/outcome.", "solver/split_ode.", "solver/stage.",
       "solver/state."},
      {"solver/base"}},
     {"solver/linear", {"solver/linear/"}, {"solver's vocabulary"}},

@@ -75,7 +75,7 @@ void cg_iteration(benchmark::State& state, const solver::LinearSolver& linear_so
   const model::Cloth cloth = compile(sheet(static_cast<int>(state.range(0)), {}));
   const SparseMatrix A = stage_matrix(cloth.ode, 0.01);
   solver::ConjugateGradients cg(linear_solver.make(), iterations, *cloth.ode.work);
-  cg.analyze(A);
+  cg.analyse(A);
   if (cg.factor(A) != solver::Outcome::success) return state.SkipWithError("the matrix is not positive definite");
   const Vectors b = perturbed(cloth.start.x, 1);
   Vectors r = b, d = b;

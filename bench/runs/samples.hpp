@@ -17,7 +17,7 @@ class Samples : public Observer {
   void begin(const model::Scene&, const model::Cloth&, const solver::State& start) override {
     dense_.emplace(times_, 0, start);
   }
-  void observe(const solver::StepReport& step) override { dense_->see(step.t, step.y); }
+  void observe(const solver::StepReport& step) override { dense_->observe(step.t, step.y); }
 
   /// At all times that were reached.
   const std::vector<solver::State>& states() const& { return dense_->states; }

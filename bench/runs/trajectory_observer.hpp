@@ -21,7 +21,7 @@ class TrajectoryObserver : public Observer {
   explicit TrajectoryObserver(double every) : every_(every) {}
 
   void begin(const model::Scene& scene, const model::Cloth& cloth, const solver::State& start) override;
-  void observe(const solver::StepReport& step) override { output_->see(step.t, step.y); }
+  void observe(const solver::StepReport& step) override { output_->observe(step.t, step.y); }
 
   void finish() override;
 

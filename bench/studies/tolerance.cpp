@@ -92,7 +92,7 @@ class Measurement {
     std::optional<solver::SmoothOutput> output;
     FunctionObserver sample([&](const solver::StepReport& step) {
       if (!output) return (void)output.emplace(reference_.trajectory.times, step.t, step.y);
-      output->see(step.t, step.y);
+      output->observe(step.t, step.y);
     });
     Observer* const observers[] = {&sample};
     const results::RunRecord run = record(cell, observers);
@@ -194,6 +194,7 @@ struct MethodSummary {
   }
 
   std::string verdict() const {
+    if (fails + explodes == runs) return results::verdict(Standing::open, "no run ends");
     return over + fails == 0 ? results::verdict(Standing::met, "proportional")
                              : results::verdict(Standing::missed, "not proportional");
   }

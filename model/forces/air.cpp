@@ -16,8 +16,8 @@ struct Wake {
     direction = speed > 0 ? Eigen::Vector3d(c.v.row(i).transpose() / speed) : Eigen::Vector3d::Zero();
   }
 
-  /// ∂(|p| v°)/∂v. At the kinks, where there is none, what leaves nothing to choose along and across the normal: at rest
-  /// N Nᵀ, which is exact in both; 0 for motion along the surface.
+  /// ∂(|p| v°)/∂v. At the kinks, where it does not exist: at rest N Nᵀ, which is exact along and across the normal; 0 for
+  /// motion along the surface.
   Eigen::Matrix3d by_v() const {
     if (speed == 0) return N * N.transpose();
     const Eigen::Matrix3d turn = (Eigen::Matrix3d::Identity() - direction * direction.transpose()) / speed;
@@ -47,7 +47,6 @@ std::optional<Term> make_air(const Sheet& sheet) {
       f.row(i) += weight[i] * std::abs(wake.p) * wake.direction.transpose();
     }
   };
-  term.explicit_force = term.force;
   term.jacobian = [=, normals = Normals(sheet.grid)](const Configuration& c, const JacobianEntries& entries) {
     if (!entries.exact()) return;  // not symmetric
     for (int i = 0; i < weight.size(); ++i) {

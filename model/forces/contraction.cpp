@@ -71,14 +71,14 @@ std::optional<Term> make_contraction(const Sheet& sheet) {
   if (m.contraction == 0 && m.contraction_damping == 0) return {};
   if (sheet.grid.nu < 2 || sheet.grid.nv < 2) return {};  // a chain has no cells
   const double lu = sheet.grid.spacing_u(), lv = sheet.grid.spacing_v();
-  const Moduli moduli{m.contraction * lu * lv / 4, m.contraction_damping * lu * lv / 4};
+  const CellLaw law{.contraction = m.contraction / 4, .contraction_rate = m.contraction_damping / 4};
+  const Moduli moduli{law.contraction * lu * lv, law.contraction_rate * lu * lv};
   const auto all = std::make_shared<const std::vector<Cell>>(cells(sheet.grid));
 
   Term term;
-  term.law.cell = {.contraction = m.contraction / 4, .contraction_rate = m.contraction_damping / 4};
-  term.explicit_law = term.law;
+  term.law.cell = law;
   if (const double d12 = m.contraction_damping; d12 * d12 > m.damping.weft * m.damping.warp)  // else damping takes more
-    term.active_law.cell.contraction_rate = term.law.cell.contraction_rate;
+    term.active_law.cell.contraction_rate = law.contraction_rate;
   term.energy = [=](const Vectors& x) {
     double energy = 0;
     const auto strain = [&](EdgeEnds edge, double l) { return difference(x, edge).norm() / l - 1; };

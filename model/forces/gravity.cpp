@@ -6,7 +6,7 @@ namespace drape::model {
 std::optional<Term> make_gravity(const Sheet& sheet) {
   if (sheet.gravity.isZero(0)) return {};
   Term term;
-  term.law.load = term.explicit_law.load = sheet.material.density * sheet.gravity;
+  term.law.load = sheet.material.density * sheet.gravity;
   term.energy = [weight = Vectors(sheet.grid.cell_areas() * term.law.load.transpose())](const Vectors& x) {
     return -weight.cwiseProduct(x).sum();
   };

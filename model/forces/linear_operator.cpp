@@ -35,7 +35,7 @@ void for_each(const SparseMatrix& B, const Add& add) {
     for (SparseMatrix::InnerIterator b(B, i); b; ++b) add(i, static_cast<int>(b.col()), b.value());
 }
 
-/// B if it is symmetric; else the springs in it: membranes are not symmetric on borders.
+/// B if it is symmetric; else its springs only: membranes are not symmetric on borders.
 SparseMatrix symmetric_part(const SparseMatrix& B) {
   if (B.isApprox(SparseMatrix(B.transpose()))) return B;
   std::vector<Eigen::Triplet<double>> springs;
@@ -61,7 +61,6 @@ Term unprojected(LinearOperators operators) {
   const auto evaluate = std::make_shared<Evaluator>(std::move(operators));
   Term term;
   term.force = [evaluate](const Configuration& c, Vectors& f) { f += (*evaluate)(c); };
-  term.explicit_force = term.force;
   term.energy = [evaluate](const Vectors& x) {
     solver::multiply(evaluate->operators.elastic, x, evaluate->q);
     return -0.5 * x.cwiseProduct(evaluate->q).sum();
@@ -83,7 +82,7 @@ Term projected(const Grid& grid, LinearOperators operators) {
     const Vectors& q = (*evaluate)(c);
     for (Eigen::Index i = 0; i < q.rows(); ++i) f.row(i) += c.normals.row(i).dot(q.row(i)) * c.normals.row(i);
   };
-  term.explicit_force = term.active_force = term.force;
+  term.active = true;
   const LinearOperators convex{symmetric_part(evaluate->operators.elastic), symmetric_part(evaluate->operators.viscous)};
   term.jacobian = [evaluate, convex, normals = Normals(grid)](const Configuration& c, const JacobianEntries& entries) {
     if (!entries.exact()) {

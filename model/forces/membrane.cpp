@@ -6,8 +6,8 @@
 namespace drape::model {
 namespace {
 
-/// The matrix of A (B1 s_uu + B2 s_vv). A border particle takes the curvature of its inner neighbour: zero there would be
-/// first order.
+/// The matrix of A (B1 s_uu + B2 s_vv). A border particle takes the curvature of its inner neighbour: zero curvature there
+/// would make it first order.
 SparseMatrix membrane_matrix(const Grid& grid, const WeftWarp& B) {
   std::vector<Eigen::Triplet<double>> entries;
   const auto add = [&](int i, int before, int centre, int after, double weight) {

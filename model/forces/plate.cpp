@@ -31,8 +31,8 @@ SparseMatrix plate_matrix(const Grid& grid, const WeftWarp& B) {
 
 /// Thin plate f = −<N, B1 s_uuuu + (B1 + B2) s_uuvv + B2 s_vvvv> N [Etzmuß 2002, (2.26)], the sign such that it removes
 /// energy; each second difference vanishes across its own border, which is the natural condition. Algorithm 4 as printed
-/// imposes Δs = 0 there and ignores twist. The projection onto N, which is the thesis', takes the forces' sum with it: a free
-/// sheet does not keep its momentum then (force_symmetry_test), as it does unprojected.
+/// imposes Δs = 0 there and ignores twist. The thesis' projection onto N changes the sum of the forces: a free sheet then does
+/// not keep its momentum (force_symmetry_test); unprojected it does.
 std::optional<Term> make_plate(const Sheet& sheet) {
   const Material& m = sheet.material;
   if ((!m.bend.any() && !m.bend_damping.any()) || m.bend_form != BendForm::plate) return {};

@@ -5,14 +5,9 @@
 namespace drape::model {
 namespace {
 
-/// The matrix of Σ_edges b/l² (x_j − x_i), b being the edge's own of two moduli.
+/// The matrix of Σ_edges b/l² (x_j − x_i), with b of the edge's direction.
 SparseMatrix laplacian(const Grid& grid, const WeftWarp& b) {
-  std::vector<Eigen::Triplet<double>> entries;
-  for (const Edge& edge : edges(grid))
-    if (along(b, edge) != 0) add_spring(entries, edge.i, edge.j, along(b, edge) / (edge.length * edge.length));
-  SparseMatrix matrix(grid.particles(), grid.particles());
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  return matrix;
+  return spring_matrix(grid, [&](const Edge& edge) { return along(b, edge) / (edge.length * edge.length); });
 }
 
 /// Minus the Laplacian of the Laplacian, times the area of a particle: the algorithm gives force densities.
@@ -24,7 +19,7 @@ SparseMatrix printed_plate_matrix(const Grid& grid, const WeftWarp& B) {
 }  // namespace
 
 /// Thin plate as printed: the Laplacian over the edges of a particle, and the Laplacian of that [Etzmuß 2002, Alg. 4], with the
-/// sign that removes energy. On free borders it imposes Δs = 0, and it knows no twist: it stands here to be compared.
+/// sign that removes energy. On free borders it imposes Δs = 0, and it lacks twist: for comparison only.
 std::optional<Term> make_printed_plate(const Sheet& sheet) {
   const Material& m = sheet.material;
   if ((!m.bend.any() && !m.bend_damping.any()) || m.bend_form != BendForm::printed) return {};

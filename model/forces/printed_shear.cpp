@@ -22,7 +22,7 @@ std::vector<Star> stars(const Grid& grid) {
   return all;
 }
 
-/// What all particles share: stress κ <U, V> + κ_d (<U̇, V> + <U, V̇>), spread with the factors 1/2l.
+/// Stars and their coefficients: stress κ <U, V> + κ_d (<U̇, V> + <U, V̇>), spread with the factors 1/2l.
 struct Printed {
   std::vector<Star> stars;
   Eigen::VectorXd area;  ///< dual cells: the algorithm gives force densities
@@ -55,7 +55,7 @@ void add_force(const Printed& p, const Configuration& c, Vectors& f) {
 }
 
 void add_jacobian(const Printed& p, const Configuration& c, const JacobianEntries& entries) {
-  if (!entries.exact()) return;  // nothing of it is symmetric
+  if (!entries.exact()) return;  // not symmetric
   const auto &dx = entries.add_dx, &dv = entries.add_dv;
   for (const Star& star : p.stars) {
     const Eigen::Vector3d U = difference(c.x, star.u), V = difference(c.x, star.v);
@@ -80,23 +80,21 @@ void add_jacobian(const Printed& p, const Configuration& c, const JacobianEntrie
 }  // namespace
 
 /// Shear as printed: σ12 = G <(x_right − x_left)/2l, (x_upper − x_lower)/2l>, along unit vectors, missing neighbours replaced
-/// by the particle itself [Etzmuß 2002, Alg. 2]. Not the gradient of an energy, and inconsistent at borders: it stands here
-/// to be compared.
+/// by the particle itself [Etzmuß 2002, Alg. 2]. Not the gradient of an energy, and inconsistent at borders: for comparison
+/// only.
 std::optional<Term> make_printed_shear(const Sheet& sheet) {
   const Material& m = sheet.material;
   const Grid& grid = sheet.grid;
   if ((m.shear == 0 && m.shear_damping == 0) || m.shear_form != ShearForm::printed) return {};
   if (grid.nu < 2 || grid.nv < 2) return {};  // a chain has no angle
   const double lu = grid.spacing_u(), lv = grid.spacing_v();
-  Printed printed{stars(grid), {}, m.shear / (4 * lu * lv), m.shear_damping / (4 * lu * lv), 1 / (2 * lu), 1 / (2 * lv)};
-  printed.area.resize(grid.particles());
-  for (int b = 0; b < grid.nv; ++b)
-    for (int a = 0; a < grid.nu; ++a) printed.area[grid.index(a, b)] = grid.cell_area(a, b);
+  Printed printed{stars(grid),  grid.cell_areas(), m.shear / (4 * lu * lv), m.shear_damping / (4 * lu * lv),
+                  1 / (2 * lu), 1 / (2 * lv)};
   const auto shared = std::make_shared<const Printed>(std::move(printed));
 
   Term term;
   term.force = [shared](const Configuration& c, Vectors& f) { add_force(*shared, c, f); };
-  term.explicit_force = term.active_force = term.force;
+  term.active = true;
   term.jacobian = [shared](const Configuration& c, const JacobianEntries& entries) { add_jacobian(*shared, c, entries); };
   return term;
 }

@@ -1,5 +1,3 @@
-#include <memory>
-
 #include "model/forces/term.hpp"
 #include "model/sheet/edges.hpp"
 
@@ -9,13 +7,11 @@ namespace drape::model {
 std::optional<Term> make_projected_damping(const Sheet& sheet) {
   const WeftWarp d = sheet.material.damping;
   if (!d.any() || sheet.material.damping_form != DampingForm::projected) return {};
-  const double lu = sheet.grid.spacing_u(), lv = sheet.grid.spacing_v();
-  const auto all = std::make_shared<const std::vector<Edge>>(edges(sheet.grid));
 
   Term term;
-  term.law = term.explicit_law = {.weft = {.dashpot = d.weft / lu}, .warp = {.dashpot = d.warp / lv}};
-  term.jacobian = [=](const Configuration& c, const JacobianEntries& entries) {
-    for (const Edge& edge : *all) {
+  term.law.edge.dashpot = d;
+  term.jacobian = [d, all = edges(sheet.grid)](const Configuration& c, const JacobianEntries& entries) {
+    for (const Edge& edge : all) {
       const Eigen::Vector3d p = c.x.row(edge.j) - c.x.row(edge.i);
       const Eigen::Vector3d q = c.v.row(edge.j) - c.v.row(edge.i);
       const double r = p.norm();

@@ -19,7 +19,7 @@ void quadrant_jacobian(const Configuration& c, EdgeEnds P, EdgeEnds Q, double ka
   const Eigen::Vector3d p = difference(c.x, P), q = difference(c.x, Q);
   const Eigen::Vector3d dp = difference(c.v, P), dq = difference(c.v, Q);
   const double s = kappa * p.dot(q) + kappa_d * (dp.dot(q) + p.dot(dq));
-  const double turned = entries.exact() ? 1 : 0;  // what is left out otherwise is indefinite or not symmetric
+  const double turned = entries.exact() ? 1 : 0;  // the terms left out otherwise are indefinite or not symmetric
   const Eigen::Vector3d ds_dp = kappa * q + turned * kappa_d * dq, ds_dq = kappa * p + turned * kappa_d * dp;
   const Eigen::Matrix3d sI = turned * s * Eigen::Matrix3d::Identity();
   const auto &dx = entries.add_dx, &dv = entries.add_dv;
@@ -50,7 +50,6 @@ std::optional<Term> make_shear(const Sheet& sheet) {
 
   Term term;
   term.law.cell = {.shear = kappa, .shear_rate = kappa_d};
-  term.explicit_law = term.law;
   term.energy = [=](const Vectors& x) {
     double energy = 0;
     for (const Cell& cell : *all)

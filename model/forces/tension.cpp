@@ -11,12 +11,10 @@ namespace drape::model {
 std::optional<Term> make_tension(const Sheet& sheet) {
   const WeftWarp k = sheet.material.tension;
   if (!k.any()) return {};
-  const double lu = sheet.grid.spacing_u(), lv = sheet.grid.spacing_v();
   const auto all = std::make_shared<const std::vector<Edge>>(edges(sheet.grid));
 
   Term term;
-  term.law = {.weft = {.spring = k.weft / lu, .thread = k.weft}, .warp = {.spring = k.warp / lv, .thread = k.warp}};
-  term.explicit_law = {.weft = {.thread = k.weft}, .warp = {.thread = k.warp}};
+  term.law.edge = {.spring = k, .preload = k};
   term.energy = [=](const Vectors& x) {
     double energy = 0;
     for (const Edge& edge : *all) {
@@ -38,10 +36,6 @@ std::optional<Term> make_tension(const Sheet& sheet) {
       const EdgeEnds ends{edge.i, edge.j};
       add_edge_pair(entries.add_dx, ends, ends, block);
     }
-  };
-  term.stiffness = [=](std::vector<Eigen::Triplet<double>>& K) {
-    for (const Edge& edge : *all)
-      if (along(k, edge) != 0) add_spring(K, edge.i, edge.j, along(k, edge) * edge.width / edge.length);
   };
   return term;
 }

@@ -2,20 +2,38 @@
 
 namespace drape::model {
 
+// Each in its file under model/forces/.
+std::optional<Term> make_tension(const Sheet& sheet);
+std::optional<Term> make_linear_damping(const Sheet& sheet);
+std::optional<Term> make_projected_damping(const Sheet& sheet);
+std::optional<Term> make_shear(const Sheet& sheet);
+std::optional<Term> make_printed_shear(const Sheet& sheet);
+std::optional<Term> make_contraction(const Sheet& sheet);
+std::optional<Term> make_membrane(const Sheet& sheet);
+std::optional<Term> make_plate(const Sheet& sheet);
+std::optional<Term> make_printed_plate(const Sheet& sheet);
+std::optional<Term> make_gravity(const Sheet& sheet);
+std::optional<Term> make_wind(const Sheet& sheet);
+std::optional<Term> make_air(const Sheet& sheet);
+
 std::span<const TermKind> term_kinds() {
   static constexpr TermKind table[] = {
-      {"tension", "springs along weft and warp (2.20), Alg. 1", make_tension},
-      {"damping", "linear damping d/l² (v_j − v_i) along weft and warp (3.18)", make_linear_damping},
-      {"projected-damping", "viscous tension, projected onto the edges (2.28), Alg. 1", make_projected_damping},
-      {"shear", "conservative shear W = ½ G <s_u, s_v>² with its viscous part", make_shear},
-      {"printed-shear", "shear as Algorithm 2 prints it", make_printed_shear},
-      {"contraction", "transverse contraction (2.22) with its viscous part", make_contraction},
-      {"membrane", "membrane bending (2.24) with its viscous part", make_membrane},
-      {"plate", "thin-plate bending (2.26) with its viscous part", make_plate},
-      {"printed-plate", "thin-plate bending as Algorithm 4 prints it", make_printed_plate},
-      {"gravity", "weight", make_gravity},
-      {"wind", "wind, divided by the normals into drag and lift (2.35), (2.36)", make_wind},
-      {"air", "resistance of the air (2.37), against the motion", make_air},
+      {.name = "tension", .description = "springs along weft and warp (2.20), Alg. 1", .make = make_tension},
+      {.name = "damping",
+       .description = "linear damping d/l² (v_j − v_i) along weft and warp (3.18)",
+       .make = make_linear_damping},
+      {.name = "projected-damping",
+       .description = "viscous tension, projected onto the edges (2.28), Alg. 1",
+       .make = make_projected_damping},
+      {.name = "shear", .description = "conservative shear W = ½ G <s_u, s_v>² with its viscous part", .make = make_shear},
+      {.name = "printed-shear", .description = "shear as Algorithm 2 prints it", .make = make_printed_shear},
+      {.name = "contraction", .description = "transverse contraction (2.22) with its viscous part", .make = make_contraction},
+      {.name = "membrane", .description = "membrane bending (2.24) with its viscous part", .make = make_membrane},
+      {.name = "plate", .description = "thin-plate bending (2.26) with its viscous part", .make = make_plate},
+      {.name = "printed-plate", .description = "thin-plate bending as Algorithm 4 prints it", .make = make_printed_plate},
+      {.name = "gravity", .description = "weight", .make = make_gravity},
+      {.name = "wind", .description = "wind, divided by the normals into drag and lift (2.35), (2.36)", .make = make_wind},
+      {.name = "air", .description = "resistance of the air (2.37), against the motion", .make = make_air},
   };
   return table;
 }

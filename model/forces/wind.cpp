@@ -6,7 +6,7 @@
 namespace drape::model {
 
 /// Wind f = (a + sin ωt) w on a surface: c_drag <f, N> N + c_lift (f − <f, N> N) [Etzmuß 2002, (2.35)–(2.36)], a force per
-/// area. Nothing stands in the lee of anything. It depends on time: no energy.
+/// area. There are no lees. It depends on time, so it has no energy.
 std::optional<Term> make_wind(const Sheet& sheet) {
   if (!sheet.wind.blows()) return {};
   const auto wind = [wind = sheet.wind](double t) -> Eigen::Vector3d {
@@ -23,7 +23,7 @@ std::optional<Term> make_wind(const Sheet& sheet) {
     if (!divides) return;
     for (Eigen::Index i = 0; i < f.rows(); ++i) f.row(i) += along_normal[i] * c.normals.row(i).dot(w) * c.normals.row(i);
   };
-  term.explicit_force = term.active_force = term.force;
+  term.active = true;
   if (!term.needs_normals) return term;
   term.jacobian = [=, normals = Normals(sheet.grid)](const Configuration& c, const JacobianEntries& entries) {
     if (!entries.exact()) return;  // not symmetric

@@ -10,7 +10,7 @@ class ExactJacobian {
   /// `coordinates`: 3N.
   explicit ExactJacobian(int coordinates) : dx_(coordinates), dv_(coordinates) {}
 
-  /// Sets both, 3N × 3N, whatever they were.
+  /// Sets both, 3N × 3N.
   void assemble(const VisitBlocks& visit, SparseMatrix& df_dx, SparseMatrix& df_dv);
 
  private:

@@ -6,7 +6,7 @@
 namespace drape::model {
 namespace {
 
-/// Each once, or on large sheets the entries of all of them would take many times the memory of the matrix.
+/// Each block once: on large sheets duplicates would take many times the memory of the matrix.
 Blocks distinct(Blocks blocks, const Blocks& more) {
   blocks.insert(blocks.end(), more.begin(), more.end());
   const auto before = [](const Eigen::Vector2i& a, const Eigen::Vector2i& b) {

@@ -8,10 +8,10 @@ namespace drape::model {
 /// Assembles J ≈ M − γ² ∂f/∂x − γ ∂f/∂v from the terms' convex blocks straight into its sparse pattern, which is found once.
 class NewtonMatrix {
  public:
-  /// `mass`: N. Pinned coordinates have nothing but their mass.
+  /// `mass`: N. Pinned coordinates have only their mass.
   NewtonMatrix(Curvature curvature, const Eigen::VectorXd& mass, const std::vector<solver::Pin>& pins);
 
-  /// Sets the upper triangle of J, 3N × 3N. J must be empty or what the last call left.
+  /// Sets the upper triangle of J, 3N × 3N. J must be empty or the result of the last call.
   void assemble(const VisitBlocks& visit, double gamma, SparseMatrix& J);
 
  private:

@@ -7,13 +7,13 @@
 
 namespace drape::model {
 
-/// Hands the blocks of a configuration to the entries, always in the same order.
+/// Adds the blocks of a configuration to the entries, always in the same order.
 using VisitBlocks = std::function<void(const JacobianEntries& entries)>;
 
 /// Blocks (i, j) in the order of a visit.
 using Blocks = std::vector<Eigen::Vector2i>;
 
-/// What records the blocks of a visit instead of adding them up.
+/// Records the blocks of a visit instead of adding them up.
 JacobianEntries::Add recorder(Blocks& blocks);
 
 /// Calls each(row, column, k) for the nine entries of a block, row by row.
@@ -23,7 +23,7 @@ void for_entries(int i, int j, const Each& each) {
     for (int b = 0; b < 3; ++b) each(3 * i + a, 3 * j + b, 3 * a + b);
 }
 
-/// Where the blocks of every visit go in a matrix whose pattern never changes.
+/// Places of the blocks of every visit in a matrix whose pattern never changes.
 class BlockSlots {
  public:
   /// `kept`: whether the matrix has an entry for (row, column).

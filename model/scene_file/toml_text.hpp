@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "model/sheet/material.hpp"
+#include "model/sheet/sheet.hpp"
 
 namespace drape::model {
 

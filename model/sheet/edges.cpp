@@ -13,11 +13,19 @@ std::vector<Edge> edges(const Grid& grid) {
   return all;
 }
 
-void add_spring(std::vector<Eigen::Triplet<double>>& entries, int i, int j, double weight) {
-  entries.emplace_back(i, i, -weight);
-  entries.emplace_back(j, j, -weight);
-  entries.emplace_back(i, j, weight);
-  entries.emplace_back(j, i, weight);
+SparseMatrix spring_matrix(const Grid& grid, const std::function<double(const Edge&)>& weight) {
+  std::vector<Eigen::Triplet<double>> entries;
+  for (const Edge& edge : edges(grid)) {
+    const double w = weight(edge);
+    if (w == 0) continue;
+    entries.emplace_back(edge.i, edge.i, -w);
+    entries.emplace_back(edge.j, edge.j, -w);
+    entries.emplace_back(edge.i, edge.j, w);
+    entries.emplace_back(edge.j, edge.i, w);
+  }
+  SparseMatrix matrix(grid.particles(), grid.particles());
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  return matrix;
 }
 
 }  // namespace drape::model

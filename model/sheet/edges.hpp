@@ -1,10 +1,10 @@
 #pragma once
 
-#include <utility>
+#include <functional>
 #include <vector>
 
 #include "model/sheet/grid.hpp"
-#include "model/sheet/material.hpp"
+#include "model/sheet/sheet.hpp"
 
 namespace drape::model {
 
@@ -22,8 +22,8 @@ std::vector<Edge> edges(const Grid& grid);
 /// The value of a modulus along an edge.
 inline double along(const WeftWarp& modulus, const Edge& edge) { return edge.weft ? modulus.weft : modulus.warp; }
 
-/// Adds a matrix of springs: weight at (i, j) and (j, i), −weight on their diagonals.
-void add_spring(std::vector<Eigen::Triplet<double>>& entries, int i, int j, double weight);
+/// The N × N matrix of springs on all edges of weight ≠ 0: the weight at (i, j) and (j, i), minus it on their diagonals.
+SparseMatrix spring_matrix(const Grid& grid, const std::function<double(const Edge&)>& weight);
 
 /// The ends of an edge vector x_end − x_begin.
 struct EdgeEnds {
@@ -31,7 +31,7 @@ struct EdgeEnds {
 };
 
 /// For an energy gradient g = ∂E/∂p of the edge vector p that depends on the edge vector r: adds the blocks of the forces
-/// −g on the end and +g on the beginning of p, derived by the ends of r. block = ∂g/∂r.
+/// −g on the end and +g on the beginning of p, differentiated by the ends of r. block = ∂g/∂r.
 template <class Add>
 void add_edge_pair(const Add& add, EdgeEnds p, EdgeEnds r, const Eigen::Matrix3d& block) {
   add(p.end, r.end, -block);

@@ -9,8 +9,8 @@ namespace drape::model {
 using solver::SparseMatrix;
 using solver::Vectors;
 
-/// What particles on a border weigh and springs along it pull with: half of those inside, as their dual cells are, or as much,
-/// as the algorithms of the thesis print it.
+/// Mass of particles on a border and stiffness of springs along it: half of those inside, as their dual cells are, or the
+/// whole, as in the thesis' algorithms.
 enum class BorderCells { dual, whole };
 
 /// The parameter domain of a rectangular sheet: nu × nv particles; u is the weft direction, v the warp direction.
@@ -29,7 +29,7 @@ struct Grid {
   double spacing_u() const { return nu > 1 ? size_u / (nu - 1) : size_u; }  ///< l_u [m]
   double spacing_v() const { return nv > 1 ? size_v / (nv - 1) : size_v; }  ///< l_v [m]
 
-  /// Width of the dual cell at place a of n as a part of the spacing: 1 inside, ½ on a border, 1 if there is but one.
+  /// Width of the dual cell at place a of n as a part of the spacing: 1 inside, ½ on a border, 1 if there is only one.
   static double dual_width(int a, int n) { return n > 1 && (a == 0 || a == n - 1) ? 0.5 : 1.0; }
 
   /// Width of the cell that column a or line b stands for [m].
@@ -39,7 +39,7 @@ struct Grid {
   /// Area that particle (a, b) stands for [m²].
   double cell_area(int a, int b) const { return cell_width_u(a) * cell_width_v(b); }
 
-  /// These areas of all particles [m²].
+  /// The areas of all particles [m²].
   Eigen::VectorXd cell_areas() const;
 
   /// Positions (u, v) of all particles as (x, y), z = 0: N × 3 [m].

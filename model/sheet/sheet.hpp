@@ -1,11 +1,57 @@
 #pragma once
 
 #include "model/sheet/grid.hpp"
-#include "model/sheet/material.hpp"
 
 namespace drape::model {
 
-/// Wind from one direction, steady or oscillating [Etzmuß 2002, (2.35)–(2.36)]: (a + sin ωt) w, of which a surface takes the
+/// A modulus with a value in the weft (u) and one in the warp (v) direction.
+struct WeftWarp {
+  double weft = 0;
+  double warp = 0;
+
+  bool any() const { return weft != 0 || warp != 0; }
+
+  WeftWarp& operator+=(const WeftWarp& other) {
+    weft += other.weft, warp += other.warp;
+    return *this;
+  }
+  bool operator==(const WeftWarp&) const = default;
+};
+
+enum class DampingForm {
+  linear,     ///< d/l² (v_j − v_i), also transversally: the form that the integrators of chapter 3 treat implicitly
+  projected,  ///< d/l² <v_j − v_i, (x_j − x_i)°> (x_j − x_i)°, the viscous stress of the model
+};
+
+enum class ShearForm {
+  conservative,  ///< W = ½ G <s_u, s_v>², consistent at borders
+  printed,       ///< Algorithm 2 of the thesis: wide stencil, unit vectors; not the gradient of an energy
+};
+
+enum class BendForm {
+  membrane,  ///< second order [Etzmuß 2002, (2.24)]; always projected onto the normal
+  plate,     ///< fourth order [Etzmuß 2002, (2.26)]
+  printed,   ///< the plate of Algorithm 4: not consistent on borders and without twist; always projected
+};
+
+/// Elastic moduli and their viscous counterparts (Kelvin–Voigt). Zero: the force does not exist.
+struct Material {
+  double density = 1;  ///< ρ [kg/m²]
+  WeftWarp tension;    ///< k1, k2 [N/m]
+  WeftWarp damping;    ///< d1, d2 [N s/m]
+  DampingForm damping_form = DampingForm::linear;
+  double shear = 0;          ///< G [N/m]
+  double shear_damping = 0;  ///< dG [N s/m]
+  ShearForm shear_form = ShearForm::conservative;
+  double contraction = 0;          ///< C12 [N/m]
+  double contraction_damping = 0;  ///< d12 [N s/m]
+  WeftWarp bend;                   ///< B1, B2: [N/m] for the membrane, [N m] for the plate
+  WeftWarp bend_damping;           ///< dB1, dB2: [N s/m] or [N m s]
+  BendForm bend_form = BendForm::plate;
+  bool bend_projected = true;  ///< plate only: forces along the vertex normal (as in the thesis), not in all directions
+};
+
+/// Wind from one direction, steady or oscillating [Etzmuß 2002, (2.35)–(2.36)]: (a + sin ωt) w; a surface takes the
 /// part along its normal times c_drag and the rest times c_lift.
 struct Wind {
   Eigen::Vector3d load = Eigen::Vector3d::Zero();  ///< w, a force per area [N/m²]
@@ -15,10 +61,10 @@ struct Wind {
   double lift = 0;                                 ///< c_lift
 
   bool blows() const { return !load.isZero(0) && (constant != 0 || frequency != 0) && (drag != 0 || lift != 0); }
-  bool needs_normals() const { return blows() && drag != lift; }  ///< or else the surface takes it undivided
+  bool needs_normals() const { return blows() && drag != lift; }  ///< else the surface takes it undivided
 };
 
-/// A sheet before it is compiled: what every force is made from.
+/// A sheet before it is compiled, from which every force is made.
 struct Sheet {
   Grid grid;
   Material material;

@@ -61,7 +61,7 @@ BoundaryValueProblem problem(const BentSheet& sheet) {
   return sheet.force == BendingForce::whole ? whole(sheet) : along_normal(sheet);
 }
 
-/// With polynomials of the lowest degree that will do, from the flat strip, stiff enough to stay nearly flat, down to the
+/// With polynomials of the lowest sufficient degree, from the flat strip, stiff enough to stay nearly flat, down to the
 /// bending modulus asked for.
 PiecewisePolynomial roughly(const BentSheet& sheet) {
   const auto flat = [&](double X) -> Eigen::VectorXd {

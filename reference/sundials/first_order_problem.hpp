@@ -11,10 +11,10 @@ namespace drape::reference::sundials_tools {
 /// Solves systems with I - γ ∂g/∂y of a first-order ODE, or with what stands for it.
 class FirstOrderNewton {
  public:
-  /// `part`: what is implicit. Counts Jacobians and analyses in the ODE's work under `prefix`.
+  /// `part`: the implicit part. Counts Jacobians and analyses in the ODE's work under `prefix`.
   FirstOrderNewton(const FirstOrderOde& ode, Part part, const SolveOptions& options, std::string_view prefix);
 
-  /// For a state; the last Jacobian will do if it is `known`. False if the matrix is singular.
+  /// Prepares for a state; with the last Jacobian if it is `known`. False if the matrix is singular.
   bool prepare(double t, const solver::State& y, bool known, double gamma);
 
   /// z with (I - γ ∂g/∂y) z ≈ r at a state with the derivative dy.

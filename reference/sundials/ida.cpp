@@ -48,7 +48,7 @@ class ResidualForm {
   /// ∂F/∂y + c ∂F/∂y', valid until the next call.
   const WideSparseMatrix& jacobian(double t, double c, const State& y);
 
-  /// z with (∂F/∂y + c ∂F/∂y') z ≈ r, where 1/c is what the reduced matrix was prepared for.
+  /// z with (∂F/∂y + c ∂F/∂y') z ≈ r, where 1/c is the γ of the reduced matrix.
   void solve_reduced(ReducedNewton& newton, double t, const State& y, const StateVector& r, StateVector& z);
 
  private:

@@ -9,7 +9,7 @@
 
 namespace drape::reference {
 
-/// KLU sees the rows of the matrix as columns of its transpose.
+/// KLU is given the transpose: our rows are its columns.
 class KluFactor::Factors {
  public:
   explicit Factors(const WideSparseMatrix& A) : A_(A) {
@@ -31,7 +31,7 @@ class KluFactor::Factors {
            std::equal(A.innerIndexPtr(), A.innerIndexPtr() + entries, A_.innerIndexPtr());
   }
 
-  /// With the pivots of the last time if they are still good ones.
+  /// Factors with the last pivots if these are still good.
   bool renew(const WideSparseMatrix& A) {
     std::copy_n(A.valuePtr(), A.nonZeros(), A_.valuePtr());
     if (numeric_ != nullptr && refactored()) return true;

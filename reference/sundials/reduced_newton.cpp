@@ -11,10 +11,10 @@ using solver::Vectors;
 
 namespace {
 
-/// Of the system with the constant matrix where partial pins make its factor a preconditioner.
+/// Tolerance of the system with the constant matrix where partial pins make its factor a preconditioner.
 constexpr double accuracy = 1e-8;
 
-/// Of the difference quotient, relative to the state.
+/// Size of the difference quotient relative to the state.
 constexpr double difference = 1e-7;
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace drape::reference {
 ///
 ///     dx − γ dv = p,   M dv − γ (∂f/∂x dx + ∂f/∂v dv) = q     ⇔     N dv = q + γ ∂f/∂x p,   dx = p + γ dv
 ///
-/// with N = M − γ² ∂f/∂x − γ ∂f/∂v, or what stands for it. No call but the constructor and the first factorisation allocates.
+/// with N = M − γ² ∂f/∂x − γ ∂f/∂v, or an approximation of it. Only the constructor and the first factorisation allocate.
 class ReducedNewton {
  public:
   /// The ODE must outlive this object. `kept`: the constant matrix is not factored again for a γ that differs by less than

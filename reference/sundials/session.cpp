@@ -29,7 +29,7 @@ void Session::require(int flag, FlagName flag_name, double reached) const {
 
 void Session::on_error(int code, const char*, const char*, char* message, void* self) {
   auto& reason = static_cast<Session*>(self)->reason_;
-  if (code < 0 && reason.empty()) reason = message;  // what a callback said is nearer to the cause
+  if (code < 0 && reason.empty()) reason = message;  // the message of a callback is nearer to the cause
 }
 
 void add_counts(std::initializer_list<SolverCount> counts, void* memory, solver::Counters& work) {

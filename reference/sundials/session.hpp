@@ -40,7 +40,7 @@ inline Owned<N_Vector> clone(const Owned<N_Vector>& vector) { return Owned<N_Vec
 /// The state in a vector of StateVector.
 inline solver::State& state(N_Vector vector) { return content(vector).state; }
 
-/// GMRES, or what applies the preconditioner once where that is the inverse, or all but.
+/// GMRES; or one application of the preconditioner where that is the inverse, or nearly.
 Owned<SUNLinearSolver> make_linear_solver(const NewtonSolve& newton, N_Vector y, SUNContext context);
 
 /// The function of a solver that names its return flags; the name is on the heap.

@@ -14,7 +14,7 @@ struct StateVector {
   solver::State state;
   Eigen::VectorXd reactions = {};
 
-  /// The unknowns among these numbers: the length that SUNDIALS sees. Root mean squares are over them, so that pinned
+  /// The unknowns among these numbers: the vector's length for SUNDIALS. Root mean squares are over them, so that pinned
   /// coordinates, whose entries are 0, do not dilute an error norm.
   std::int64_t unknowns = 0;
 };

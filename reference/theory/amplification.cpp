@@ -81,6 +81,7 @@ solver::Point advance(const solver::Method& method, const solver::SplitOde& ode,
   solver::History past = history(memory, u);
   solver::Point next = point(Eigen::VectorXd::Zero(2));
   solver::Scratch scratch{none, none, none, {}};
+  solver::StepError error;
   solver::SubStepping sub_stepping{.limit = method.sub_steps ? h : 0, .substeps = substeps, .limits = limits};
   solver::Step step{.ode = ode,
                     .options = options,
@@ -89,8 +90,8 @@ solver::Point advance(const solver::Method& method, const solver::SplitOde& ode,
                     .next = next,
                     .scratch = scratch,
                     .sub_stepping = sub_stepping,
-                    .h = h,
-                    .w = 1};
+                    .error = error,
+                    .h = h};
   method.step(step);
   if (step.result.outcome != solver::Outcome::success)
     throw std::runtime_error("a step of " + std::string(method.name) +

@@ -10,7 +10,7 @@
 /// What a method does to a linear mode: from its running step function, and in theory.
 namespace drape::reference {
 
-/// A linear mode as a method with the step h sees it.
+/// A linear mode, scaled by the step h of a method.
 struct Mode {
   double nu;              ///< h² κ, the implicit part of the split
   double W;               ///< h² ω², the whole
@@ -29,7 +29,7 @@ solver::SplitOde mode_ode(const LinearMode& mode);
 /// steps, (x0, h v0, x₋₁, h v₋₁, …); of methods that keep accelerations (x, h v, h² a), of `verlet` with a single sub-step,
 /// stable or not.
 ///
-/// Its columns are what the step function makes of unit vectors, with tolerances at round-off. Where the fixed-point loop would
+/// Its columns are the step function's results for unit vectors, with tolerances at round-off. Where the fixed-point loop would
 /// take more than some 10⁵ updates or diverge, or may do so, the mode's κ is replaced by ω²: the loop's limit does not depend
 /// on the split. Throws std::runtime_error if a step fails.
 Eigen::MatrixXd amplification_matrix(const solver::Method& method, const Mode& mode);
@@ -50,10 +50,10 @@ struct ModeBehaviour {
   double decay;      ///< of the amplitude a step, negative if it grows; of the slower part if overdamped
 };
 
-/// As the method moves it: frequency = |arg z| and decay = −ln |z| of the dominant factor z.
+/// Its motion by the method: frequency = |arg z| and decay = −ln |z| of the dominant factor z.
 ModeBehaviour measured_behaviour(const solver::Method& method, const Mode& mode);
 
-/// As it moves in truth.
+/// Its exact motion.
 ModeBehaviour exact_behaviour(const Mode& mode);
 
 // --- In theory: those that take the name of a method throw std::invalid_argument if there is no theory of it

@@ -27,7 +27,7 @@ struct Polynomial {
   }
 };
 
-/// What is known of a method on a linear mode.
+/// The theory of a method on a linear mode.
 struct Theory {
   std::string_view name;
   double stage;  ///< γ/h of the fixed-point loop, 0 if there is none

@@ -18,7 +18,7 @@ struct LinearPrediction {
 ///
 /// From the characteristic polynomials of amplification.hpp, that of BDF(k) for k = 3, 4, 5. One-step methods that are A-stable
 /// by construction have no growing modes, nor have methods that divide their steps: their radius is given as 1. Nothing for a
-/// method that theory does not know.
+/// method without a theory.
 std::optional<LinearPrediction> predict(const solver::Method& method, double stiffness, double stiffness_to_damping);
 
 }  // namespace drape::reference

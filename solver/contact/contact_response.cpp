@@ -74,14 +74,14 @@ void ContactResponse::touch(int particle, std::size_t begin, std::size_t end, st
   touched_.push_back(p);
 }
 
-/// Friction by what the step before found out.
+/// Sets the friction from the multipliers of the step before.
 void ContactResponse::remember_friction(Touched& p, const Past& was) const {
   p.rubs = true;
   if (p.status == Status::slides) p.friction = coulomb(p, y0_->v.row(p.particle), was.force, was.bound);
 }
 
-/// Friction on a sliding particle during a step h, against the motion that it would have without; less than the bound where
-/// that would turn it round.
+/// Friction on a sliding particle during a step h, against its motion without friction; less than the bound where that would
+/// reverse it.
 Eigen::Vector3d ContactResponse::coulomb(const Touched& p, const Eigen::Vector3d& v, const Eigen::Vector3d& force,
                                          double bound) const {
   const double m = ode_.mass[p.particle];
@@ -91,7 +91,7 @@ Eigen::Vector3d ContactResponse::coulomb(const Touched& p, const Eigen::Vector3d
   return -bound / size * momentum;
 }
 
-/// Everything that follows from which contacts are active and whether the particle sticks.
+/// Computes all that depends on which contacts are active and on whether the particle sticks.
 void ContactResponse::configure(Touched& p) {
   const auto count = std::count(active_.begin() + static_cast<std::ptrdiff_t>(p.begin),
                                 active_.begin() + static_cast<std::ptrdiff_t>(p.end), true);
@@ -133,7 +133,7 @@ void ContactResponse::configure(Touched& p) {
   }
 }
 
-/// How long a particle goes its way freely before it touches something [s], at most h.
+/// Time until a particle touches an obstacle [s], at most h.
 double ContactResponse::time_to_impact(const Touched& p) const {
   const Eigen::Vector3d v = y0_->v.row(p.particle);
   double time = h_;
@@ -210,7 +210,7 @@ bool ContactResponse::update(const Stage& stage, const State& y, const Vectors& 
   return changed;
 }
 
-/// Lets go of the contact that would have to pull hardest.
+/// Releases the contact that would have to pull hardest.
 bool ContactResponse::release(Touched& p, const PerContact& lambda, double noise) {
   Eigen::Index weakest = 0;
   if (lambda.minCoeff(&weakest) >= -noise) return false;
@@ -230,7 +230,7 @@ bool ContactResponse::capture(Touched& p, const Eigen::Vector3d& x1) {
   return captured > 0;
 }
 
-/// Decides the friction of a new contact; later a particle that friction turns round sticks.
+/// Decides the friction of a new contact; later a particle that friction would reverse sticks.
 bool ContactResponse::rub(Touched& p, const Eigen::Vector3d& v) {
   const Eigen::Vector3d sliding = p.tangent() * (v - p.obstacle);
   const bool first = !std::exchange(p.rubs, true);
@@ -255,8 +255,8 @@ void ContactResponse::add_friction(double gamma, Vectors& r) const {
   for (const Touched& p : touched_) r.row(p.particle) += gamma * p.friction;
 }
 
-/// Lets some directions of a particle come to y1 by a uniform acceleration a, where that changed its velocity less than what
-/// really happened: stiff neighbours may pull much harder for a moment.
+/// Replaces some directions of y0 by those from which the uniform acceleration a leads to y1, where that changes the velocity
+/// less than the step did: stiff neighbours may pull much harder for a moment.
 void ContactResponse::rewrite_history(const Eigen::Matrix3d& directions, const Eigen::Vector3d& a, int particle,
                                       const State& y1, State& y0) const {
   const Eigen::Vector3d x1 = y1.x.row(particle), v1 = y1.v.row(particle), x0 = y0.x.row(particle), v0 = y0.v.row(particle);
@@ -287,7 +287,7 @@ bool ContactResponse::finish(State& y1, State& y0) {
     p.impulse = ode_.mass[p.particle] * stopped + h_ * (p.friction - constrained * p.force);
     p.work = 0.5 * p.impulse.dot(v0 + v1 + jump);
     const bool impulsive = p.fresh && p.bound > 0;
-    if (p.fresh) {  // what the impact bore, the next step will not
+    if (p.fresh) {  // the reaction to the impact does not last
       p.bound = friction_bound(p, -(p.inverse * p.force));
       p.holding = -(p.tangent() * p.force);
     }

@@ -11,20 +11,21 @@ namespace drape::solver {
 /// [Etzmuß 2002, 4.4].
 ///
 /// A particle that would leave its half-space is constrained along the normal n to the velocity that ends the step on the
-/// border (4.4), and released when the residual in that direction would have to pull it. Which particles are constrained is
+/// border (4.4), and released when the residual in that direction would have to pull it. The set of constrained particles is
 /// found together with the solution: at the end of the step <x, n> ≥ least, multipliers push, and one of the two is at its
 /// limit. A constrained particle sticks while its tangential multiplier stays below η times the normal one; else it slides, and
-/// η times the normal one acts against its motion. Friction lags: it is that of the multipliers and velocities of the step
-/// before, except for new contacts and for particles that it would turn round, which stick.
+/// η times the normal one acts against its motion. Friction lags: it is computed from multipliers and velocities of the step
+/// before, except for new contacts and for particles that it would reverse, which stick.
 ///
 /// Constrained directions follow x0 + (t − t0) v in every method, so that one with history ends on the border as Euler does.
-/// After the step they move with the obstacle, and where they are new the history follows: an impact is a new beginning.
+/// After the step they move with the obstacle, and where they are new the history is adapted, since motion is not smooth at
+/// impacts.
 class ContactResponse {
  public:
   explicit ContactResponse(const SplitOde& ode);
 
-  /// Finds what may be touched in the step from t0 to t0 + h. Starts with those constraints of the step before that may hold.
-  /// `again`: the same step once more.
+  /// Finds the possible contacts of the step from t0 to t0 + h, and starts with those constraints of the step before that may
+  /// hold. `again`: repeats the same step.
   void begin(double t0, double h, const State& y0, bool again = false);
 
   /// Whether nothing can be touched in this step.
@@ -36,41 +37,41 @@ class ContactResponse {
   /// Sets the constrained components of v, and those of x at the time of the stage.
   void impose(const Stage& stage, State& y) const;
 
-  /// Adapts the constraints to a stage's solution y. r: the whole residual M (av − v) + γ f without friction; `noise`: what is
-  /// smaller in r says nothing. True if constraints changed, so that they must be imposed anew. `settled`: only adds
-  /// constraints, so that changes come to an end.
+  /// Adapts the constraints to a stage's solution y. r: the whole residual M (av − v) + γ f without friction; `noise`:
+  /// round-off in r. True if constraints changed, so that they must be imposed again. `settled`: only adds constraints, so that
+  /// changes come to an end.
   bool update(const Stage& stage, const State& y, const Vectors& r, double noise, bool settled);
 
   /// Adds γ times friction to a residual.
   void add_friction(double gamma, Vectors& r) const;
 
-  /// After the step: the constrained directions of y1 move with the obstacle, and where they are new, y0 becomes what
-  /// uniformly accelerated motion would have come from; true if that happened.
+  /// After the step: the constrained directions of y1 move with the obstacle, and where they are new, y0 becomes the start of a
+  /// uniformly accelerated motion to y1; true if y0 changed.
   bool finish(State& y1, State& y0);
 
   /// Kinetic energy of the motion that new constraints stop in the step [J].
   double stopped_energy() const;
 
-  int constrained() const;          ///< particles that were in the last step
-  Eigen::Vector3d impulse() const;  ///< that the obstacles gave to the particles in the last step [N s]
-  double work() const;              ///< of these impulses [J]
+  int constrained() const;          ///< particles constrained in the last step
+  Eigen::Vector3d impulse() const;  ///< of the obstacles on the particles in the last step [N s]
+  double work() const;              ///< done by these impulses [J]
 
  private:
   enum class Status { free, slides, sticks };
 
-  /// Three contacts hold a particle: it has no more at a time, and no memory for more.
+  /// Three contacts fix a particle, so it has at most three active ones.
   static constexpr int most_contacts = 3;
   using Columns = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, most_contacts>;
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::ColMajor, most_contacts, 3>;
   using PerContact = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, most_contacts, 1>;
 
-  /// A particle that may touch something.
+  /// A particle that may touch an obstacle.
   struct Touched {
     int particle = 0;
     std::size_t begin = 0, end = 0;  ///< its contacts
     Eigen::Matrix3d allowed;         ///< projector on what its pins leave
     Status status = Status::free;
-    bool fresh = false;                                  ///< constrained as it was not in the step before
+    bool fresh = false;                                  ///< constrained in this step and not in the one before
     Columns normals;                                     ///< of its active contacts, without pinned coordinates
     Rows inverse;                                        ///< pseudo-inverse of these
     Eigen::Matrix3d free;                                ///< projector on what pins and constraints leave
@@ -88,7 +89,7 @@ class ContactResponse {
     Eigen::Matrix3d tangent() const { return allowed - normals * inverse; }
   };
 
-  /// What a contact was in the step before.
+  /// A contact in the step before.
   struct Past {
     int particle, obstacle;
     Status status;

@@ -30,14 +30,14 @@ void ImpactResponse::begin(double t0, double h, const State& y0) {
   }
 }
 
-/// Adds up what a change of velocity is to a particle whose velocity is v in the middle of it.
+/// Adds the impulse and work of a change of velocity, where v is the velocity in the middle of it.
 void ImpactResponse::give(int particle, const Eigen::Vector3d& change, const Eigen::Vector3d& v) {
   impulse_ += ode_.mass[particle] * change;
   work_ += ode_.mass[particle] * change.dot(v);
 }
 
-/// Several contacts of a particle disturb each other: they take turns, and take back what is no longer needed, until there is
-/// nothing left to do. `missing`: how much of its row a contact misses; `note`: is told of every change of a row.
+/// Several contacts of a particle disturb each other: they are corrected in turn, and unneeded corrections are undone, until
+/// none changes. `missing`: the correction that a contact needs; `note`: called for every change of a row.
 template <class Missing, class Note>
 void ImpactResponse::take_turns(double Side::*given, Vectors& rows, const Missing& missing, const Note& note) {
   constexpr int most_turns = 50;

@@ -6,13 +6,13 @@
 
 namespace drape::solver {
 
-/// Contacts within one step of an explicit method: without a matrix every particle meets its obstacles alone, by inelastic
+/// Contacts within one step of an explicit method: since there is no matrix, each particle is treated alone, by inelastic
 /// impulses with Coulomb friction in every sub-step. Shares no code with ContactResponse, so that each can verify the other.
 class ImpactResponse {
  public:
   explicit ImpactResponse(const SplitOde& ode);
 
-  /// Finds what may be touched in the step from t0 to t0 + h.
+  /// Finds the possible contacts of the step from t0 to t0 + h.
   void begin(double t0, double h, const State& y0);
 
   bool empty() const { return contacts_.empty(); }
@@ -20,8 +20,8 @@ class ImpactResponse {
   /// Moves particles that have left their half-spaces to the border as it is s seconds after t0 ...
   void push_out(double s, Vectors& x);
 
-  /// ... and gives these the velocity after the impact, and takes from their accelerations, for the half of a sub-step τ that
-  /// follows, what the obstacle bears. `begins`: before the first sub-step.
+  /// ... and gives these the velocity after the impact, and subtracts the obstacle's reaction from their accelerations for the
+  /// next half of a sub-step τ. `begins`: before the first sub-step.
   void stop(double tau, bool begins, Vectors& v, Vectors& a);
 
   int constrained() const;                              ///< particles that touched something in the last sub-step
@@ -43,7 +43,7 @@ class ImpactResponse {
   void take_turns(double Side::*given, Vectors& rows, const Missing& missing, const Note& note);
   void give(int particle, const Eigen::Vector3d& change, const Eigen::Vector3d& v);
 
-  /// What friction changes.
+  /// Changes by friction.
   struct Friction {
     Eigen::Vector3d velocity, acceleration;
   };

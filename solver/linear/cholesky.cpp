@@ -11,8 +11,8 @@ namespace {
 
 /// The complete factor P A Pᵀ = L D Lᵀ: CHOLMOD orders and factors, the substitutions are our own.
 ///
-/// Simplicial: the matrices of sheets up to some 300 × 300 are too sparse for supernodes to pay. Both substitutions gather,
-/// each from rows in its own order, and so need L twice; three coordinates go through them at a time: a third to half the time
+/// Simplicial: the matrices of sheets up to some 300 × 300 are too sparse for supernodes to pay. Both substitutions gather from
+/// rows in their own order, so L is stored twice; they process three coordinates at a time. They take a third to half the time
 /// of CHOLMOD's, which copies and permutes. Nested dissection would fill 5 % less at 100 × 100 and takes 10 times as long to
 /// order.
 class Cholesky : public Preconditioner {
@@ -22,7 +22,7 @@ class Cholesky : public Preconditioner {
     common_.supernodal = CHOLMOD_SIMPLICIAL;
     common_.nmethods = 1;
     common_.method[0].ordering = CHOLMOD_AMD;
-    common_.final_ll = 1;  // so that a matrix that is not positive definite is noticed
+    common_.final_ll = 1;  // so that a matrix that is not positive definite is reported
     common_.print = 0;     // outcomes are returned, not printed
   }
   ~Cholesky() override {
@@ -32,7 +32,7 @@ class Cholesky : public Preconditioner {
   Cholesky(const Cholesky&) = delete;
   Cholesky& operator=(const Cholesky&) = delete;
 
-  void analyze(const SparseMatrix& A) override {
+  void analyse(const SparseMatrix& A) override {
     cholmod_free_factor(&factor_, &common_);
     cholmod_sparse view = cholmod_view(A);
     factor_ = cholmod_analyze(&view, &common_);
@@ -83,8 +83,7 @@ class Cholesky : public Preconditioner {
   std::vector<Lanes> work_;
 };
 
-/// Takes CHOLMOD's columns of G = L √D apart. Within a row what was solved for last comes last, to avoid stalls of the
-/// processor.
+/// Takes CHOLMOD's columns of G = L √D apart. Within a row the most recently computed unknowns come last, to avoid stalls.
 void Cholesky::take_factor() {
   const int n = static_cast<int>(factor_->n);
   const int *const begin = static_cast<int*>(factor_->p), *const count = static_cast<int*>(factor_->nz);

@@ -6,8 +6,8 @@
 
 namespace drape::solver {
 
-/// A symmetric matrix as CHOLMOD sees it; of its entries only the upper triangle counts. Our rows are CHOLMOD's columns, so the
-/// upper triangle of the one is the lower triangle of the other. Valid as long as A is and keeps its pattern.
+/// A symmetric matrix for CHOLMOD, which reads its upper triangle only. Our rows are CHOLMOD's columns, so our upper triangle
+/// is CHOLMOD's lower one. Valid as long as A is and keeps its pattern.
 inline cholmod_sparse cholmod_view(const SparseMatrix& A) {
   cholmod_sparse view{};
   view.nrow = view.ncol = static_cast<std::size_t>(A.rows());

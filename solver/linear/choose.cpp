@@ -1,3 +1,6 @@
+#include "solver/linear/choose.hpp"
+
+#include <algorithm>
 #include <cmath>
 
 #include "solver/linear/five_point.hpp"
@@ -6,7 +9,7 @@
 namespace drape::solver {
 namespace {
 
-/// The numerical stiffness γ² k / m [Etzmuß 2002, 3.1.1] of a stage's matrix: the largest spring over what its particle weighs,
+/// The numerical stiffness γ² k / m [Etzmuß 2002, 3.1.1] of a stage's matrix: the largest spring over its particle's mass,
 /// which is the sum of a row since springs pull on differences.
 double stiffness(const SparseMatrix& A) {
   double stiffness = 0;
@@ -21,27 +24,25 @@ double stiffness(const SparseMatrix& A) {
   return stiffness;
 }
 
-/// The quickest of the linear solvers over about a hundred solves with one matrix, as measured (`study scaling` shows some of
-/// it): up to 150 × 150 particles a substitution takes less time than two multigrid cycles, at 200 × 200 its factorisation no
-/// longer pays; where springs are softer than masses two or three iterations suffice, however large the sheet.
-const LinearSolver& quickest(const SparseMatrix& A) {
-  if (A.rows() <= 25000) return linear_solver("cholesky");
-  if (stiffness(A) < 1) return linear_solver("mic0");
+/// The fastest of the linear solvers over about a hundred solves with one matrix.
+const LinearSolver& fastest(const SparseMatrix& A) {
+  if (A.rows() <= LinearChoice::most_factored) return linear_solver("cholesky");
+  if (stiffness(A) < LinearChoice::soft) return linear_solver("mic0");
   if (five_point(A)) return linear_solver("multigrid");
-  return linear_solver(A.rows() <= 200000 ? "cholesky" : "mic0");
+  return linear_solver(A.rows() <= LinearChoice::most_factored_without_grid ? "cholesky" : "mic0");
 }
 
-/// Chooses anew for every matrix.
+/// Chooses again for every matrix.
 class Automatic : public Preconditioner {
  public:
-  void analyze(const SparseMatrix&) override { solver_ = nullptr; }
+  void analyse(const SparseMatrix&) override { solver_ = nullptr; }
 
   Outcome factor(const SparseMatrix& A) override {
-    const LinearSolver& best = quickest(A);
+    const LinearSolver& best = fastest(A);
     if (solver_ == nullptr || chosen_ != &best) {
       chosen_ = &best;
       solver_ = best.make();
-      solver_->analyze(A);
+      solver_->analyse(A);
     }
     return solver_->factor(A);
   }

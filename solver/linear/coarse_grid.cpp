@@ -5,8 +5,8 @@
 namespace drape::solver {
 namespace {
 
-/// Galerkin's product Pᵀ A P is a nine-point star; here its row sums are kept, and of its couplings those along the grid's
-/// lines, with those of neighbouring lines lumped on them.
+/// Galerkin's product Pᵀ A P is a nine-point star. This five-point star keeps its row sums and its couplings along the grid's
+/// lines, on which the diagonal couplings are lumped.
 class Galerkin {
  public:
   Galerkin(const FivePoint& fine, const Coarsening& u, const Coarsening& v)

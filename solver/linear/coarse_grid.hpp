@@ -22,7 +22,7 @@ struct Coarsening {
   /// The place of a coarse place on the fine grid.
   int place(int coarse) const { return halved ? std::min(2 * coarse, fine - 1) : coarse; }
 
-  /// Whether a and a + 1 are coarse places both.
+  /// Whether both a and a + 1 are coarse places.
   bool kept(int a) const { return !halved || (a % 2 == 0 && a == fine - 2); }
 
   /// Calls f(place, weight) for the coarse places from which a is interpolated.
@@ -34,7 +34,8 @@ struct Coarsening {
   }
 };
 
-/// A grid, the next coarser one, and how it came about. Particles without neighbours (pinned ones) are interpolated by 0.
+/// The next coarser grid, its matrix, and how it was coarsened. Particles without neighbours (pinned ones) are interpolated by
+/// 0.
 struct CoarseGrid {
   Coarsening u, v;
   FivePoint A;

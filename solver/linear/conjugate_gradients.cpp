@@ -10,8 +10,8 @@ namespace drape::solver {
 ConjugateGradients::ConjugateGradients(std::unique_ptr<Preconditioner> preconditioner, int max_iterations, Counters& work)
     : preconditioner_(std::move(preconditioner)), max_iterations_(max_iterations), work_(work) {}
 
-void ConjugateGradients::analyze(const SparseMatrix& A) {
-  preconditioner_->analyze(A);
+void ConjugateGradients::analyse(const SparseMatrix& A) {
+  preconditioner_->analyse(A);
   for (Vectors* field : {&z_, &p_, &q_}) field->setZero(A.rows(), 3);
 }
 
@@ -23,7 +23,7 @@ Outcome ConjugateGradients::factor(const SparseMatrix& A) {
   return outcome;
 }
 
-LinearResult ConjugateGradients::solve_directly(Vectors& r, Vectors& d) {
+LinearResult ConjugateGradients::solve_exactly(Vectors& r, Vectors& d) {
   const double rd = precondition({}, r, d);
   r.setZero();
   return {std::isfinite(rd) ? Outcome::success : Outcome::not_finite, 0};
@@ -39,8 +39,8 @@ double ConjugateGradients::precondition(const Filter& filter, const Vectors& r, 
 }
 
 /// The next direction p = z + β p and q = A p. Returns <p, q>.
-double ConjugateGradients::direct(const SparseMatrix& A, double beta) {
-  if (star_) return solver::direct(*star_, z_, beta, p_, q_);
+double ConjugateGradients::update_direction(const SparseMatrix& A, double beta) {
+  if (star_) return solver::update_direction(*star_, z_, beta, p_, q_);
   if (beta == 0)
     p_ = z_;
   else
@@ -48,12 +48,12 @@ double ConjugateGradients::direct(const SparseMatrix& A, double beta) {
   return multiply(A, p_, q_);
 }
 
-std::int64_t ConjugateGradients::direct_bytes(const SparseMatrix& A) const {
+std::int64_t ConjugateGradients::direction_bytes(const SparseMatrix& A) const {
   return star_ ? star_->bytes() + vector_bytes(A.rows(), 4) : multiply_bytes(A) + vector_bytes(A.rows(), 3);
 }
 
 LinearResult ConjugateGradients::solve(const SparseMatrix& A, const Filter& filter, Vectors& r, Vectors& d, double target) {
-  if (preconditioner_->exact() && filter.empty()) return solve_directly(r, d);
+  if (preconditioner_->exact() && filter.empty()) return solve_exactly(r, d);
   d.setZero();
   double rz = 0;
   double norm = r.norm();
@@ -64,14 +64,14 @@ LinearResult ConjugateGradients::solve(const SparseMatrix& A, const Filter& filt
 
     const double previous = rz;
     rz = precondition(filter, r, z_);
-    double pq = direct(A, k == 0 ? 0 : rz / previous);
+    double pq = update_direction(A, k == 0 ? 0 : rz / previous);
     if (!filter.empty()) {
       filter(q_);
       pq = p_.cwiseProduct(q_).sum();
     }
     ++work_.cg_iterations;
     ++work_.products;
-    work_.bytes += direct_bytes(A) + vector_bytes(A.rows(), 6);
+    work_.bytes += direction_bytes(A) + vector_bytes(A.rows(), 6);
     if (std::isfinite(pq) && pq <= 0) return {Outcome::breakdown, k};
     norm = std::sqrt(advance(rz / pq, p_, q_, d, r));
   }

@@ -21,26 +21,26 @@ class ConjugateGradients {
  public:
   ConjugateGradients(std::unique_ptr<Preconditioner> preconditioner, int max_iterations, Counters& work);
 
-  /// Prepares for a pattern; allocates all that later calls need.
-  void analyze(const SparseMatrix& A);
+  /// Prepares for a pattern; no later call allocates.
+  void analyse(const SparseMatrix& A);
 
   /// Prepares for new values.
   Outcome factor(const SparseMatrix& A);
 
   /// Solves P A P d = r from d = 0 until |residual| ≤ target (Euclidean norm), where P is the filter and P r = r
-  /// [Etzmuß 2002, Alg. 7]: d keeps to the free directions. r is overwritten with the residual.
+  /// [Etzmuß 2002, Alg. 7]: d lies in the free directions. r is overwritten with the residual.
   ///
   /// A is the matrix that was factored last. If the factor is exact and the filter empty, there is one substitution and no
-  /// iteration, and the residual is taken for 0.
+  /// iteration, and the residual is set to 0.
   LinearResult solve(const SparseMatrix& A, const Filter& filter, Vectors& r, Vectors& d, double target);
 
   /// z ≈ P A⁻¹ r for the matrix that was factored last and P r = r. Returns <r, z>.
   double precondition(const Filter& filter, const Vectors& r, Vectors& z);
 
  private:
-  LinearResult solve_directly(Vectors& r, Vectors& d);
-  double direct(const SparseMatrix& A, double beta);
-  std::int64_t direct_bytes(const SparseMatrix& A) const;
+  LinearResult solve_exactly(Vectors& r, Vectors& d);
+  double update_direction(const SparseMatrix& A, double beta);
+  std::int64_t direction_bytes(const SparseMatrix& A) const;
 
   std::unique_ptr<Preconditioner> preconditioner_;
   int max_iterations_;

@@ -7,7 +7,7 @@
 namespace drape::solver {
 namespace {
 
-/// The length of a line: the largest distance of a row from a column.
+/// The length of a line: the largest distance of an entry from the diagonal.
 int line_length(const SparseMatrix& A) {
   int length = 1;
   for (int i = 0; i < A.outerSize(); ++i)
@@ -15,7 +15,7 @@ int line_length(const SparseMatrix& A) {
   return length > 1 ? length : static_cast<int>(A.rows());
 }
 
-/// Where the entry (i, j) belongs in the star of i; null if nowhere.
+/// The place of entry (i, j) in the star of i; null if it has none.
 double* place(FivePoint::Node& node, int i, int j, int nu) {
   if (j == i) return &node.diagonal;
   if (j == i - nu && nu > 1) return &node.down;
@@ -84,15 +84,15 @@ SparseMatrix sparse(const FivePoint& A) {
   return matrix;
 }
 
-double direct(const FivePoint& A, const Vectors& z, double beta, Vectors& p, Vectors& q) {
+double update_direction(const FivePoint& A, const Vectors& z, double beta, Vectors& p, Vectors& q) {
   const Eigen::Index length = 3 * static_cast<Eigen::Index>(A.nu);
-  const Lanes pq = sweep(
+  const Lanes pq = wavefront(
       A,
       [&](int b) {
         auto line = Eigen::ArrayXd::Map(p.data() + length * b, length);
         const auto news = Eigen::ArrayXd::Map(z.data() + length * b, length);
         if (beta == 0)
-          line = news;  // whatever is there, even if it is not finite
+          line = news;  // line may not be finite
         else
           line = news + beta * line;
         return Lanes(Lanes::Zero());

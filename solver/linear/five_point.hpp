@@ -9,11 +9,11 @@
 
 namespace drape::solver {
 
-/// A symmetric N × N matrix with the pattern of a grid's five-point star: particle (a, b) with index a + nu b is coupled to its
-/// four neighbours at most. Lines with the same coefficients share them, so that a sheet's matrix stays in the cache however
+/// A symmetric N × N matrix with the pattern of a grid's five-point star: particle (a, b) with index a + nu b is coupled to at
+/// most its four neighbours. Lines with the same coefficients share them, so that a sheet's matrix stays in the cache however
 /// large the sheet is.
 struct FivePoint {
-  /// A row: the diagonal, its inverse, and what couples to the neighbours with the opposite sign, 0 where there is none.
+  /// A row: the diagonal, its inverse, and minus the couplings to the neighbours, 0 where there is none.
   struct Node {
     double diagonal, inverse, left, right, down, up;
     bool operator==(const Node&) const = default;
@@ -34,13 +34,13 @@ struct FivePoint {
   void append(std::span<const Node> nodes_of_line);
 };
 
-/// The matrix as five-point star of the grid that its pattern shows, if it is one and symmetric.
+/// The matrix as a five-point star; absent unless it is symmetric and has such a pattern.
 std::optional<FivePoint> five_point(const SparseMatrix& A);
 
 SparseMatrix sparse(const FivePoint& A);
 
-/// Line b of vector fields on the grid. `border`: the first and the last two lines, from where four lanes or a neighbour's
-/// place may lie outside of memory.
+/// Line b of vector fields on the grid. `border`: the first and the last two lines, where four lanes or a neighbour may lie
+/// outside of the field.
 template <bool border>
 struct GridLine {
   const FivePoint::Node* nodes;
@@ -59,8 +59,8 @@ struct GridLine {
 
   Lanes at(const double* x, int a) const { return lanes(x + begin + 3 * a); }
 
-  /// What couples node a to its neighbours. At the ends of a line that is not a border, the ends of the next lines are read
-  /// with the coefficient 0: they must be finite.
+  /// Sum of the neighbours' values times their couplings to node a. At the ends of a line that is not a border, the ends of the
+  /// next lines are read with the coefficient 0: they must be finite.
   Lanes around(const double* x, int a) const {
     const FivePoint::Node& n = nodes[a];
     const double* const p = x + begin + 3 * a;
@@ -80,6 +80,6 @@ auto with_line(const FivePoint& A, int b, const F& f) {
 }
 
 /// p = z + β p and q = A p in one pass. Returns <p, q>.
-double direct(const FivePoint& A, const Vectors& z, double beta, Vectors& p, Vectors& q);
+double update_direction(const FivePoint& A, const Vectors& z, double beta, Vectors& p, Vectors& q);
 
 }  // namespace drape::solver

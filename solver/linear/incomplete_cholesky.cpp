@@ -10,7 +10,7 @@ namespace drape::solver {
 namespace {
 
 /// A triangle of the factor, ordered by levels: a row comes after all it depends on, and rows of one level do not depend on
-/// each other, so that a processor need not wait for one row before it begins the next. The result is that of the natural
+/// each other, so that the processor need not wait for one row before it begins the next. The result equals that of the natural
 /// order.
 struct LeveledTriangle : Triangle {
   std::vector<int> source;  ///< index of the entry in the values of the factor
@@ -46,14 +46,14 @@ void LeveledTriangle::order(const std::vector<std::vector<std::pair<int, int>>>&
 
 /// A ≈ L D Lᵀ with unit triangular L whose entries lie where A has entries [Etzmuß 2002, 3.4.2].
 ///
-/// What falls elsewhere is dropped; ω times it is taken from the diagonals of its row and its column, so that with ω = 1 the
-/// factor has the row sums of A [Gustafsson 1978]: smooth fields, of which conjugate gradients on a fine sheet find too many,
-/// are then treated almost exactly. ω a little below 1 keeps the pivots away from 0.
+/// Fill outside of them is dropped, and ω times it is subtracted from the diagonals of its row and its column. With ω = 1 the
+/// factor has the row sums of A [Gustafsson 1978]: it treats smooth fields, which slow conjugate gradients on fine sheets,
+/// almost exactly. ω a little below 1 keeps the pivots away from 0.
 class IncompleteCholesky : public Preconditioner {
  public:
   explicit IncompleteCholesky(double omega) : omega_(omega) {}
 
-  void analyze(const SparseMatrix& A) override;
+  void analyse(const SparseMatrix& A) override;
   Outcome factor(const SparseMatrix& A) override;
   double apply(const Vectors& r, Vectors& z) override;
   std::string_view name() const override { return omega_ == 0 ? "ic0" : "mic0"; }
@@ -76,7 +76,7 @@ class IncompleteCholesky : public Preconditioner {
   std::vector<Lanes> work_;
 };
 
-void IncompleteCholesky::analyze(const SparseMatrix& A) {
+void IncompleteCholesky::analyse(const SparseMatrix& A) {
   const int n = static_cast<int>(A.rows());
   std::vector<std::vector<std::pair<int, int>>> rows(n);
   columns_.assign(n, {});
@@ -136,7 +136,7 @@ Outcome IncompleteCholesky::factor(const SparseMatrix& A, double omega) {
   return Outcome::success;
 }
 
-/// Where entries have both signs the row sums may have no positive factor; that with ω = 0 is the more robust.
+/// Where entries have both signs, a factor with these row sums may not be positive; ω = 0 is more robust.
 Outcome IncompleteCholesky::factor(const SparseMatrix& A) {
   Outcome outcome = factor(A, omega_);
   if (outcome == Outcome::breakdown && omega_ != 0) outcome = factor(A, 0);

@@ -8,8 +8,8 @@ namespace drape::solver {
 
 /// The vector kernels of the linear solver. Each passes once over its arguments; none allocates.
 ///
-/// A particle's three coordinates are handled as four lanes, the fourth being the next particle's first coordinate, which
-/// is ignored: four-wide loads and arithmetic beat three scalar ones by a third (`bench_kernels`).
+/// A particle's three coordinates are processed as four lanes; the fourth is the next particle's first coordinate and is
+/// ignored: four-wide loads and arithmetic beat three scalar ones by a third (`bench_kernels`).
 using Lanes = Eigen::Array4d;
 
 inline auto load(const double* p) { return Lanes::Map(p); }

@@ -31,9 +31,9 @@ void each_red(const Level& level, int b, const F& f) {
   level.u.halved&& b % 2 == 1 ? along_v(std::true_type()) : along_v(std::false_type());
 }
 
-/// z = r / D on red nodes (a + b even), (r + what neighbours pull) / D on black ones. What then is left is on red nodes only:
-/// what their neighbours pull. It goes to the coarse grid. A line's black ends are first 0: the next lines read them, maybe
-/// before they are known, and z is unknown.
+/// z = r / D on red nodes (a + b even), then (r + couplings × neighbours) / D on black ones. The residual is then couplings ×
+/// neighbours on red nodes and 0 on black ones; it is restricted to the coarse grid. A line's black ends are set to 0 first,
+/// since the next lines may read them before they are computed and z may hold anything.
 void smooth_down(Level& level, const Vectors& r, Vectors& z) {
   const FivePoint& A = level.A;
   level.r.setZero();
@@ -55,7 +55,7 @@ void smooth_down(Level& level, const Vectors& r, Vectors& z) {
   const Eigen::Index next = 3 * static_cast<Eigen::Index>(level.u.coarse());
   const auto restricted = [&](int b) {
     with_line(A, b, [&](const auto& line) {
-      Lanes carried = Lanes::Zero();  // to the next coarse particle, which would wait if it were stored and loaded again
+      Lanes carried = Lanes::Zero();  // kept in a register for the next coarse particle: storing and loading it would stall
       double* pending = nullptr;
       const auto add = [&](auto in_v, double* to, const Lanes& part) {
         store(to, load(to) + part);
@@ -73,10 +73,11 @@ void smooth_down(Level& level, const Vectors& r, Vectors& z) {
     });
     return Lanes(Lanes::Zero());
   };
-  sweep(A, red, black, restricted);
+  wavefront(A, red, black, restricted);
 }
 
-/// Adds the coarse correction on the red nodes, for black ones depend on these only; then black and red. Returns <r, z>.
+/// Adds the coarse correction on the red nodes, since black ones depend only on these; then smooths black and red. Returns <r,
+/// z>.
 double smooth_up(Level& level, const Vectors& r, Vectors& z) {
   const FivePoint& A = level.A;
   const Eigen::Index next = 3 * static_cast<Eigen::Index>(level.u.coarse());
@@ -105,16 +106,16 @@ double smooth_up(Level& level, const Vectors& r, Vectors& z) {
     });
     return rz;
   };
-  const Lanes rz = sweep(
+  const Lanes rz = wavefront(
       A, corrected, [&](int b) { return smoothed(b, 1 - b % 2); }, [&](int b) { return smoothed(b, b % 2); });
   return sum(rz);
 }
 
 /// One V(1,1) cycle on a grid, with Gauss–Seidel by colours; black before red on the way up makes it symmetric. Each way takes
-/// one pass over memory. Matrices that are not a five-point star of a grid are left to modified incomplete Cholesky.
+/// one pass over memory. Matrices other than a five-point star of a grid are solved by modified incomplete Cholesky.
 class Multigrid : public Preconditioner {
  public:
-  void analyze(const SparseMatrix&) override {}
+  void analyse(const SparseMatrix&) override {}
   Outcome factor(const SparseMatrix& A) override;
   double apply(const Vectors& r, Vectors& z) override { return cycle(0, r, z); }
   bool exact() const override { return levels_.empty() && coarsest_->exact(); }
@@ -124,7 +125,7 @@ class Multigrid : public Preconditioner {
  private:
   double cycle(std::size_t k, const Vectors& r, Vectors& z);
 
-  static constexpr int few = 1000;  ///< particles that are better solved for directly
+  static constexpr int few = 1000;  ///< particles up to which a direct solve is faster
 
   std::vector<Level> levels_;
   std::unique_ptr<Preconditioner> coarsest_;
@@ -158,7 +159,7 @@ Outcome Multigrid::factor(const SparseMatrix& A) {
       coarsest_ = make_modified_incomplete_cholesky();
     }
   }
-  coarsest_->analyze(coarsest);
+  coarsest_->analyse(coarsest);
   return coarsest_->factor(coarsest);
 }
 

@@ -11,7 +11,7 @@ class NewtonFactor::Factor {
  public:
   explicit Factor(const SparseMatrix& J) {
     cholmod_start(&common_);
-    common_.final_ll = 1;  // so that a matrix that is not positive definite is noticed
+    common_.final_ll = 1;  // so that a matrix that is not positive definite is reported
     common_.supernodal = CHOLMOD_SIMPLICIAL;
     common_.print = 0;  // outcomes are returned, not printed
     cholmod_sparse view = cholmod_view(J);

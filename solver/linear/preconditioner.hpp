@@ -16,7 +16,7 @@ class Preconditioner {
   virtual ~Preconditioner() = default;
 
   /// Prepares for a matrix with the pattern of all later ones.
-  virtual void analyze(const SparseMatrix& A) = 0;
+  virtual void analyse(const SparseMatrix& A) = 0;
 
   /// Prepares for the values of A. `breakdown` if a pivot is not positive.
   virtual Outcome factor(const SparseMatrix& A) = 0;
@@ -27,14 +27,14 @@ class Preconditioner {
   /// Whether z = A⁻¹ r up to round-off.
   virtual bool exact() const { return false; }
 
-  /// The linear solver that was factored last: another than was asked for if that one chooses or cannot.
+  /// Name of the linear solver that was factored last; another one than `auto` and `multigrid` where these delegate.
   virtual std::string_view name() const = 0;
 
   /// Bytes that one application moves at least.
   virtual std::int64_t bytes() const = 0;
 };
 
-/// A linear solver of the constant matrix: conjugate gradients with one of these preconditioners; an exact one alone will do.
+/// A linear solver of the constant matrix: conjugate gradients with this preconditioner, which suffices alone if it is exact.
 struct LinearSolver {
   std::string_view name;
   std::string_view description;
@@ -49,7 +49,7 @@ struct LinearSolver {
 /// All linear solvers; the first is the default.
 std::span<const LinearSolver> linear_solvers();
 
-/// The linear solver with this name. Throws std::invalid_argument, naming all that there are.
+/// The linear solver with this name. Throws std::invalid_argument, listing the names.
 const LinearSolver& linear_solver(std::string_view name);
 
 std::unique_ptr<Preconditioner> make_incomplete_cholesky();

@@ -21,7 +21,7 @@ struct Triangle {
 };
 
 /// Solves the triangle in its order: w_i = begin(i) − Σ_j T_ij w_j, and end(i, w_i) for each. `work`: w, four lanes a particle,
-/// so that what is stored is what is loaded.
+/// so that loads match stores.
 template <class Begin, class End>
 void eliminate(const Triangle& T, std::vector<Lanes>& work, const Begin& begin, const End& end) {
   const int n = static_cast<int>(T.row.size());

@@ -29,8 +29,8 @@ void bdf(Step& s, int k) {
 
 }  // namespace
 
-// x1 = Σ c_j x_j + γ v1,   M v1 = M Σ c_j v_j + γ f(t1, x1, v1) with 1/γ = Σ 1/(t1 − t_j) and, w_j being the weights that
-// extrapolate the last k states to t1, c_j = γ w_j/(t1 − t_j)   [Curtiss, Hirschfelder 1952, for steps of any size]
+// x1 = Σ c_j x_j + γ v1,   M v1 = M Σ c_j v_j + γ f(t1, x1, v1) with 1/γ = Σ 1/(t1 − t_j) and c_j = γ w_j/(t1 − t_j), where the
+// weights w_j extrapolate the last k states to t1   [Curtiss, Hirschfelder 1952, for steps of any size]
 void bdf3(Step& s) { bdf(s, 3); }
 void bdf4(Step& s) { bdf(s, 4); }
 void bdf5(Step& s) { bdf(s, 5); }

@@ -18,6 +18,12 @@ double bridson_step_limit(const SplitOde& ode, double t, const State& y) {
   return verlet_limit(spectrum(undamped, t, y));
 }
 
+/// f ← τ f − M δ
+void residual(const Eigen::VectorXd& mass, double tau, const Vectors& delta, Vectors& f) {
+  for (Eigen::Index i = 0; i < mass.size(); ++i)
+    for (int c = 0; c < 3; ++c) f(i, c) = tau * f(i, c) - mass[i] * delta(i, c);
+}
+
 /// Goes from y0 to y1, whose v is that of the middles of sub-steps until the end.
 bool whole_bridson_step(Step& s, double substeps) {
   const double tau = s.h / substeps;
@@ -39,7 +45,7 @@ bool whole_bridson_step(Step& s, double substeps) {
     s.ode.force(s.t + k * tau, y.x, ahead, f);
     if (limit_narrowed(s, bridson_step_limit, s.t + k * tau, ahead, alternates(s, f, weight))) return false;
     if (k == substeps) break;
-    f.array() = tau * f.array() - delta.array().colwise() * s.ode.mass.array();
+    residual(s.ode.mass, tau, delta, f);
     delta += s.stage->solve_damping(tau / 2, f, s.result);
     if (s.result.outcome != Outcome::success) return true;
     y.v += delta;
@@ -55,13 +61,12 @@ bool whole_bridson_step(Step& s, double substeps) {
 
 }  // namespace
 
-// h is divided into equal sub-steps τ inside the stability limit 2/ω, which does not depend on the constant damping D, and in
-// each
+// h is divided into equal sub-steps τ inside the stability limit 2/ω, which the constant damping D does not lower, and in each
 //   v½ = v0 + τ/2 M⁻¹ f(t0, x0, v½),   x1 = x0 + τ v½,   v1 = v½ + τ/2 M⁻¹ f(t1, x1, v½)   [Bridson, Marino, Fedkiw 2003]
-// where D alone is implicit: one linear system with M − τ/2 D. Without D this is velocity Verlet. Between two sub-steps the
-// second half of the one and the first half of the other are one equation,   M (v½' − v½) = τ f(t1, x1, (v½ + v½')/2),   that D
-// sees so, and all else at v½ + δ/2, where δ is the last change of v½: the guess that v½' = v½ + δ, corrected by (M − τ/2 D)⁻¹
-// times its residual.
+// where D alone is implicit: one linear system with M − τ/2 D. Without damping this is velocity Verlet.
+// The second half of a sub-step and the first half of the next are one equation,   M (v½' − v½) = τ f(t1, x1, (v½ + v½')/2).
+// It is solved by one Newton update with M − τ/2 D from the guess v½' = v½ + δ, where δ is the last change of v½: exact for D,
+// and of second order for damping that is not constant.
 void bridson(Step& s) { sub_step(s, bridson_step_limit, whole_bridson_step); }
 
 }  // namespace drape::solver

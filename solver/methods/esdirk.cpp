@@ -6,8 +6,8 @@
 namespace drape::solver {
 namespace {
 
-/// A Runge-Kutta method whose first stage is the start of the step and whose last is its end, all others having the same
-/// diagonal a_ii, with an embedded one of weights b̂.
+/// A Runge-Kutta method whose first stage is the start of the step and whose last is its end; all except the first have the
+/// same a_ii. b̂: weights of the embedded method.
 struct Tableau {
   int stages;
   std::array<double, 6> c;
@@ -15,7 +15,7 @@ struct Tableau {
   std::array<double, 6> b_hat;
 };
 
-/// About what the error of such a step is, over h^(p+1) times a derivative.
+/// Typical error of such a step over h^(p+1) times a derivative.
 constexpr double embedded_error = 0.01;
 
 void add(double weight, const State& rate, Vectors& x, Vectors& v) {
@@ -24,7 +24,7 @@ void add(double weight, const State& rate, Vectors& x, Vectors& v) {
   v += weight * rate.v;
 }
 
-/// M⁻¹ f at the start; the last stage of the step before knows it.
+/// Sets the rates at the start, with M⁻¹ f from the last stage of the step before if there was one.
 void start_rate(Step& s) {
   Point& now = s.now();
   if (!now.has_f) {

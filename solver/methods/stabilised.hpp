@@ -6,13 +6,12 @@
 
 namespace drape::solver {
 
-/// Explicit Runge-Kutta methods with as many stages as the largest damping rate demands. `stages`: a real number, as it may be
-/// too large for an integer.
+/// Stabilised explicit Runge-Kutta methods with a given number of stages.
 void rkl2(Step& s, double stages);
 void rkc2(Step& s, double stages);
 
-/// The stages of this step, by the formula of the method for h times the largest decay; 0 if it is not finite or a step would
-/// take minutes, which the outcome says.
+/// Number of stages of this step for h times the largest decay; 0 if it is not finite, or above the number at which a step
+/// would take minutes: then the outcome is set.
 double stages_of(Step& s, double (*fewest)(double h_decay));
 
 /// Coefficients of a stage Y_j.

@@ -4,7 +4,7 @@
 
 namespace drape::solver {
 
-// Methods that others begin with.
+// Methods with which others begin.
 void imex_euler(Step& s);
 void implicit_euler(Step& s);
 void midpoint(Step& s);

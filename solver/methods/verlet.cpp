@@ -10,8 +10,8 @@ bool narrowed(Step& s, double t, const Vectors& f) {
   return limit_narrowed(s, verlet_step_limit, t, s.scratch.av, alternates(s, f, s.scratch.ax));
 }
 
-/// The state is kept at (x1, v at the middle of the sub-step), so that all that happens between two evaluations of the force
-/// is one pass over memory. False if the limit has become narrower on the way.
+/// The state is kept at (x1, v at the middle of the sub-step), so that there is one pass over memory between two evaluations of
+/// the force. False if the limit has become narrower meanwhile.
 bool sub_steps(Step& s, double tau, double count) {
   const Eigen::Index n = s.scratch.ax.size();
   const double* const w = s.scratch.ax.data();
@@ -37,7 +37,7 @@ bool sub_steps(Step& s, double tau, double count) {
   return true;
 }
 
-/// With the impulses of obstacles between the parts of a sub-step.
+/// The same with the impulses of obstacles between the parts of a sub-step.
 bool sub_steps_with_impacts(Step& s, double tau, double count) {
   State& y = s.y1();
   Vectors& a = s.next.f;
@@ -58,7 +58,7 @@ bool sub_steps_with_impacts(Step& s, double tau, double count) {
   return true;
 }
 
-/// Goes from y0 to y1 in sub-steps inside the limit as it is known now; false if it has become narrower.
+/// Computes y1 from y0 in sub-steps inside the current limit; false if it has become narrower.
 bool whole_step(Step& s, double substeps) {
   const double tau = s.h / substeps;
   State& y = s.y1();
@@ -70,7 +70,7 @@ bool whole_step(Step& s, double substeps) {
   else
     s.ode.force(s.t, y.x, y.v, s.next.f);
   const bool contacts = s.sub_stepping.impacts != nullptr && !s.sub_stepping.impacts->empty();
-  s.next.has_f = !contacts;  // what obstacles bear was taken from it
+  s.next.has_f = !contacts;  // the obstacles' reactions were subtracted from it
   s.error.constant = 1.0 / (6 * substeps * substeps);
   return (contacts ? sub_steps_with_impacts : sub_steps)(s, tau, substeps);
 }
@@ -82,7 +82,7 @@ bool whole_step(Step& s, double substeps) {
 // which is velocity Verlet where forces do not depend on velocities and of second order where they do, with one
 // evaluation a sub-step   [Verlet 1967; Groot, Warren 1997, λ = 1].
 // The limit is that of the initial state until neighbours have moved apart by a tenth, or modes alternate and grow: then it is
-// estimated anew, and where it has become narrower the step begins again.
+// estimated again, and if it has become narrower the step is repeated.
 void verlet(Step& s) { sub_step(s, verlet_step_limit, whole_step); }
 
 }  // namespace drape::solver

@@ -10,7 +10,7 @@ namespace {
 /// Part of the diagonal that is added to the normal equations: below it differences are parallel.
 constexpr double ridge = 1e-13;
 
-/// What counts as the response to a change before any was seen.
+/// The response that is assumed before any was observed.
 constexpr double unknown_response = 0.05;
 
 }  // namespace
@@ -23,7 +23,7 @@ void Anderson::begin() {
   for (int i = 0; i < kept(); ++i) serves_[i] = serves_[i] && response(i) >= lasting_response;
 }
 
-/// Takes the differences from the last iterate, if this one follows it, and makes this one the last.
+/// Stores the differences to the last iterate, if this one follows it, and makes this one the last.
 void Anderson::remember(const Vectors& v, const Vectors& d) {
   if (follows_) {
     add_pair(v.data(), d.data());
@@ -34,7 +34,7 @@ void Anderson::remember(const Vectors& v, const Vectors& d) {
   follows_ = true;
 }
 
-/// The differences take the place of the oldest.
+/// The new differences replace the oldest.
 void Anderson::add_pair(const double* v, const double* d) {
   const int slot = pairs_++ % depth, count = kept();
   double *const dd = dd_.col(slot).data(), *const dg = dg_.col(slot).data();
@@ -63,7 +63,7 @@ double Anderson::smallest_response() const {
   return smallest;
 }
 
-/// Those of the normal equations of min |d − Σ w_i Δd_i|, with columns of length one.
+/// Solves the normal equations of min |d − Σ w_i Δd_i|, with columns scaled to length one.
 Anderson::Small Anderson::weights() const {
   const int count = kept();
   Small scale = gram_.diagonal().head(count).cwiseMax(std::numeric_limits<double>::min()).cwiseSqrt().cwiseInverse();

@@ -17,25 +17,25 @@ class Anderson {
   /// The fields are N × 3.
   explicit Anderson(Eigen::Index particles);
 
-  /// Past differences of a smaller response than this do not serve on in the next stage. What is slack now may be taut then,
+  /// Past differences of a smaller response than this are not used in the next stage: slack directions may be taut then,
   /// while stiff directions hardly turn from step to step.
   static constexpr double lasting_response = 0.2;
 
-  /// Forgets the past: the iteration is another one.
+  /// Discards all differences, for another iteration.
   void restart() {
     pairs_ = 0;
     follows_ = false;
   }
 
-  /// The same iteration, but towards another fixed point, as in the next step in time: past differences serve on, none is taken
-  /// across   [Degroote, Bathe, Vierendeels 2009, reuse of time steps].
+  /// The same iteration towards another fixed point, as in the next time step: past differences are kept, none is taken across
+  /// [Degroote, Bathe, Vierendeels 2009, reuse of time steps].
   void begin();
 
   /// Replaces v by the next iterate; d: its update without acceleration, replaced by the accelerated one.
   void advance(Vectors& v, Vectors& d);
 
-  /// The smallest |Δd|/|Δv| of the past differences: what is left of a change of v in the update it makes. |d| over it is an
-  /// estimate of the error of v.
+  /// The smallest |Δd|/|Δv| of the past differences: the response of the update to a change of v. |d| divided by it estimates
+  /// the error of v.
   double smallest_response() const;
 
  private:

@@ -6,11 +6,11 @@
 namespace drape::solver {
 namespace {
 
-constexpr double mean_weight = 0.2;       ///< of the second estimate
-constexpr double reduction_memory = 0.5;  ///< part of the reduction seen before that is the least to be expected
-constexpr double regular = 0.3;           ///< reduction from which on convergence is too irregular to be counted on
-constexpr double reduction_ages = 1.3;    ///< how much less is expected of it in each further stage
-constexpr double sudden = 1.2;            ///< growth of the first |d| from stage to stage from which on nothing is expected
+constexpr double mean_weight = 0.2;       ///< factor of the second estimate
+constexpr double reduction_memory = 0.5;  ///< the least reduction to be expected, over the one observed before
+constexpr double regular = 0.3;           ///< reduction above which convergence is too irregular to rely on
+constexpr double reduction_ages = 1.3;    ///< factor of the expected reduction in each further stage
+constexpr double sudden = 1.2;            ///< growth of the first |d| from stage to stage above which no reduction is expected
 
 }  // namespace
 
@@ -42,10 +42,10 @@ void ErrorEstimate::measure(const Vectors& residual, double gamma) {
   mass_scaled_ = std::sqrt(scaled);
 }
 
-void ErrorEstimate::see_update(double size) {
+void ErrorEstimate::observe_update(double size) {
   if (std::isfinite(last_)) {
-    const double seen = size / last_;
-    reduction_ = seen > regular ? 1 : std::max(seen, reduction_memory * reduction_);
+    const double reduced = size / last_;
+    reduction_ = reduced > regular ? 1 : std::max(reduced, reduction_memory * reduction_);
   } else {
     if (size > sudden * first_) reduction_ = 1;
     first_ = size;

@@ -6,38 +6,38 @@
 
 namespace drape::solver {
 
-/// What is known of the error of v in a stage that is solved by updates d = P⁻¹ r.
+/// Estimate of the error of v in a stage that is solved by updates d = P⁻¹ r.
 ///
-/// There are two estimates of it: |d| over the smallest response seen to a change of v; and, since the error lies between
-/// |P⁻¹ r| and |M⁻¹ r|, their geometric mean. The first alone is too small where P is so much stiffer than the cloth that no
-/// response is seen. Both are of the error before the update; what was seen of updates tells what they leave of it   [as in
-/// CVODE].
+/// It is the larger of two: |d| divided by the smallest |Δd|/|Δv| observed in this stage; and, since the error lies between
+/// |P⁻¹ r| and |M⁻¹ r|, their geometric mean. The first alone is too small where P is so much stiffer than the cloth that |d|
+/// hardly responds to v. Both estimate the error before the update; the observed reduction of |d| from update to update gives
+/// the error after it   [as in CVODE].
 class ErrorEstimate {
  public:
   explicit ErrorEstimate(const SplitOde& ode);
 
-  /// Another P: nothing is known of what an update leaves.
+  /// P has changed: no reduction is expected.
   void reset();
 
-  /// The next stage has the same P: what was seen counts for less.
+  /// The next stage has the same P: a smaller reduction is expected than was observed.
   void next_stage();
 
   /// The iteration of a stage begins.
   void start() { last_ = unknown; }
 
-  /// Takes the norms of r in one pass; γ of the stage.
+  /// Computes the norms of r in one pass; γ of the stage.
   void measure(const Vectors& r, double gamma);
 
-  /// Learns from the size |d| of the next update by what an update reduces it: nothing where convergence is slow, or where a
-  /// stage begins farther off than the one before.
-  void see_update(double size);
+  /// Updates the expected reduction from the size |d| of the next update: none where convergence is slow, or where a stage
+  /// begins farther from its solution than the one before.
+  void observe_update(double size);
 
-  /// Of v after an update of this size, if the smallest response was this.
+  /// Error of v [m/s] after an update of this size; `smallest_response`: |Δd|/|Δv|.
   double error(double size, double smallest_response) const;
 
   double residual() const { return residual_; }  ///< |r|
 
-  /// |r| scaled by M − γD, of which only the diagonal counts: the update without springs.
+  /// |(diag(M − γD))⁻¹ r|: the size of the update without springs.
   double mass_scaled_residual() const { return mass_scaled_; }
 
  private:
@@ -51,7 +51,7 @@ class ErrorEstimate {
   double bound_ = 0;                   ///< |M⁻¹ r|
   double mass_scaled_ = 0;
   double first_ = 0, last_ = unknown;  ///< |d| of the first and of the last update of the stage
-  double reduction_ = 1;               ///< by which an update reduces |d|, as seen last
+  double reduction_ = 1;               ///< expected factor of |d| from update to update
 };
 
 }  // namespace drape::solver

@@ -15,7 +15,7 @@ StageResult StageSolver::fixed_point(const Stage& stage, const Vectors* f_explic
   const bool linear = f_explicit != nullptr, contacts = system_.touches();
   const double loop_tolerance = linear ? options_.cg_tolerance : options_.loop_tolerance;
   const double cg_tolerance =
-      linear ? loop_tolerance : std::min(options_.cg_tolerance, loop_tolerance / 2);  // or it could not end
+      linear ? loop_tolerance : std::min(options_.cg_tolerance, loop_tolerance / 2);  // else the loop could not end
   const int changing_updates = linear ? 10 : 50;
   StageSystem::Scale size{};
   for (;; ++result.updates, ++work_.updates) {

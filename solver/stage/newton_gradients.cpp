@@ -7,13 +7,13 @@
 namespace drape::solver {
 namespace {
 
-/// η. Eisenstat and Walker's second choice, at most 0.1 or 0.5, takes 3 to 44 % more iterations: with a matrix that is kept,
-/// Newton's method converges no faster than linearly.
+/// The forcing term η. Eisenstat and Walker's second choice, at most 0.1 or 0.5, takes 3 to 44 % more iterations: with a lagged
+/// matrix Newton's method converges linearly at best.
 constexpr double forcing_term = 0.1;
 
-/// Of d, that its error may seem to be. On crumpled sheets of numerical stiffness 2e3 to 2e5 |d| then is within an eighth of
-/// that of a factor, and its error less than half of it; without this test |d| was 0.6 to 2.3 times as large and its error up
-/// to twice that. Whole runs of such sheets end four to five times as near to those of a factor.
+/// Estimated error of d over d that is accepted. On crumpled sheets of numerical stiffness 2e3 to 2e5 |d| then is within an
+/// eighth of that of a factor, and its error less than half of it; without this test |d| was 0.6 to 2.3 times as large and its
+/// error up to twice that. The final states of such runs are four to five times nearer to those of a factor.
 constexpr double unseen = 0.3;
 
 /// The preconditioner's share of the blocks. Against A alone it takes 0.3 to 0.7 of the iterations on stiff or undamped sheets
@@ -29,7 +29,7 @@ void multiply_symmetric(const SparseMatrix& J, const Vectors& p, Vectors& q) {
   Eigen::Map<Flat>(q.data(), q.size()).noalias() = J.selfadjointView<Eigen::Upper>() * flat_p;
 }
 
-/// Of one iteration without A: every entry of J and of the blocks (nine numbers) once, and 19 passes over vectors.
+/// Bytes of one iteration without A: every entry of J and of the blocks (nine numbers) once, and 19 passes over vectors.
 std::int64_t iteration_bytes(const SparseMatrix& J) {
   return J.nonZeros() * static_cast<std::int64_t>(sizeof(double) + sizeof(int)) + vector_bytes(J.rows() / 3, 3 + 19);
 }
@@ -64,7 +64,7 @@ double NewtonGradients::precondition() {
   return rz;
 }
 
-/// Whether the error that d had some iterations ago was a small part of it, |d|² being 2 E_kin in the norm of M.
+/// Whether the error that d had five iterations ago is a small part of d; in the norm of M, |d|² = 2 E_kin.
 bool NewtonGradients::settled(const Vectors& d) const { return falls_.sum() <= unseen * unseen * 2 * kinetic_energy(ode_, d); }
 
 LinearResult NewtonGradients::solve(const SparseMatrix& J, double gamma, const Vectors& r, Vectors& d) {

@@ -5,11 +5,11 @@
 namespace drape::solver {
 namespace {
 
-constexpr int most_matrices = 200;    ///< for a stage
+constexpr int most_matrices = 200;    ///< in a stage
 constexpr int most_trials = 30;       ///< along an update
-constexpr double left = 0.5;          ///< of the slope, where a part of an update ends
-constexpr double inside = 0.1;        ///< so far from the ends of an interval is the next trial in it
-constexpr double least_ahead = 0.01;  ///< 1 − rate of convergence at least, when an error is estimated from an update
+constexpr double left = 0.5;          ///< slope over the first one at which a line search ends
+constexpr double inside = 0.1;        ///< least distance of a trial from the ends of its interval, over its length
+constexpr double least_ahead = 0.01;  ///< lower bound of 1 − rate of convergence in the error estimate
 
 }  // namespace
 
@@ -28,7 +28,7 @@ void NewtonSearch::evaluate(const Stage& stage, State& y) {
 
 double NewtonSearch::slope() const { return (system_.residual().array() * d_.array()).sum(); }
 
-/// Makes the part of d that leads on, with the residual there; false if there is none.
+/// Adds the part of d at which the slope has fallen, and evaluates the residual there; false if none is found.
 bool NewtonSearch::follow(const Stage& stage, State& y) {
   from_ = y.v;
   const double start = slope();
@@ -52,7 +52,7 @@ bool NewtonSearch::follow(const Stage& stage, State& y) {
 void NewtonSearch::solve(const Stage& stage, const Vectors& guess, NewtonSystem& newton, State& y, StageResult& result) {
   ++stages_;
   const double noise = system_.noise(y, stage.gamma);
-  double before = 0;  // |d|, of the update before
+  double before = 0;  // |d| of the previous update
   evaluate(stage, y);
   for (int k = 0; k < most_matrices && result.updates < options_.max_updates; ++k) {
     result.outcome = Outcome::not_finite;

@@ -6,17 +6,16 @@
 
 namespace drape::solver {
 
-/// Newton's method with a new matrix for every update, of which only a part is made where the whole leads too far: slow but
-/// hard to stop.
+/// Newton's method with a new matrix for every update and line searches: slow but robust.
 ///
-/// Along an update d the slope r(v + α d)·d falls from r(v)·d > 0; α is where little of it is left. If forces have a potential,
-/// that is downhill in the energy whose minimum solves the stage, to near the lowest point along d; no energy is evaluated.
+/// Along an update d the slope r(v + α d)·d falls from r(v)·d > 0; the search ends at an α where it is small. If forces have a
+/// potential, that is near the minimum along d of the energy whose minimum solves the stage; no energy is evaluated.
 class NewtonSearch {
  public:
   NewtonSearch(const SplitOde& ode, const Options& options, StageSystem& system);
 
-  /// Goes on from y.v; guess: where the stage began. Adds to the result's updates and sets its outcome. `newton`: of all
-  /// forces.
+  /// Continues from y.v; guess: where the stage began. Adds to the result's updates and sets its outcome. `newton`: with the
+  /// whole Jacobian.
   void solve(const Stage& stage, const Vectors& guess, NewtonSystem& newton, State& y, StageResult& result);
 
  private:

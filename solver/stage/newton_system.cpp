@@ -1,12 +1,9 @@
 #include "solver/stage/newton_system.hpp"
 
+#include "solver/linear/choose.hpp"
+
 namespace drape::solver {
 namespace {
-
-/// Particles up to which `auto` factors. From 30 × 30 on conjugate gradients take two thirds to a third of the factor's time on
-/// lightly damped sheets; on undamped ones of numerical stiffness 1e7, where springs are slack, they take twice its time there
-/// and about the same at 100 × 100.
-constexpr int most_factored = 2500;
 
 bool factors(const LinearSolver& solver, int particles) {
   switch (solver.newton) {
@@ -14,7 +11,7 @@ bool factors(const LinearSolver& solver, int particles) {
     case LinearSolver::Newton::iterative: return false;
     case LinearSolver::Newton::by_size: break;
   }
-  return particles <= most_factored;
+  return particles <= LinearChoice::most_factored_newton;
 }
 
 }  // namespace

@@ -7,18 +7,17 @@
 
 namespace drape::solver {
 
-/// A Newton matrix and what solves with it, kept until it is asked to be renewed. If the linear solver of the options is
-/// `cholesky`, that is the matrix' complete factor; `ic0`, `mic0` and `multigrid` are conjugate gradients on it with what these
-/// make of the constant matrix (NewtonGradients); `auto` factors up to 2500 particles. What was never needed takes no
-/// memory.
+/// A Newton matrix with its linear solver, kept until it is renewed. With the options' linear solver `cholesky` that is the
+/// matrix' complete factor; with `ic0`, `mic0` and `multigrid` conjugate gradients, preconditioned by these solvers of the
+/// constant matrix (NewtonGradients); `auto` factors small matrices (LinearChoice). Memory is allocated at the first renewal.
 class NewtonSystem {
  public:
   NewtonSystem(const SplitOde& ode, const Options& options, StageSystem& system, Jacobian part);
 
   bool empty() const { return gamma_ == 0; }
-  double gamma() const { return gamma_; }  ///< that it was made for, 0 if there is none
+  double gamma() const { return gamma_; }  ///< γ of the last renewal, 0 if there is no matrix
 
-  /// Evaluates the Jacobian at this state, and factors it if a factor is wanted.
+  /// Evaluates the Jacobian at this state, and factors it unless conjugate gradients solve.
   Outcome renew(double t, const State& y, double gamma);
 
   /// J d = r, both N × 3; r is 0 in pinned coordinates.

@@ -1,12 +1,12 @@
 #include "solver/stage/stage_solver.hpp"
 
-#include "solver/stage/accelerated_loop.hpp"
+#include "solver/stage/accelerated_stage.hpp"
 
 namespace drape::solver {
 
 StageSolver::StageSolver(const SplitOde& ode, const Options& options, ContactResponse* contacts)
     : ode_(ode), options_(options), system_(ode, options, contacts), work_(*ode.work) {
-  if (options.stage->accelerated) accelerated_ = std::make_unique<AcceleratedLoop>(ode, options_, system_);
+  if (options.stage->accelerated) accelerated_ = std::make_unique<AcceleratedStage>(ode, options_, system_);
 }
 
 StageSolver::~StageSolver() = default;

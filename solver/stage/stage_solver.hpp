@@ -6,10 +6,9 @@
 
 namespace drape::solver {
 
-class AcceleratedLoop;
+class AcceleratedStage;
 
-/// Solves stages in the way the options say. All calls take the state with a first guess of v; its prescribed velocities are
-/// set here.
+/// Solves stages as the options say. All calls take the state with a first guess of v; they set its prescribed velocities.
 class StageSolver {
  public:
   /// `contacts`: the response to contacts, null if there are no obstacles.
@@ -32,7 +31,7 @@ class StageSolver {
   /// Whether the next stage is accelerated.
   bool accelerates() const { return accelerated_ && !system_.touches(); }
 
-  /// What a change `r` of γ f would have changed in v at the last linear stage; its linear system counts.
+  /// The change of v [m/s], N × 3, that a change `r` of γ f would have made in the last linear stage; its linear system counts.
   const Vectors& respond(const Vectors& r, StageResult& result);
 
  private:
@@ -44,7 +43,7 @@ class StageSolver {
   const SplitOde& ode_;
   const Options options_;
   StageSystem system_;
-  std::unique_ptr<AcceleratedLoop> accelerated_;  ///< if the options ask for it
+  std::unique_ptr<AcceleratedStage> accelerated_;  ///< if the options ask for it
   LinearCounters work_;
 };
 

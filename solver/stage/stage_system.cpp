@@ -11,7 +11,7 @@
 namespace drape::solver {
 namespace {
 
-/// What is left of a row of a compressed matrix.
+/// The remaining entries of a row of a compressed matrix.
 class Row {
  public:
   Row(const SparseMatrix& B, int i) {
@@ -42,8 +42,8 @@ auto flat(Vectors& a) { return Eigen::ArrayXd::Map(a.data(), a.size()); }
 
 }  // namespace
 
-/// M, K and D merged row by row, without what couples particles that are pinned in all directions. On small sheets assembly
-/// by triplets and look-ups cost as much as some steps.
+/// M, K and D merged row by row, without the couplings of particles that are pinned in all directions. On small sheets assembly
+/// by triplets and look-ups would cost as much as some steps.
 struct StageSystem::Merged {
   explicit Merged(const SplitOde& ode) : n(ode.particles()) {
     std::vector<bool> gone(n, false);
@@ -92,7 +92,7 @@ StageSystem::StageSystem(const SplitOde& ode, const Merged& merged, const Option
       momentum_(thrice(ode.mass)),
       spring_(thrice(ode.stiffness.diagonal())),
       work_(*ode.work) {
-  cg_.analyze(A_);
+  cg_.analyse(A_);
   for (Vectors* field : {&r_, &d_, &q_}) field->setZero(ode.particles(), 3);
   work_.entries = A_.nonZeros();
 }
@@ -113,11 +113,11 @@ Outcome StageSystem::make(double gamma, double springs) {
 }
 
 double StageSystem::noise(const State& y, double gamma) const {
-  const double underflow = std::sqrt(std::numeric_limits<double>::min());  // squares of what is smaller vanish
+  const double underflow = std::sqrt(std::numeric_limits<double>::min());  // squares of smaller numbers vanish
   return round_off(gamma * (spring_ * flat(y.x)).matrix().norm()) + underflow;
 }
 
-/// At rest b vanishes like r does, except for its noise, which a relative test alone would never get below.
+/// At rest both b and r are round-off only, so that a relative test alone would never pass.
 StageSystem::Scale StageSystem::scale(const State& y, double gamma) {
   multiply(A_, y.v, q_);
   ++work_.products;

@@ -16,32 +16,31 @@ struct StageResult {
   int cg_iterations = 0;
 };
 
-/// The equation of a stage as r(v) = M (av − v) + γ f = 0, with the constant matrix A = M − γ² K − γ D to correct v by; A is
-/// rebuilt only when γ changes.
+/// The equation of a stage as r(v) = M (av − v) + γ f = 0, with the constant matrix A = M − γ² K − γ D for corrections of v. A
+/// is assembled again only when γ changes.
 ///
-/// Particles that are pinned in all three directions have no entries in A but their diagonal. No call but the constructor
-/// allocates.
+/// Particles that are pinned in all three directions have only their diagonal in A. Only the constructor allocates.
 class StageSystem {
  public:
   StageSystem(const SplitOde& ode, const Options& options, ContactResponse* contacts);
 
-  /// Makes A for this γ, unless the one there is is for a γ that differs by less than this part.
+  /// Assembles and factors A for this γ, unless its own γ differs by less than `different`, relatively.
   Outcome prepare(double gamma, double different = 1e-12);
 
-  /// Makes M − γ D instead of A, as `correct` and `respond` use it then: for methods whose springs are explicit.
+  /// Assembles and factors M − γ D in place of A, for methods whose springs are explicit.
   Outcome prepare_damping(double gamma);
 
-  /// The γ [s] that A is for.
+  /// γ of A [s].
   double gamma() const { return gamma_; }
 
   /// Sets x = ax + γ v, imposes contacts and sets r in all coordinates; f = K x + D v + f̂ if f̂ is given.
   void evaluate(const Stage& stage, const Vectors* f_explicit, State& y);
 
-  /// Lets contacts adapt to y and r; true if they changed, with y and r evaluated anew. `noise`, `settled`: as
-  /// ContactResponse::update has them.
+  /// Adapts the contacts to y and r; true if they changed, with y and r evaluated again. `noise`, `settled`: as
+  /// in ContactResponse::update.
   bool adapt_contacts(const Stage& stage, const Vectors* f_explicit, State& y, double noise, bool settled);
 
-  /// Adds friction to r and removes what pins and constraints bear.
+  /// Adds friction to r and removes the directions of pins and constraints.
   void filter_residual(double gamma);
 
   /// A d = r, to |A d − r| ≤ target; r is lost.
@@ -50,26 +49,26 @@ class StageSystem {
   /// z ≈ A⁻¹ r in the directions that pins leave free, for an r that lies in them. Returns <r, z>.
   double precondition(const Vectors& r, Vectors& z) { return cg_.precondition(pinned_, r, z); }
 
-  /// What |r| is compared with: |b| = |r + A v|, and the round-off below which no residual falls.
+  /// Scale of |r|: |b| = |r + A v|, and the round-off below which no residual falls.
   struct Scale {
     double b, round_off;
     double target(double tolerance) const { return std::max(tolerance * b, round_off); }
   };
   Scale scale(const State& y, double gamma);
 
-  /// Below this no |r| falls: the round-off of differences of positions times spring constants [N s].
+  /// Round-off of |r| [N s], from differences of positions times spring constants.
   double noise(const State& y, double gamma) const;
 
   /// Round-off of a sum of terms of this size.
   static double round_off(double size) { return 8 * std::numeric_limits<double>::epsilon() * size; }
 
   /// Error of v [m/s] that may be left in a stage that began with this guess: a part of the error of the time step, which the
-  /// distance between the two tells, but no less than round-off.
+  /// distance between the two indicates, and at least round-off.
   static double allowed_error(const Stage& stage, const Vectors& guess, const State& y) {
     return std::max(round_off(y.x.norm()) / stage.gamma, stage.accuracy * (y.v - guess).norm());
   }
 
-  /// A d = r for another r; what pins and constraints bear of it does not count.
+  /// A d = r for another r, without its components along pins and constraints.
   LinearResult respond(const Vectors& r, double tolerance);
 
   bool touches() const { return contacts_ != nullptr && !contacts_->empty(); }
@@ -89,7 +88,7 @@ class StageSystem {
   ConjugateGradients cg_;
   SparseMatrix A_;
   Eigen::ArrayXd mass_, stiffness_, damping_;  // each aligned with the entries of A
-  Eigen::ArrayXd momentum_, spring_;           // mass and diagonal of K, each thrice a particle, as coordinates lie in memory
+  Eigen::ArrayXd momentum_, spring_;           // mass and diagonal of K, three times each, as coordinates lie in memory
   double gamma_ = 0;
   Vectors r_, d_, q_;
   LinearCounters work_;

@@ -65,7 +65,7 @@ Truth truth_of(const Scene& scene, int steps) {
     const auto result =
         integrate(integrator, scene.end, contact ? scene.end / 1000 : scene.end / 20, [&](const solver::StepReport& step) {
           if (++seen > 20'000) throw TooLong();
-          output.see(step.t, step.y);
+          output.observe(step.t, step.y);
         });
     if (result.outcome != Outcome::success) return truth;
   } catch (const TooLong&) {

@@ -126,7 +126,7 @@ TEST(FilteredConjugateGradients, SolveTheConstrainedSystem) {
   for (const solver::LinearSolver& kind : solver::linear_solvers()) {
     solver::Counters work;
     solver::ConjugateGradients cg(kind.make(), 1000, work);
-    cg.analyze(A);
+    cg.analyse(A);
     ASSERT_EQ(cg.factor(A), Outcome::success);
     Vectors b = small_problems::noise(n, 9);
     filter(b);

@@ -8,7 +8,7 @@
 
 #include "verify/support/model_fixtures.hpp"
 
-namespace drape::verify::grid_sweep_test {
+namespace drape::verify::fused_forces_test {
 namespace {
 
 using namespace sheets;
@@ -38,7 +38,7 @@ Vectors transposed(const Vectors& x, const Grid& grid) {
 }
 
 /// Lines of one to several blocks of columns, with all remainders, beside many lines of few columns.
-TEST(GridSweep, IsTheSameAlongWeftAndWarp) {
+TEST(FusedForces, IsTheSameAlongWeftAndWarp) {
   const Eigen::Vector3d g(0.5, -0.3, -2);
   for (int n : {2, 3, 7, 8, 9, 15, 16, 17, 119, 120, 121, 127, 128, 129, 135, 136, 137, 255, 256, 257, 300})
     for (int m : {1, 2, 3, 4}) {
@@ -52,7 +52,7 @@ TEST(GridSweep, IsTheSameAlongWeftAndWarp) {
 }
 
 /// Grids that do not fit into a cache are cut into other blocks.
-TEST(GridSweep, HasNoForcesInsideAHomogeneousStrainOfALargeGrid) {
+TEST(FusedForces, HasNoForcesInsideAHomogeneousStrainOfALargeGrid) {
   const Grid grid{211, 101, 2.1, 1};
   const Vectors uv = grid.parameters();
   const Vectors x = uv.col(0) * Eigen::RowVector3d(1.1, 0.2, 0.1) + uv.col(1) * Eigen::RowVector3d(0.3, 0.9, -0.2);
@@ -61,7 +61,7 @@ TEST(GridSweep, HasNoForcesInsideAHomogeneousStrainOfALargeGrid) {
     EXPECT_LE(largest(f.middleRows(grid.index(1, b), grid.nu - 2)), 1e-10 * largest(f)) << "line " << b;
 }
 
-TEST(GridSweep, AddsUpAllCombinationsOfTerms) {
+TEST(FusedForces, AddsUpAllCombinationsOfTerms) {
   using Part = void (*)(Material&);
   const Part parts[] = {tension, linear_damping, shear, contraction, projected_damping};
   const Grid grid = five_by_four();
@@ -83,7 +83,7 @@ TEST(GridSweep, AddsUpAllCombinationsOfTerms) {
   }
 }
 
-TEST(GridSweep, ForgetsWhatItEvaluatedBefore) {
+TEST(FusedForces, ForgetsWhatItEvaluatedBefore) {
   for (const Grid& grid : {five_by_four(), Grid{137, 3, 13.7, 0.3}, Grid{1, 5, 0.2, 1}, Grid{6, 1, 1, 0.25}}) {
     const State y = deformed(grid, 3);
     const SplitOde ode = ode_with(everything, grid);
@@ -95,22 +95,22 @@ TEST(GridSweep, ForgetsWhatItEvaluatedBefore) {
   }
 }
 
-TEST(GridSweep, ReadsVelocitiesOnlyIfTheLawAsks) {
+TEST(FusedForces, ReadsVelocitiesOnlyIfTheLawAsks) {
   const Grid grid = five_by_four();
   State y = deformed(grid, 4);
   Vectors f = y.x;
   const auto forces = [&](const model::GridLaw& law) -> const Vectors& {
-    model::GridSweep(grid, law)(y.x, y.v, f);
+    model::FusedForces(grid, law)(y.x, y.v, f);
     return f;
   };
   y.v.setConstant(std::numeric_limits<double>::quiet_NaN());
-  EXPECT_TRUE(forces({.weft = {.spring = 1, .thread = 1}, .cell = {.shear = 1, .contraction = 1}}).allFinite());
-  for (const model::GridLaw& law : {model::GridLaw{.weft = {.drag = 1}},
-                                    {.warp = {.dashpot = 1}},
+  EXPECT_TRUE(forces({.edge = {.spring = {1, 0}, .preload = {1, 0}}, .cell = {.shear = 1, .contraction = 1}}).allFinite());
+  for (const model::GridLaw& law : {model::GridLaw{.edge = {.drag = {1, 0}}},
+                                    {.edge = {.dashpot = {0, 1}}},
                                     {.cell = {.shear_rate = 1}},
                                     {.cell = {.contraction_rate = 1}}})
     EXPECT_TRUE(forces(law).hasNaN());
 }
 
 }  // namespace
-}  // namespace drape::verify::grid_sweep_test
+}  // namespace drape::verify::fused_forces_test

@@ -24,7 +24,7 @@ void gen_alpha(Step& s) {
   const Eigen::Index n = s.ode.particles();
   const bool begins = !s.now().has_f;
   if (begins) start_rates(s);
-  const double h = s.h, offset = begins || s.w == 0 ? 0 : -(1 - af) * h / s.w;
+  const double h = s.h, offset = begins || s.w() == 0 ? 0 : -(1 - af) * h / s.w();
   const double gamma = (h / 2 - offset) / (af * h - offset);
   const Vectors& r0 = s.now().f;
   s.scratch.ax = s.y0().x + af * h * (1 - gamma) * r0.bottomRows(n);

@@ -29,7 +29,7 @@ struct Solver {
 
   Solver(const LinearSolver& kind, const SparseMatrix& factored, const std::vector<Pin>& pins = {}, int max_iterations = 1000)
       : filter(Filter::partial(pins)), cg(kind.make(), max_iterations, work) {
-    cg.analyze(factored);
+    cg.analyse(factored);
     EXPECT_EQ(cg.factor(factored), Outcome::success);
   }
 

@@ -79,7 +79,7 @@ TEST(StateWithinAStep, IsExactOnCubics) {
 TEST(DenseOutput, IsThereForAllTimesOfStepsOfAnySize) {
   const std::vector<double> times{0.1, 0.15, 0.199, 0.2, 0.35, 0.9};
   DenseOutput output(times, 0.1, cubic(0.1));
-  for (const double t : {0.2, 0.3, 0.8}) output.see(t, cubic(t));
+  for (const double t : {0.2, 0.3, 0.8}) output.observe(t, cubic(t));
   ASSERT_THAT(output.states, SizeIs(5)) << "the last was not reached";
   for (std::size_t k = 0; k < 5; ++k) EXPECT_LE(largest(output.states[k].x - cubic(times[k]).x), 2e-15) << times[k];
 }
@@ -89,7 +89,7 @@ TEST(DenseOutput, TakesStatesAsTheyAreWhereStepsEnd) {
   DenseOutput output(times, 0, cubic(0));
   State end = cubic(0.3);
   end.v *= 7;
-  output.see(0.3, end);
+  output.observe(0.3, end);
   ASSERT_THAT(output.states, SizeIs(3));
   for (const State& y : output.states) {
     EXPECT_EQ(y.x, end.x);
@@ -103,7 +103,7 @@ TEST(DenseOutput, FollowsARunBetweenItsSteps) {
   Integrator integrator(problem.ode, solver::method("esdirk4"), tight(), problem.start, t0);
   const std::vector<double> times{within};
   DenseOutput output(times, t0, integrator.state());
-  integrate(integrator, t0 + 0.3, 0.01, [&](const solver::StepReport& step) { output.see(step.t, step.y); });
+  integrate(integrator, t0 + 0.3, 0.01, [&](const solver::StepReport& step) { output.observe(step.t, step.y); });
   ASSERT_THAT(output.states, SizeIs(1));
   EXPECT_LE(largest(output.states[0].x - problem.exact(within).x), 1e-7);
 }

@@ -60,7 +60,7 @@ TEST(Advance, IsTheDenseUpdate) {
 
 std::unique_ptr<Preconditioner> prepared(const LinearSolver& kind, const SparseMatrix& A) {
   auto preconditioner = kind.make();
-  preconditioner->analyze(A);
+  preconditioner->analyse(A);
   EXPECT_EQ(preconditioner->factor(A), Outcome::success);
   return preconditioner;
 }
@@ -134,7 +134,7 @@ TEST_P(PreconditionerOf, BreaksDownOnEveryMatrixThatIsNotDefinite) {
   for (const Eigen::Matrix3d& A : {semidefinite, indefinite, negative}) {
     const SparseMatrix sparse = A.sparseView(1, -1);  // zeros are entries
     const auto preconditioner = kind.make();
-    preconditioner->analyze(sparse);
+    preconditioner->analyse(sparse);
     EXPECT_EQ(preconditioner->factor(sparse), Outcome::breakdown) << A;
   }
 }
@@ -186,7 +186,7 @@ TEST(Factor, SeesNumbersThatAreNotFinite) {
   SparseMatrix A = sheet(5, 4);
   A.coeffRef(7, 7) = std::nan("");
   const auto preconditioner = solver::make_incomplete_cholesky();
-  preconditioner->analyze(A);
+  preconditioner->analyse(A);
   EXPECT_EQ(preconditioner->factor(A), Outcome::not_finite);
 }
 

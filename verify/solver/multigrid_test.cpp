@@ -83,13 +83,13 @@ TEST(FivePointStar, MultipliesAsTheMatrix) {
     const SparseMatrix A = pinned_sheet(nu, nv, 7, {});
     const Vectors z = noise(n, 1), before = noise(n, 2);
     Vectors p = before, q(n, 3);
-    const double pq = direct(*solver::five_point(A), z, 0.3, p, q);
+    const double pq = update_direction(*solver::five_point(A), z, 0.3, p, q);
     const Vectors direction = z + 0.3 * before, product = A * direction;
     EXPECT_LE(largest(p - direction), 1e-15) << n;
     EXPECT_LE(largest(q - product), 1e-12) << n;
     EXPECT_NEAR(pq, dot(direction, product), 1e-11 * n) << n;
     p.setConstant(std::nan(""));
-    direct(*solver::five_point(A), z, 0, p, q);
+    update_direction(*solver::five_point(A), z, 0, p, q);
     EXPECT_EQ(p, z) << "the first direction knows no other";
   }
 }
@@ -98,7 +98,7 @@ TEST(Multigrid, IsSymmetricPositiveDefinite) {
   for (const SparseMatrix& A : sheets()) {
     const int n = static_cast<int>(A.rows());
     const auto cycle = solver::make_multigrid();
-    cycle->analyze(A);
+    cycle->analyse(A);
     ASSERT_EQ(cycle->factor(A), Outcome::success);
     EXPECT_FALSE(cycle->exact());
     const Vectors r = noise(n, 1), s = noise(n, 2);
@@ -113,7 +113,7 @@ TEST(Multigrid, IsSymmetricPositiveDefinite) {
 int iterations(const SparseMatrix& A) {
   solver::Counters work;
   solver::ConjugateGradients cg(solver::make_multigrid(), 100, work);
-  cg.analyze(A);
+  cg.analyse(A);
   EXPECT_EQ(cg.factor(A), Outcome::success);
   const Vectors b = noise(static_cast<int>(A.rows()), 9);
   Vectors r = b, d = b;
@@ -170,7 +170,7 @@ TEST(ThreadsOfLargeGrids, ChangeNothingButRoundOff) {
       const Threads allowed(threads);
       EXPECT_EQ(base::threads_for(n), threads);
       p.push_back(noise(n, 2)), q.emplace_back(n, 3), z.emplace_back(n, 3);
-      const double pq = direct(*star, r, 0.3, p.back(), q.back()), rz = cycle->apply(r, z.back());
+      const double pq = update_direction(*star, r, 0.3, p.back(), q.back()), rz = cycle->apply(r, z.back());
       EXPECT_NEAR(pq, dot(p.back(), q.back()), 1e-12 * pq);
       EXPECT_NEAR(rz, dot(r, z.back()), 1e-12 * rz);
       Vectors x = noise(n, 3), y = r;
@@ -197,7 +197,7 @@ TEST(ThreadsOfLargeGrids, AreOneUnlessAskedForAndForSmallGrids) {
 /// What `auto` takes for a matrix.
 std::string chosen(const SparseMatrix& A) {
   const auto automatic = solver::make_automatic();
-  automatic->analyze(A);
+  automatic->analyse(A);
   EXPECT_EQ(automatic->factor(A), Outcome::success);
   return std::string(automatic->name());
 }
@@ -217,7 +217,7 @@ TEST(AutomaticChoice, IsCountedAndMadeAnewForNewValues) {
   solver::Counters work;
   solver::ConjugateGradients cg(solver::make_automatic(), 100, work);
   const SparseMatrix stiff = pinned_sheet(160, 160, 1e3, {}), soft = diagonal(1e6 * Eigen::VectorXd::Ones(160 * 160)) + stiff;
-  cg.analyze(stiff);
+  cg.analyse(stiff);
   for (const SparseMatrix* A : {&stiff, &soft, &soft}) EXPECT_EQ(cg.factor(*A), Outcome::success);
   EXPECT_EQ(work.count("linear_solver/multigrid"), 1);
   EXPECT_EQ(work.count("linear_solver/mic0"), 2);

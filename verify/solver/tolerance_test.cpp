@@ -58,7 +58,7 @@ class Sheet {
     Integrator integrator(cloth.ode, solver::method(method), options, cloth.start);
     SmoothOutput output(times_, 0, integrator.state());
     const RunResult result =
-        integrate(integrator, scene_.end, scene_.end / 5, [&](const StepReport& step) { output.see(step.t, step.y); });
+        integrate(integrator, scene_.end, scene_.end / 5, [&](const StepReport& step) { output.observe(step.t, step.y); });
     return {result, std::move(output.positions)};
   }
 
@@ -213,7 +213,7 @@ TEST(SmoothOutput, IsOfSixthOrder) {
     std::vector<double> times;
     for (int k = 0; k <= 100; ++k) times.push_back(0.3 + 0.005 * k);
     SmoothOutput output(times, 0, at(0));
-    for (int k = 1; k * h < 0.95; ++k) output.see(k * h, at(k * h));
+    for (int k = 1; k * h < 0.95; ++k) output.observe(k * h, at(k * h));
     ASSERT_EQ(output.positions.size(), times.size());
     double& error = errors.errors.emplace_back(0);
     for (std::size_t k = 0; k < times.size(); ++k) error = std::max(error, largest(output.positions[k] - at(times[k]).x));

@@ -69,9 +69,9 @@ bool is_bar_method(std::string_view name) { return std::ranges::find(bar_methods
 
 bool tries(const Sheet& sheet, const Row& row) { return !sheet.spot_check || is_bar_method(row.name); }
 
-/// What a run may cost. A sub-step of an explicit method is far cheaper than an update of an implicit one.
+/// What a run may cost.
 std::int64_t budget(const Method& method) {
-  if (method.sub_steps) return 100'000;
+  if (method.explicit_springs()) return 100'000;
   return is_bar_method(method.name) ? 20'000 : 4'000;
 }
 

@@ -92,7 +92,7 @@ std::vector<StepLimits> step_limits(int n, const Softness& softness, const Metho
 
 LargestSteps largest_steps(const Specimen& specimen, const CrossCheckedReference& reference, const solver::Method& method,
                            const solver::Options& options) {
-  FewestSteps search(specimen, reference, {&method, options, 0, horizon, method.sub_steps ? 100'000 : 4'000});
+  FewestSteps search(specimen, reference, {&method, options, 0, horizon, method.explicit_springs() ? 100'000 : 4'000});
   const auto step = [](int steps) { return steps > 0 ? horizon / steps : 0; };
   const int accurate = search.fewest([](const Judged& run) { return uncut(run) && run.verdict == Verdict::accurate; });
   return {step(accurate), step(search.fewest([](const Judged& run) { return uncut(run) && run.stable(); }))};

@@ -115,7 +115,7 @@ std::vector<Endured> endured(const Stress& stress, int n, const Methods& methods
   std::vector<Endured> rows;
   for (const solver::Method* method : methods)
     rows.push_back({stress.name, std::string(method->name),
-                    judged(run({method, {}, stress_step, horizon, method->sub_steps ? 100'000 : 4'000}), reference)});
+                    judged(run({method, {}, stress_step, horizon, method->explicit_springs() ? 100'000 : 4'000}), reference)});
   return rows;
 }
 

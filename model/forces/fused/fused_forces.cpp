@@ -8,18 +8,18 @@ namespace {
 
 using solver::Vectors;
 
-/// Columns at a time: this number of two lines fits into a cache of 32 KB. If x, v and f do not stay in a cache, fewer, so that
-/// what comes next can be fetched meanwhile: more than a dozen cache lines at once and the processor would wait for them.
+/// Columns at a time: this number of two lines fits into a cache of 32 KB. Blocks are short where x, v and f do not stay in a
+/// cache, so that the next block is fetched meanwhile: with more than a dozen cache lines in flight the processor waits.
 constexpr int long_block = 128, short_block = 32;
 constexpr int cached_particles = 20'000;
 
-/// Where there is no column, coordinates are so far apart that no edge has the length 0.
+/// Distance of coordinates where there is no column, so that no edge has the length 0.
 constexpr double far = 1e100;
 
 /// Places arrays one after the other, such that the same columns of all lie in different sets of a cache.
 class Allocator {
  public:
-  Allocator(double* memory, std::ptrdiff_t stride) : next_(memory + lanes), stride_(stride) {}
+  Allocator(double* memory, std::ptrdiff_t stride) : next_(memory + column_block), stride_(stride) {}
 
   double* row() { return std::exchange(next_, next_ + stride_); }
   Field field() { return {std::exchange(next_, next_ + 3 * stride_), stride_}; }
@@ -29,30 +29,38 @@ class Allocator {
   std::ptrdiff_t stride_;
 };
 
-/// Edges look at the next column: what they look at, and what overwrites what others look at, is one step ahead.
+/// The same columns one step ahead: edges read the next column, so reads and overwrites of what others read run ahead.
 Columns ahead(Columns columns, int end) {
-  return {columns.begin == 0 ? 0 : columns.begin + lanes, std::min(columns.end + lanes, end)};
+  return {columns.begin == 0 ? 0 : columns.begin + column_block, std::min(columns.end + column_block, end)};
 }
 
-/// Lets the next block come into the cache while this one is worked on.
+/// Prefetches the next block into the cache.
 void fetch(const double* data) {
-  for (int i = 0; i < 3 * short_block; i += lanes) __builtin_prefetch(data + i);
+  for (int i = 0; i < 3 * short_block; i += column_block) __builtin_prefetch(data + i);
+}
+
+/// The law of the edges in one direction, of rest length l.
+EdgePull edge_pull(const EdgeLaw& law, double WeftWarp::*direction, double l) {
+  return {law.spring.*direction / l, law.preload.*direction, law.dashpot.*direction / l, law.drag.*direction / l};
 }
 
 Vec scaled(double s, const Eigen::Vector3d& a) { return {s * a[0], s * a[1], s * a[2]}; }
 
 }  // namespace
 
-GridSweep::GridSweep(const Grid& grid, const GridLaw& law)
+FusedForces::FusedForces(const Grid& grid, const GridLaw& law)
     : grid_(grid),
       law_(law),
-      length_((grid.nu + lanes) / lanes * lanes),
+      weft_(edge_pull(law.edge, &WeftWarp::weft, grid.spacing_u())),
+      warp_(edge_pull(law.edge, &WeftWarp::warp, grid.spacing_v())),
+      length_((grid.nu + column_block) / column_block * column_block),
       fetches_(grid.particles() > cached_particles),
       weft_width_(Eigen::ArrayXd::Zero(length_)),
       warp_width_(Eigen::ArrayXd::Zero(length_)) {
   weft_width_.head(grid.nu - 1) = 1;
   for (int a = 0; a < grid.nu; ++a) warp_width_[a] = grid.cell_width_u(a);
-  const std::ptrdiff_t stride = ((length_ / lanes + 2) | 1) * lanes;  // loops look at the columns before and behind as well
+  const std::ptrdiff_t stride =
+      ((length_ / column_block + 2) | 1) * column_block;  // loops look at the columns before and behind as well
   memory_.setZero(50 * stride);
   Allocator allocate(memory_.data(), stride);
   double distance = 0;
@@ -61,28 +69,28 @@ GridSweep::GridSweep(const Grid& grid, const GridLaw& law)
     line.v = allocate.field();
     for (Edges* edges : {&line.weft, &line.warp}) *edges = {allocate.field(), allocate.field(), allocate.row(), allocate.row()};
     line.pull_right = allocate.field();
-    for (int k = -lanes; k < length_ + lanes; ++k) line.x.set(k, {distance += far, 0, 0});
+    for (int k = -column_block; k < length_ + column_block; ++k) line.x.set(k, {distance += far, 0, 0});
   }
 }
 
-void GridSweep::read(int b, Columns columns, const Vectors& from, const Field& to) const {
+void FusedForces::read(int b, Columns columns, const Vectors& from, const Field& to) const {
   part(from.data() + 3 * static_cast<std::ptrdiff_t>(grid_.index(0, b)), ahead(columns, grid_.nu), to);
 }
 
-void GridSweep::pull_weft(int b, Columns columns, const Line& line) const {
+void FusedForces::pull_weft(int b, Columns columns, const Line& line) const {
   const Ends x{line.x, line.x.next()}, v{line.v, line.v.next()};
-  pull_edges(law_.weft * grid_.cell_width_v(b), x, v, weft_width_.data(), columns, line.weft);
+  pull_edges(weft_ * grid_.cell_width_v(b), x, v, weft_width_.data(), columns, line.weft);
   if (law_.cell.contracts()) strain_edges(law_.cell, grid_.spacing_u(), v, columns, line.weft);
 }
 
-void GridSweep::pull_warp(Columns columns, const Line& before, const Line& line) const {
+void FusedForces::pull_warp(Columns columns, const Line& before, const Line& line) const {
   const Ends x{before.x, line.x}, v{before.v, line.v};
   const Columns warp = ahead(columns, length_);
-  pull_edges(law_.warp, x, v, warp_width_.data(), warp, line.warp);
+  pull_edges(warp_, x, v, warp_width_.data(), warp, line.warp);
   if (law_.cell.contracts()) strain_edges(law_.cell, grid_.spacing_v(), v, warp, line.warp);
 }
 
-void GridSweep::pull_cells(Columns columns, const Line& before, const Line& line) const {
+void FusedForces::pull_cells(Columns columns, const Line& before, const Line& line) const {
   const Edges& left = line.warp;
   const CellEdges cells{.lower = before.weft,
                         .upper = line.weft,
@@ -99,20 +107,20 @@ void GridSweep::pull_cells(Columns columns, const Line& before, const Line& line
   if (law_.cell.contracts()) contract_cells(grid_.spacing_u(), grid_.spacing_v(), weft_width_.data(), columns, cells);
 }
 
-void GridSweep::write(int b, Columns columns, const Line& line, const Line& next, Vectors& f) const {
+void FusedForces::write(int b, Columns columns, const Line& line, const Line& next, Vectors& f) const {
   gather(scaled(grid_.cell_width_v(b), law_.load), warp_width_.data(), {line.weft.pull.before(), line.weft.pull},
          {line.warp.pull, next.warp.pull}, {line.pull_right.before(), next.pull_right.before()}, ahead(columns, grid_.nu),
          f.data() + 3 * static_cast<std::ptrdiff_t>(grid_.index(0, b)));
 }
 
-void GridSweep::clear_warp(const Line& line) const {
+void FusedForces::clear_warp(const Line& line) const {
   for (int k = 0; k < length_; ++k) {
     line.warp.pull.set(k, {});
     line.pull_right.set(k, {});
   }
 }
 
-void GridSweep::operator()(const Vectors& x, const Vectors& v, Vectors& f) {
+void FusedForces::operator()(const Vectors& x, const Vectors& v, Vectors& f) {
   const bool velocities = law_.needs_velocities();
   clear_warp(lines_[0]);
   // Forces of a line are written when the second line after it has been read: then its pulls have arrived in the cache, and
@@ -122,7 +130,7 @@ void GridSweep::operator()(const Vectors& x, const Vectors& v, Vectors& f) {
     if (b == grid_.nv + 1) clear_warp(before);
     for (Columns columns{0, 0}; columns.end < length_; columns.begin = columns.end) {
       columns.end = std::min(columns.begin + (fetches_ ? short_block : long_block), length_);
-      const std::ptrdiff_t next = 3 * (grid_.index(0, b) + static_cast<std::ptrdiff_t>(columns.end) + lanes);
+      const std::ptrdiff_t next = 3 * (grid_.index(0, b) + static_cast<std::ptrdiff_t>(columns.end) + column_block);
       if (b < grid_.nv) read(b, columns, x, line.x);
       if (b < grid_.nv && velocities) read(b, columns, v, line.v);
       if (b > 1) write(b - 2, columns, line, before, f);

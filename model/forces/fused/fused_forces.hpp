@@ -9,21 +9,21 @@ namespace drape::model {
 
 /// Evaluates a law in one pass over memory, line by line: reads x and v once and writes f once.
 ///
-/// A line's coordinates are parted into three arrays that stay in a near cache. Edges and their pulls are loops over these
-/// without branches, and a particle gets the difference of its edges' pulls: f = div σ. Borders are nothing special: edges and
-/// cells that do not exist have the width 0.
-class GridSweep {
+/// A line's coordinates are split into three arrays that stay in a near cache. Edges and their pulls are loops over these
+/// without branches, and a particle gets the difference of its edges' pulls: f = div σ. Borders are not a special case: edges
+/// and cells that do not exist have the width 0.
+class FusedForces {
  public:
-  GridSweep(const Grid& grid, const GridLaw& law);
-  GridSweep(const GridSweep&) = delete;
-  GridSweep& operator=(const GridSweep&) = delete;
+  FusedForces(const Grid& grid, const GridLaw& law);
+  FusedForces(const FusedForces&) = delete;
+  FusedForces& operator=(const FusedForces&) = delete;
 
   /// Sets f to the law's forces [N]; x, v, f: N × 3. Velocities are not read unless the law asks for them.
   void operator()(const solver::Vectors& x, const solver::Vectors& v, solver::Vectors& f);
 
  private:
-  /// Particles of a line and the weft edges between them; the warp edges that lead to them from the line before, and what
-  /// the cells between the lines add to the warp edge on their right.
+  /// Particles of a line and the weft edges between them; the warp edges that lead to them from the line before, and the
+  /// pulls that the cells between the lines add to the warp edge on their right.
   struct Line {
     Field x, v;
     Edges weft, warp;
@@ -39,12 +39,13 @@ class GridSweep {
 
   Grid grid_;
   GridLaw law_;
-  int length_;                 ///< of the loops over columns
+  EdgePull weft_, warp_;       ///< for a strip of unit width
+  int length_;                 ///< number of columns that the loops run over
   bool fetches_;               ///< whether x, v and f come from memory
   Eigen::ArrayXd weft_width_;  ///< 1 where the edge and the cell towards the next column exist, else 0
-  Eigen::ArrayXd warp_width_;  ///< of the edges along v [m], 0 where there is no column
-  Eigen::ArrayXd memory_;      ///< of the lines
-  std::array<Line, 2> lines_;  ///< with even and with odd b
+  Eigen::ArrayXd warp_width_;  ///< width of the edges along v [m], 0 where there is no column
+  Eigen::ArrayXd memory_;      ///< holds the lines
+  std::array<Line, 2> lines_;  ///< the one with even b and the one with odd b
 };
 
 }  // namespace drape::model

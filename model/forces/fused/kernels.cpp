@@ -14,22 +14,22 @@ double dot(const Vec& a, const Vec& b) { return a.x * b.x + a.y * b.y + a.z * b.
 Vec difference(const Ends& ends, int k) { return ends.end[k] - ends.begin[k]; }
 void add(const Field& sum, int k, const Vec& a) { sum.set(k, sum[k] + a); }
 
-// The templates take laws and fields by value: nothing that a loop stores could change them.
+// The templates take laws and fields by value, so that no store of a loop can change them.
 
-/// Calls f with a constant, so that what is not needed is not compiled.
+/// Calls f with the condition as a constant, so that unneeded branches are not compiled.
 template <class F>
 void with(bool condition, const F& f) {
   condition ? f(std::true_type()) : f(std::false_type());
 }
 
-template <bool thread, bool dashpot, bool drag>
-void pull(EdgeLaw law, Ends x, Ends v, const double* width, Columns columns, Edges edges) {
+template <bool preload, bool dashpot, bool drag>
+void pull(EdgePull law, Ends x, Ends v, const double* width, Columns columns, Edges edges) {
 #pragma GCC ivdep
   for (int k = columns.begin; k < columns.end; ++k) {
     const Vec p = difference(x, k);
     edges.along.set(k, p);
     double stress = law.spring;
-    if constexpr (thread) stress -= law.thread / std::sqrt(dot(p, p));
+    if constexpr (preload) stress -= law.preload / std::sqrt(dot(p, p));
     if constexpr (dashpot) stress += law.dashpot * dot(p, difference(v, k)) / dot(p, p);
     Vec g = stress * p;
     if constexpr (drag) g = g + law.drag * difference(v, k);
@@ -83,10 +83,10 @@ void part(const double* xyz, Columns columns, const Field& to) {
   for (int k = columns.begin; k < columns.end; ++k) field.set(k, {xyz[3 * k], xyz[3 * k + 1], xyz[3 * k + 2]});
 }
 
-void pull_edges(const EdgeLaw& law, const Ends& x, const Ends& v, const double* width, Columns columns, const Edges& edges) {
-  with(law.thread != 0, [&](auto thread) {
+void pull_edges(const EdgePull& law, const Ends& x, const Ends& v, const double* width, Columns columns, const Edges& edges) {
+  with(law.preload != 0, [&](auto preload) {
     with(law.dashpot != 0, [&](auto dashpot) {
-      with(law.drag != 0, [&](auto drag) { pull<thread, dashpot, drag>(law, x, v, width, columns, edges); });
+      with(law.drag != 0, [&](auto drag) { pull<preload, dashpot, drag>(law, x, v, width, columns, edges); });
     });
   });
 }

@@ -4,20 +4,20 @@
 
 #include "model/forces/fused/law.hpp"
 
-/// The loops of GridSweep over columns, vectorised by the compiler.
+/// The loops of FusedForces over columns, vectorised by the compiler.
 ///
-/// They are compiled apart from their caller on purpose: knowing that one argument is the neighbour of another, the compiler
-/// would carry values from one column to the next instead of handling eight at once.
+/// They are compiled apart from their caller: if the compiler knew that one argument is the neighbour of another, it would
+/// carry values from one column to the next instead of handling eight at once.
 namespace drape::model {
 
-constexpr int lanes = 8;  ///< loops run over a multiple of these, so that none needs a remainder
+constexpr int column_block = 8;  ///< loops run over a multiple of it, so that none needs a remainder
 
 /// Columns from begin to end.
 struct Columns {
   int begin, end;
 };
 
-/// A vector, in a form that vectorises: column by column in the lanes.
+/// A vector, in a form that vectorises over columns.
 struct Vec {
   double x, y, z;
 };
@@ -30,8 +30,8 @@ struct Field {
   Vec operator[](int k) const { return {data[k], data[k + stride], data[k + 2 * stride]}; }
   void set(int k, const Vec& a) const { data[k] = a.x, data[k + stride] = a.y, data[k + 2 * stride] = a.z; }
 
-  Field next() const { return {data + 1, stride}; }    ///< of the column behind
-  Field before() const { return {data - 1, stride}; }  ///< of the column before
+  Field next() const { return {data + 1, stride}; }    ///< column k + 1 at k
+  Field before() const { return {data - 1, stride}; }  ///< column k − 1 at k
 };
 
 /// Vectors from one field to another: edges, or their rates.
@@ -39,15 +39,15 @@ struct Ends {
   Field begin, end;
 };
 
-/// Edges and their pulls. For contraction: their inverse lengths, and what they stress the edges across with.
+/// Edges and their pulls. For contraction also their inverse lengths and the stresses that they cause in the edges across.
 struct Edges {
   Field along, pull;
   double *inverse, *stress;
 };
 
 /// The edges of cells: lower and upper along u, left and right along v; and the
-/// velocities of the corners, v01 above v00. `pull_right`: what is added to the
-/// right edge, in the place of the cell, since the next cell adds to the same edge.
+/// velocities of the corners, v01 above v00. `pull_right`: the pull added to the
+/// right edge, stored at the cell, since the next cell adds to the same edge.
 struct CellEdges {
   Edges lower, upper, left;
   Field right;
@@ -56,16 +56,23 @@ struct CellEdges {
   Field pull_right;
 };
 
-/// Parts the coordinates x y z x y z ... of columns.
+/// Splits the coordinates x y z x y z ... of columns into the three arrays of a field.
 void part(const double* xyz, Columns columns, const Field& to);
 
-/// Finds edges from their ends and sets their pulls; width: what the law is multiplied by.
-void pull_edges(const EdgeLaw& law, const Ends& x, const Ends& v, const double* width, Columns columns, const Edges& edges);
+/// The pull of an edge p on its ends: (spring − preload/|p| + dashpot <p, ṗ>/<p, p>) p + drag ṗ.
+struct EdgePull {
+  double spring, preload, dashpot, drag;
 
-/// Sets the inverse lengths of edges of rest length l, and what these edges stress those across them with.
+  EdgePull operator*(double width) const { return {width * spring, width * preload, width * dashpot, width * drag}; }
+};
+
+/// Sets the edges from their ends, and their pulls times `width`.
+void pull_edges(const EdgePull& law, const Ends& x, const Ends& v, const double* width, Columns columns, const Edges& edges);
+
+/// Sets the inverse lengths of edges of rest length l, and the stresses that they cause in the edges across them.
 void strain_edges(const CellLaw& law, double l, const Ends& v, Columns columns, const Edges& edges);
 
-/// Adds the pulls of cells, and sets those on their right; exists: 1 for a cell, 0 where there is none.
+/// Adds the pulls of cells, and sets those on their right; exists: 1 where there is a cell, else 0.
 void shear_cells(const CellLaw& law, const double* exists, Columns columns, const CellEdges& cells);
 
 /// Adds the pulls of cells with spacings l_u and l_v.

@@ -1,28 +1,27 @@
 #pragma once
 
-#include <Eigen/Core>
+#include "model/sheet/sheet.hpp"
 
 namespace drape::model {
 
-/// The pull of an edge p = x_j − x_i on its ends, for a strip of unit width [N/m]:
-///   (spring − thread/|p| + dashpot <p, ṗ>/<p, p>) p + drag ṗ.
+/// The pull of an edge p = x_j − x_i of rest length l on its ends, for a strip of unit width [N/m], with ε̇ = <p°, ṗ>/l:
+///   (spring |p|/l − preload + dashpot ε̇) p° + drag ṗ/l.
 struct EdgeLaw {
-  double spring = 0;   ///< [N/m²]
-  double thread = 0;   ///< [N/m]
-  double dashpot = 0;  ///< [N s/m²]
-  double drag = 0;     ///< [N s/m²]
+  WeftWarp spring = {};   ///< [N/m], the edge's part of K
+  WeftWarp preload = {};  ///< [N/m]
+  WeftWarp dashpot = {};  ///< [N s/m]
+  WeftWarp drag = {};     ///< [N s/m], the edge's part of D
 
-  bool needs_velocities() const { return dashpot != 0 || drag != 0; }
+  bool needs_velocities() const { return dashpot.any() || drag.any(); }
 
   EdgeLaw& operator+=(const EdgeLaw& other) {
-    spring += other.spring, thread += other.thread, dashpot += other.dashpot, drag += other.drag;
+    spring += other.spring, preload += other.preload, dashpot += other.dashpot, drag += other.drag;
     return *this;
   }
-  EdgeLaw operator*(double width) const { return {width * spring, width * thread, width * dashpot, width * drag}; }
   bool operator==(const EdgeLaw&) const = default;
 };
 
-/// What the edges of a cell pull with since there are others. An edge p along u and an edge q along v of the cell pull
+/// The pulls of a cell's edges that depend on its other edges. An edge p along u and an edge q along v of the cell pull
 ///   along q and along p:      shear <p, q> + shear_rate d/dt <p, q>   (each quadrant),
 ///   along p° l_v and q° l_u:  contraction ε + contraction_rate ε̇,    ε the other pair's summed strains.
 struct CellLaw {
@@ -43,18 +42,25 @@ struct CellLaw {
   bool operator==(const CellLaw&) const = default;
 };
 
-/// Forces of a sheet that depend on nothing but the edges of single cells: the laws of several terms add up to one, which
-/// GridSweep evaluates.
+/// Forces of a sheet that depend only on the edges of single cells: the laws of several terms add up to one, which
+/// FusedForces evaluates.
 struct GridLaw {
-  EdgeLaw weft = {}, warp = {};
+  EdgeLaw edge = {};
   CellLaw cell = {};
-  Eigen::Vector3d load = Eigen::Vector3d::Zero();  ///< force on a unit of area [N/m²]
+  Eigen::Vector3d load = Eigen::Vector3d::Zero();  ///< force per area [N/m²]
 
   bool acts() const { return *this != GridLaw{}; }
-  bool needs_velocities() const { return weft.needs_velocities() || warp.needs_velocities() || cell.needs_velocities(); }
+  bool needs_velocities() const { return edge.needs_velocities() || cell.needs_velocities(); }
+
+  /// The law without K x + D v.
+  GridLaw explicit_part() const {
+    GridLaw part = *this;
+    part.edge.spring = part.edge.drag = {};
+    return part;
+  }
 
   GridLaw& operator+=(const GridLaw& other) {
-    weft += other.weft, warp += other.warp, cell += other.cell, load += other.load;
+    edge += other.edge, cell += other.cell, load += other.load;
     return *this;
   }
   bool operator==(const GridLaw&) const = default;
