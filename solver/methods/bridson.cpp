@@ -18,12 +18,6 @@ double bridson_step_limit(const SplitOde& ode, double t, const State& y) {
   return verlet_limit(spectrum(undamped, t, y));
 }
 
-/// f ← τ f − M δ
-void residual(const Eigen::VectorXd& mass, double tau, const Vectors& delta, Vectors& f) {
-  for (Eigen::Index i = 0; i < mass.size(); ++i)
-    for (int c = 0; c < 3; ++c) f(i, c) = tau * f(i, c) - mass[i] * delta(i, c);
-}
-
 /// Goes from y0 to y1, whose v is that of the middles of sub-steps until the end.
 bool whole_bridson_step(Step& s, double substeps) {
   const double tau = s.h / substeps;
@@ -45,7 +39,7 @@ bool whole_bridson_step(Step& s, double substeps) {
     s.ode.force(s.t + k * tau, y.x, ahead, f);
     if (limit_narrowed(s, bridson_step_limit, s.t + k * tau, ahead, alternates(s, f, weight))) return false;
     if (k == substeps) break;
-    residual(s.ode.mass, tau, delta, f);
+    f.array() = tau * f.array() - delta.array().colwise() * s.ode.mass.array();
     delta += s.stage->solve_damping(tau / 2, f, s.result);
     if (s.result.outcome != Outcome::success) return true;
     y.v += delta;
