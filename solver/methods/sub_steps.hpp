@@ -7,8 +7,8 @@ namespace drape::solver {
 /// The largest stable sub-step of a method at a state [s].
 using SubStepLimit = double (*)(const SplitOde& ode, double t, const State& y);
 
-/// Takes a step of h in equal sub-steps inside the limit. `whole_step` goes from y0 to y1 in so many of them and returns false
-/// as soon as `limit_narrowed`: then the step begins again.
+/// Divides the step into equal sub-steps inside the limit. `whole_step` computes y1 from y0 in this number of them, and returns
+/// false as soon as `limit_narrowed`: then the step is repeated.
 void sub_step(Step& s, SubStepLimit limit, bool (*whole_step)(Step& s, double substeps));
 
 /// After a sub-step that has led to time t, the positions of y1 and the velocities v: whether the limit is narrower by now than
