@@ -39,7 +39,7 @@ double largest_eigenvalue(const SplitOde& ode, const Map& map) {
     H.col(k).head(k + 1).noalias() = basis.transpose() * next;
     next.noalias() -= basis * H.col(k).head(k + 1);
     H(k + 1, k) = next.norm();
-    const bool complete = H(k + 1, k) <= 1e-6 * size;
+    const bool complete = H(k + 1, k) <= 1e-6 * size || k + 1 == n;
     if (complete || (k + 1) % check == 0) {
       const double estimate = base::eigenvalues(H.topLeftCorner(k + 1, k + 1)).cwiseAbs().maxCoeff();
       if (complete || estimate - eigenvalue <= 1e-3 * estimate) return estimate;

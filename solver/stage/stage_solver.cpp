@@ -1,5 +1,7 @@
 #include "solver/stage/stage_solver.hpp"
 
+#include <algorithm>
+
 #include "solver/stage/accelerated_stage.hpp"
 
 namespace drape::solver {
@@ -28,7 +30,7 @@ const Vectors& StageSolver::solve_damping(double gamma, const Vectors& r, StageR
 }
 
 const Vectors& StageSolver::respond(const Vectors& r, StageResult& result) {
-  const LinearResult system = system_.respond(r, options_.cg_tolerance);
+  const LinearResult system = system_.respond(r, std::max(options_.cg_tolerance, StageSystem::round_off(1)));
   result.outcome = system.outcome;
   result.cg_iterations += system.iterations;
   return system_.correction();

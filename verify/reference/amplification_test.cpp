@@ -43,7 +43,7 @@ INSTANTIATE_TEST_SUITE_P(, Amplification, testing::ValuesIn(with_theory()),
 constexpr double whole_to_implicit[] = {1, 0.3 / 1.3, 1e-3 / 1.001};
 
 TEST_P(Amplification, IsThatOfTheCharacteristicPolynomial) {
-  const bool is_explicit = !method(GetParam()).implicit();
+  const bool is_explicit = !method(GetParam()).implicit() || method(GetParam()).sub_steps;
   for (const double ratio : whole_to_implicit)
     for (int decade = -2; decade <= 6; ++decade)
       for (const double s : {0.0, 0.01, 1.0, 100.0}) {
@@ -240,7 +240,7 @@ TEST(StabilisedMethods, GrowWhereModesOscillateTooFast) {
 }
 
 TEST(Bridson, HasALimitThatDoesNotDependOnDamping) {
-  for (const double c : {0.0, 0.1, 1.0, 10.0, 300.0}) EXPECT_NEAR(stability_limit(method("bridson"), {0, 1, c}), 2, 1e-6) << c;
+  for (const double c : {0.0, 0.1, 1.0, 10.0, 300.0}) EXPECT_NEAR(stability_limit(method("bridson"), {0, 1, c}), 2, 1e-4) << c;
 }
 
 TEST(Bridson, RingsWhereDampingIsStrong) {  // R(−∞) = −1: the trapezoidal rule
@@ -267,10 +267,11 @@ Convergence prediction(std::string_view name, double W0, const std::function<Mod
 int order_of_prediction(std::string_view name) { return std::max(2, method(name).order); }
 
 TEST_P(Amplification, HasThePredictedInertiaAndDampingAsModesSlowDown) {
-  const double nu = method(GetParam()).implicit() ? 100 : 0;
+  const bool is_explicit = !method(GetParam()).implicit() || method(GetParam()).sub_steps;
+  const double nu = is_explicit ? 0 : 100, W0 = is_explicit ? 0.1 : 0.2;
   const int order = order_of_prediction(GetParam());
-  EXPECT_TRUE(has_order(prediction(GetParam(), 0.2, [=](double W) { return Mode{nu, W, 0}; }), order));
-  EXPECT_TRUE(has_order(prediction(GetParam(), 0.2, [=](double W) { return Mode{nu, W, 0.3 * std::sqrt(W)}; }), order));
+  EXPECT_TRUE(has_order(prediction(GetParam(), W0, [=](double W) { return Mode{nu, W, 0}; }), order));
+  EXPECT_TRUE(has_order(prediction(GetParam(), W0, [=](double W) { return Mode{nu, W, 0.3 * std::sqrt(W)}; }), order));
 }
 
 TEST_P(Amplification, HasThePredictedInertiaAndDampingAsStepsShrink) {
