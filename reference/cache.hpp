@@ -50,7 +50,7 @@ class Cache {
   std::vector<std::string> messages_;
 };
 
-/// The caller's part of a key: the complete scene, from which the ODE and y0 follow, and what reference() was asked for.
+/// The caller's part of a key: the complete scene, from which the ODE and y0 follow, and the arguments of reference().
 std::string cache_key(std::string_view scene_toml, double t0, std::span<const double> times, const SolveOptions& options);
 
 /// The reference from the cache, or else from `compute` and into the cache. Exceptions of `compute` pass through.

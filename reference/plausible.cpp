@@ -59,7 +59,7 @@ void require_pins(const Reference& reference, const SplitOde& ode, const State& 
 
 struct Enough {};
 
-/// A trajectory that may be shorter than asked for.
+/// A trajectory that may be shorter than requested.
 Trajectory loose_run(const SplitOde& ode, const State& y0, double t0, std::span<const double> times, double size) {
   const double duration = times.back() - t0;
   solver::Options options;

@@ -31,7 +31,7 @@ std::vector<double> distances(const Trajectory& a, const Trajectory& b) {
 /// Solves from a start.
 using Solve = std::function<Trajectory(const State& start)>;
 
-/// Begins to solve the second equation, or leaves it until it is asked for.
+/// Starts to solve the second equation, or defers it until it is needed.
 std::future<Trajectory> start_second(const Equations& equations, const Solve& solve, const State& y0) {
   return std::async(equations.at_once() ? std::launch::async : std::launch::deferred, [&] { return solve(y0); });
 }

@@ -11,7 +11,7 @@ struct GlobalControl {
   double tolerance = 0;     ///< of the local error
   double largest_step = 0;  ///< [s]
   bool feasible = true;     ///< whether it takes no more steps than the options allow
-  std::string remark;       ///< why not, or what limits its steps but the tolerance; else empty
+  std::string remark;       ///< why not, or what limits its steps except the tolerance; empty otherwise
 };
 
 /// Control of the local error does not bound the global one, which goes with a power p/(p + 1) of the tolerance, times the

@@ -36,8 +36,7 @@ struct Room {
 const std::vector<Room> rooms = {
     {"solver/base", {"solver/base/"}, {}},
     {"solver's vocabulary",
-     {"solver/counters.", "solver/filter.", "solver/outcome.", "solver/split_ode.", "solver/stage.",
-      "solver/state."},
+     {"solver/counters.", "solver/filter.", "solver/outcome.", "solver/split_ode.", "solver/stage.", "solver/state."},
      {"solver/base"}},
     {"solver/linear", {"solver/linear/"}, {"solver's vocabulary"}},
     {"solver/contact", {"solver/contact/"}, {"solver's vocabulary"}},

@@ -62,7 +62,7 @@ BoundaryValueProblem problem(const BentSheet& sheet) {
 }
 
 /// With polynomials of the lowest sufficient degree, from the flat strip, stiff enough to stay nearly flat, down to the
-/// bending modulus asked for.
+/// requested bending modulus.
 PiecewisePolynomial roughly(const BentSheet& sheet) {
   const auto flat = [&](double X) -> Eigen::VectorXd {
     Eigen::VectorXd y = Eigen::VectorXd::Zero(sheet.force == BendingForce::whole ? 7 : 6);

@@ -39,7 +39,7 @@ class Arkode {
  public:
   Arkode(const FirstOrderOde& ode, Implicit implicit, double t0, double end, const SolveOptions& options);
 
-  /// y at time t, which must be after the last one asked for. Steps end there: interpolation would cost accuracy.
+  /// y at time t, which must be after that of the last call. Steps end there: interpolation would cost accuracy.
   const solver::State& advance(double t) {
     require(ARKStepSetStopTime(memory_.get(), t));
     double reached;

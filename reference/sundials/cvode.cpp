@@ -17,7 +17,7 @@ class Cvode {
   /// `formulas`: CV_BDF with Newton's method, or CV_ADAMS with functional iteration.
   Cvode(const FirstOrderOde& ode, int formulas, double t0, double end, const SolveOptions& options);
 
-  /// y at time t, which must not be before the last one asked for.
+  /// y at time t, which must not be before that of the last call.
   const solver::State& advance(double t) {
     double reached;
     require(CVode(memory_.get(), t, y_.get(), &reached, CV_NORMAL));

@@ -190,7 +190,7 @@ class Ida {
  public:
   Ida(ResidualForm& form, const solver::SplitOde& ode, double t0, double end, const SolveOptions& options);
 
-  /// y at time t, which must not be before the last one asked for.
+  /// y at time t, which must not be before that of the last call.
   const StateVector& advance(double t) {
     double reached;
     require(IDASolve(memory_.get(), t, &reached, y_.get(), dy_.get(), IDA_NORMAL));

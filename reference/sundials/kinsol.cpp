@@ -37,7 +37,7 @@ class Kinsol {
     return x;
   }
 
-  /// What rounding of the positions does to the forces [N]: smaller ones cannot be asked for.
+  /// Error of the forces by rounding of the positions [N], the lower limit of tolerances.
   double round_off() {
     const WideSparseMatrix J = jacobian(y_.get()).cwiseAbs();
     const Eigen::VectorXd row_sums = J * Eigen::VectorXd::Ones(J.cols());

@@ -51,7 +51,7 @@ SUNLinearSolver make_preconditioner_only(SUNContext context) {
   ops.setup = set_up;
   ops.solve = apply;
   ops.numiters = [](SUNLinearSolver) { return 1; };
-  ops.resid = [](SUNLinearSolver) -> N_Vector { return nullptr; };  // asked for only where there were no iterations
+  ops.resid = [](SUNLinearSolver) -> N_Vector { return nullptr; };  // called only where there were no iterations
   ops.resnorm = [](SUNLinearSolver) { return realtype(0); };
   ops.free = destroy;
   return solver;

@@ -28,7 +28,7 @@ void require_empty_folder(const std::filesystem::path& folder, std::string_view 
 /// Whether publish() may take the place of a file that is already there.
 enum class Existing { refuse, replace };
 
-/// Makes `content` the file in one step: whoever looks, now or after a crash, sees all of it or what was there before.
+/// Makes `content` the file in one step: at any time, even after a crash, readers find all of it or the previous file.
 /// Throws FileError and leaves nothing half-written, neither in the file nor beside it.
 void publish(const std::filesystem::path& file, std::span<const std::byte> content, Existing existing);
 

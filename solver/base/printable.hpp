@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-/// Texts of others, as names of files, keys and values, on their way to a terminal or a file that users read.
+/// Makes texts from outside (names of files, keys, values) fit for terminals and for files that users read.
 namespace drape::base {
 
 /// One line without anything that acts on a terminal or reorders what is shown: control characters, line breaks and invisible
@@ -17,10 +17,10 @@ std::string printable_lines(std::string_view text);
 /// The first `most` characters of a UTF-8 text, and how long it is if that is not all.
 std::string shortened(std::string text, std::size_t most);
 
-/// What a message quotes of somebody else's text: printable, at most 200 characters.
+/// A user's text as messages quote it: printable, at most 200 characters.
 std::string quoted(std::string_view text);
 
-/// Characters of UTF-8 text: all bytes but those that continue one.
+/// Number of characters of a UTF-8 text: all bytes except those that continue one.
 std::size_t characters(std::string_view text);
 
 }  // namespace drape::base

@@ -72,7 +72,7 @@ class Group {
   }
 
  private:
-  /// Kills whoever is left; only then is the number of the group given back.
+  /// Kills the rest of the group before its number is released.
   int end() {
     kill(-leader_, SIGKILL);
     ended_ = true;

@@ -45,7 +45,7 @@ class AcceleratedStage {
   Vectors guess_;
   Vectors best_v_, best_d_;  ///< where |d| was smallest since the iteration began
 
-  // Of the stage that is being solved.
+  // State of the stage that is being solved.
   const Stage* stage_ = nullptr;
   StageResult result_;
   double noise_ = 0;       ///< round-off in |r|

@@ -65,7 +65,8 @@ class BareIteration {
 
   IterationCost operator()() {
     double sum = 0;
-    const double time = seconds([&] { sum = solver::update_direction(star_, z_, 0.1, p_, q_) + solver::advance(1e-9, p_, q_, d_, r_); });
+    const double time =
+        seconds([&] { sum = solver::update_direction(star_, z_, 0.1, p_, q_) + solver::advance(1e-9, p_, q_, d_, r_); });
     if (!std::isfinite(sum)) throw std::runtime_error("an iteration of conjugate gradients is not finite");
     return {time, static_cast<double>(star_.bytes() + solver::vector_bytes(z_.rows(), 10))};
   }
