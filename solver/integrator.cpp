@@ -77,7 +77,7 @@ Integrator::Integrator(const SplitOde& ode, const Method& method, const Options&
       starting_(ode.work->counter("starting_steps", "accepted steps by the method that starts this one")) {
   if (ode.contacts && !method.meets_obstacles)
     throw std::invalid_argument("method '" + std::string(method.name) +
-                                "': expected a method of one stage in a scene with obstacles");
+                                "': expected a method that responds to obstacles, which this scene has");
   const LinearCounters registered(*ode.work);  // so that explicit methods record zeros
   if (method.implicit()) {
     ContactResponse* const contacts = ode.contacts ? &contacts_.emplace(ode) : nullptr;

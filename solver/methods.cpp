@@ -28,6 +28,13 @@ void rodas3(Step& s);
 void ros34pw2(Step& s);
 void ros2_w(Step& s);
 void ros34pw2_w(Step& s);
+void explicit_euler(Step& s);
+void explicit_midpoint(Step& s);
+void rk4(Step& s);
+void rk4_substeps(Step& s);
+void bridson(Step& s);
+void rkl2(Step& s);
+void rkc2(Step& s);
 
 std::span<const Method> methods() {
   using Stages = Method::Stages;
@@ -174,6 +181,50 @@ std::span<const Method> methods() {
        .order = 3,
        .stages = Stages::linear,
        .step = ros34pw2_w,
+       .meets_obstacles = false},
+      {.name = "explicit-euler",
+       .description = "explicit Euler (3.4)",
+       .order = 1,
+       .stages = Stages::none,
+       .step = explicit_euler,
+       .meets_obstacles = false},
+      {.name = "explicit-midpoint",
+       .description = "explicit midpoint rule (3.4.1)",
+       .order = 2,
+       .stages = Stages::none,
+       .step = explicit_midpoint,
+       .meets_obstacles = false},
+      {.name = "rk4",
+       .description = "classical Runge-Kutta, explicit",
+       .order = 4,
+       .stages = Stages::none,
+       .step = rk4,
+       .meets_obstacles = false},
+      {.name = "rk4-substeps",
+       .description = "classical Runge-Kutta, sub-stepped inside its stability limit",
+       .order = 4,
+       .stages = Stages::none,
+       .step = rk4_substeps,
+       .meets_obstacles = false,
+       .sub_steps = true},
+      {.name = "bridson",
+       .description = "explicit springs, implicit damping, sub-stepped inside a limit that damping does not lower",
+       .order = 2,
+       .stages = Stages::linear,
+       .step = bridson,
+       .meets_obstacles = false,
+       .sub_steps = true},
+      {.name = "rkl2",
+       .description = "Runge-Kutta-Legendre, explicit, as many stages as damping demands",
+       .order = 2,
+       .stages = Stages::none,
+       .step = rkl2,
+       .meets_obstacles = false},
+      {.name = "rkc2",
+       .description = "Runge-Kutta-Chebyshev, explicit, as many stages as damping demands",
+       .order = 2,
+       .stages = Stages::none,
+       .step = rkc2,
        .meets_obstacles = false},
   };
   return table;

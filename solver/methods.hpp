@@ -26,6 +26,9 @@ struct Method {
 
   bool implicit() const { return stages == Stages::linear || nonlinear(); }  ///< whether it uses the stage solver
   bool nonlinear() const { return stages == Stages::nonlinear; }
+
+  /// Whether springs are explicit: their stability limits the steps, and a stage costs little more than a force.
+  bool explicit_springs() const { return stages == Stages::none || sub_steps; }
 };
 
 /// All methods.

@@ -1,6 +1,8 @@
 #include "solver/stability.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <complex>
 #include <limits>
 #include <random>
 
@@ -8,8 +10,6 @@
 
 namespace drape::solver {
 namespace {
-
-constexpr double safety = 1.01;
 
 /// Largest |eigenvalue| of a linear map of N × 3 vectors by Arnoldi's iteration, whose eigenvalues approach the outermost
 /// from within: it takes tens of products, power iteration would take hundreds, and a restarted space, as in Spectra's
@@ -39,7 +39,7 @@ double largest_eigenvalue(const SplitOde& ode, const Map& map) {
     H.col(k).head(k + 1).noalias() = basis.transpose() * next;
     next.noalias() -= basis * H.col(k).head(k + 1);
     H(k + 1, k) = next.norm();
-    const bool complete = H(k + 1, k) <= 1e-6 * size;
+    const bool complete = H(k + 1, k) <= 1e-6 * size || k + 1 == n;
     if (complete || (k + 1) % check == 0) {
       const double estimate = base::eigenvalues(H.topLeftCorner(k + 1, k + 1)).cwiseAbs().maxCoeff();
       if (complete || estimate - eigenvalue <= 1e-3 * estimate) return estimate;
@@ -60,6 +60,37 @@ double amplification(double W, double s) {
   return base::eigenvalues(G).cwiseAbs().maxCoeff();
 }
 
+/// Largest |R(h λ)| of the classical Runge-Kutta method, R(z) = 1 + z + z²/2 + z³/6 + z⁴/24, of the two λ of a mode.
+double rk4_amplification(double W, double s) {
+  const std::complex<double> root = std::sqrt(std::complex<double>(s * s / 4 - W));
+  const auto R = [](std::complex<double> z) { return std::abs(1.0 + z * (1.0 + z / 2.0 * (1.0 + z / 3.0 * (1.0 + z / 4.0)))); };
+  return std::max(R(-s / 2 + root), R(-s / 2 - root));
+}
+
+/// The same of all modes with at most this W and s, of which the stiffest need not be the worst: where λ lies at 123 degrees,
+/// |h λ| may be 2.616 only.
+double worst_rk4_amplification(double W, double s) {
+  constexpr double parts = 32;
+  double worst = 0;
+  for (double part = 0; part <= parts; ++part)
+    worst = std::max({worst, rk4_amplification(W, s * part / parts), rk4_amplification(W * part / parts, s)});
+  return worst;
+}
+
+/// The largest step up to which `amplification` is not above 1, found by bisection; `unstable`: a part of 1/ω, 1/c above it.
+double largest_stable_step(const Spectrum& spectrum, double (*amplification)(double W, double s), double of_omega,
+                           double of_c) {
+  const double omega = std::sqrt(spectrum.omega_squared), c = spectrum.decay;
+  if (!std::isfinite(omega + c)) return std::numeric_limits<double>::quiet_NaN();
+  if (omega == 0 && c == 0) return std::numeric_limits<double>::infinity();
+  double stable = 0, unstable = std::min(omega > 0 ? of_omega / omega : INFINITY, c > 0 ? of_c / c : INFINITY) * 1.01;
+  while (unstable - stable > 1e-6 * unstable) {
+    const double h = 0.5 * (stable + unstable);
+    (amplification(h * h * omega * omega, h * c) <= 1 + 1e-9 ? stable : unstable) = h;
+  }
+  return stable;
+}
+
 }  // namespace
 
 Spectrum spectrum(const SplitOde& ode, double t, const State& y) {
@@ -76,21 +107,21 @@ Spectrum spectrum(const SplitOde& ode, double t, const State& y) {
       filter(ode.pins, w);
     });
     moved.*argument = y.*argument;
-    return safety * eigenvalue;
+    return spectrum_safety * eigenvalue;
   };
   return {largest(&State::x), largest(&State::v)};
 }
 
-double verlet_limit(const Spectrum& spectrum) {
-  const double omega = std::sqrt(spectrum.omega_squared), c = spectrum.decay;
-  if (!std::isfinite(omega + c)) return std::numeric_limits<double>::quiet_NaN();
-  if (omega == 0 && c == 0) return std::numeric_limits<double>::infinity();
-  double stable = 0, unstable = std::min(omega > 0 ? 2 / omega : INFINITY, c > 0 ? 1 / c : INFINITY) * 1.01;
-  while (unstable - stable > 1e-6 * unstable) {
-    const double h = 0.5 * (stable + unstable);
-    (amplification(h * h * omega * omega, h * c) <= 1 + 1e-9 ? stable : unstable) = h;
-  }
-  return stable;
+double verlet_limit(const Spectrum& spectrum) { return largest_stable_step(spectrum, amplification, 2, 1); }
+
+double rk4_limit(const Spectrum& spectrum) {
+  return largest_stable_step(spectrum, worst_rk4_amplification, std::sqrt(8), 2.786);
+}
+
+double rkl2_stages(double h_decay) { return std::max(2.0, std::ceil((std::sqrt(9 + 8 * h_decay) - 1) / 2)); }
+
+double rkc2_stages(double h_decay) {
+  return std::max(2.0, std::ceil(std::sqrt(1 + 1.5 * h_decay / (1 - 2 * rkc2_damping / 15))));
 }
 
 }  // namespace drape::solver

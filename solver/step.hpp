@@ -27,10 +27,10 @@ struct StepError {
   double split_gamma = 0;  ///< splitting error in x over that in v [s]; 0: no splitting error
 };
 
-/// What `verlet` needs and keeps from step to step.
+/// What methods need and keep from step to step that divide their steps, or choose their stages, by a stability limit.
 struct SubStepping {
   ImpactResponse* impacts = nullptr;  ///< null if there are no obstacles
-  double limit = 0;                   ///< largest stable sub-step [s], 0 until it is estimated
+  double limit = 0;                   ///< largest stable sub-step, or 1 over the largest decay [s]; 0 until it is estimated
   LimitWatch limit_watch = {};        ///< either watch tells when the limit must be estimated again
   StretchWatch stretch_watch = {};
   std::int64_t &substeps, &limits;  ///< work counters

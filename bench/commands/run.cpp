@@ -117,7 +117,9 @@ void add_solver_options(CLI::App& command, RunArguments& a) {
       ->type_name("N")
       ->check(between(1, 1000000))
       ->capture_default_str();
-  command.add_option("--verlet-fraction", a.options.verlet_fraction, "sub-step of verlet over its stability limit")
+  command
+      .add_option("--verlet-fraction", a.options.verlet_fraction,
+                  "sub-step of verlet, rk4-substeps and bridson over its stability limit")
       ->type_name("X")
       ->check(between(1e-3, 1.0))
       ->capture_default_str();

@@ -30,9 +30,8 @@ std::vector<results::Parameter> parameters(const RunSpec& spec, int particles) {
     all.push_back(
         {"threads", double(base::threads_for(particles)), "1", "that the linear algebra of a sheet of this size may use"});
     all.push_back({"max_cg_iterations", double(o.max_cg_iterations), "1", "iterations a solve before it counts as failed"});
-  } else if (spec.method->sub_steps) {
-    all.push_back({"verlet_fraction", o.verlet_fraction, "1", "sub-step over its stability limit"});
   }
+  if (spec.method->sub_steps) all.push_back({"verlet_fraction", o.verlet_fraction, "1", "sub-step over its stability limit"});
   if (spec.method->nonlinear()) {
     if (o.stage->accelerated)
       all.push_back({"stage_accuracy", o.stage_accuracy, "1", "error left in a stage over the error of the time step"});

@@ -109,7 +109,7 @@ std::vector<Amplified> amplification(const Method& method, bool quick, Checkpoin
   for (const NamedMode& named : modes_of_the_sheet())
     for (const double nu : stiffnesses(quick)) {
       const Mode mode = at_step(named.mode, std::sqrt(nu / named.mode.kappa));
-      if (method.sub_steps && std::max(mode.W, mode.s) > far_outside) continue;  // of a single sub-step
+      if (method.explicit_springs() && std::max(mode.W, mode.s) > far_outside) continue;  // of the limit of a single sub-step
       rows.push_back(measured(checkpoint, fmt::format("{} {}", named.name, nu),
                               Amplified{std::string(method.name), named.name, mode.nu, mode.W, mode.s, {}, {}, no_theory},
                               [&](Amplified& row) {

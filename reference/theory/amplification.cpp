@@ -83,7 +83,7 @@ solver::Point advance(const solver::Method& method, const solver::SplitOde& ode,
   solver::Point next = point(Eigen::VectorXd::Zero(2));
   solver::Scratch scratch{none, none, none, {}};
   solver::StepError error;
-  solver::SubStepping sub_stepping{.limit = h, .substeps = substeps, .limits = limits};
+  solver::SubStepping sub_stepping{.limit = method.sub_steps ? h : 0, .substeps = substeps, .limits = limits};
   solver::Step step{.ode = ode,
                     .options = options,
                     .stage = stage,

@@ -12,9 +12,10 @@ namespace drape::reference {
 
 /// A linear mode, scaled by the step h of a method.
 struct Mode {
-  double nu;  ///< h² κ, the implicit part of the split
-  double W;   ///< h² ω², the whole
-  double s;   ///< h c, all of it implicit: in D
+  double nu;              ///< h² κ, the implicit part of the split
+  double W;               ///< h² ω², the whole
+  double s;               ///< h c, all of it implicit: in D
+  double stiffest_s = 0;  ///< that of the sheet's most damped mode, if it is more: methods may choose their stages by it
 };
 
 Mode at_step(const LinearMode& mode, double h);
@@ -58,7 +59,7 @@ ModeBehaviour exact_behaviour(const Mode& mode);
 // --- In theory: those that take the name of a method throw std::invalid_argument if there is no theory of it
 // ------------------
 
-/// Whether there is one: for the methods of the thesis, `verlet`, and the methods of linearised stages.
+/// Whether there is one: for the methods of the thesis, explicit ones, and the methods of linearised stages.
 bool has_theory(std::string_view method);
 
 /// Characteristic polynomial of the amplification matrix, coefficients from the constant to the leading one, which is 1.
@@ -72,7 +73,8 @@ double distance_from_theory(const solver::Method& method, const Mode& mode, cons
 /// that have no loop.
 double loop_contraction(std::string_view method, const Mode& mode);
 
-/// The largest stable W for given ν and s, in closed form: infinite for the implicit methods, NaN for `sbdf2` with damping.
+/// The largest stable W for given ν and s, in closed form: infinite for the implicit methods, NaN where none is known, and for
+/// explicit Runge-Kutta methods with s > 2, which too small a W makes unstable as well.
 double stability_bound(std::string_view method, double nu, double s);
 
 /// What a method adds to the equation of motion of a slow mode, (1 + inertia) x'' + (s + damping) x' + W x = 0 with h = 1.

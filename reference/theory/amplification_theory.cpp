@@ -6,6 +6,7 @@
 
 #include "reference/theory/amplification.hpp"
 #include "solver/base/registry.hpp"
+#include "solver/stability.hpp"
 
 namespace drape::reference {
 namespace {
@@ -50,8 +51,8 @@ std::pair<std::complex<double>, std::complex<double>> exponents(const Mode& m) {
   return {larger, square < 0 ? std::conj(larger) : m.W / larger};
 }
 
-/// The polynomial of a Rosenbrock method whose number of stages, order and γ determine R(μ): R(μ) (1 − γ μ)^stages is the series
-/// of e^μ (1 − γ μ)^stages up to the order   [Hairer, Wanner 1996, IV.7].
+/// The polynomial of a Rosenbrock method whose number of stages, order and γ determine R(μ): R(μ) (1 − γ μ)^stages is the
+/// series of e^μ (1 − γ μ)^stages up to the order   [Hairer, Wanner 1996, IV.7].
 Polynomial rosenbrock(const Mode& m, int stages, int order, double gamma) {
   const auto R = [=](std::complex<double> mu) {
     std::complex<double> numerator = 0;
@@ -73,6 +74,54 @@ Polynomial rosenbrock(const Mode& m, int stages, int order, double gamma) {
 double no_bound(double, double) { return infinity; }
 Artificial nothing_artificial(const Mode&) { return {0, 0}; }
 Artificial euler_artificial(const Mode& m) { return {m.s / 2, m.W}; }
+
+/// z² − tr R z + det R: a Runge-Kutta method multiplies (x, h v) by its stability function R of this matrix.
+Eigen::Matrix2d exponent(const Mode& m) { return Eigen::Matrix2d{{0, 1}, {-m.W, -m.s}}; }
+Polynomial of_runge_kutta(const Eigen::Matrix2d& R) { return z * z + -R.trace() * z + R.determinant(); }
+
+/// 1 + Z + Z²/2 + … up to the power of the order.
+template <int order>
+Polynomial truncated_exponential(const Mode& m) {
+  Eigen::Matrix2d R = Eigen::Matrix2d::Identity();
+  for (int k = order; k > 0; --k) R = Eigen::Matrix2d::Identity() + exponent(m) * R / k;
+  return of_runge_kutta(R);
+}
+
+double with_safety(const Mode& m) { return solver::spectrum_safety * std::max(m.s, m.stiffest_s); }
+
+/// 1 − b + b P_s(1 + 4 Z/(s² + s − 2)), Legendre's P_s by (k + 1) P_{k+1} = (2 k + 1) X P_k − k P_{k−1}.
+Polynomial legendre(const Mode& m) {
+  const double s = solver::rkl2_stages(with_safety(m)), d = s * s + s - 2, b = d / (2 * s * (s + 1));
+  const Eigen::Matrix2d I = Eigen::Matrix2d::Identity(), X = I + 4 / d * exponent(m);
+  Eigen::Matrix2d before = I, P = X;
+  for (double k = 1; k < s; ++k) {
+    const Eigen::Matrix2d next = ((2 * k + 1) * X * P - k * before) / (k + 1);
+    before = P;
+    P = next;
+  }
+  return of_runge_kutta((1 - b) * I + b * P);
+}
+
+/// 1 − b T_s(w0) + b T_s(w0 + w1 Z), Chebyshev's T_s(cosh θ) = cosh s θ with its derivatives.
+Polynomial chebyshev(const Mode& m) {
+  const double s = solver::rkc2_stages(with_safety(m)), w0 = 1 + solver::rkc2_damping / (s * s);
+  const double theta = std::acosh(w0), sinh = std::sinh(theta), T = std::cosh(s * theta), dT = s * std::sinh(s * theta) / sinh;
+  const double ddT = (s * s * T - w0 * dT) / (sinh * sinh), b = ddT / (dT * dT);
+  const Eigen::Matrix2d I = Eigen::Matrix2d::Identity(), X = w0 * I + dT / ddT * exponent(m);
+  Eigen::Matrix2d before = I, P = X;
+  for (double k = 1; k < s; ++k) {
+    const Eigen::Matrix2d next = 2 * X * P - before;
+    before = P;
+    P = next;
+  }
+  return of_runge_kutta((1 - b * T) * I + b * P);
+}
+
+/// Methods that make undamped motion grow: with damping the limit is not known.
+double none_if_undamped(double, double s) { return s > 0 ? not_known : 0; }
+
+/// 2√2 squared.
+double rk4_bound(double, double s) { return s > 0 ? not_known : 8; }
 
 // With z = exp(μ), each polynomial divided by a power of z is (1 + inertia) μ² + (s + damping) μ + W up to relative O(μ²):
 // 1 − 1/z = μ − μ²/2 + …, δ/z² = μ − μ³/3 + …, and μ³ is reduced by the equation itself.
@@ -112,6 +161,19 @@ const Theory theories[] = {
     {"ros3p", 0, [](const Mode& m) { return rosenbrock(m, 3, 3, 0.5 + std::sqrt(3) / 6); }, no_bound, nothing_artificial},
     {"rodas3", 0, [](const Mode& m) { return rosenbrock(m, 4, 3, 0.5); }, no_bound, nothing_artificial},
     {"ros34pw2", 0, [](const Mode& m) { return rosenbrock(m, 4, 3, 0.435866521508459); }, no_bound, nothing_artificial},
+    {"explicit-euler", 0, truncated_exponential<1>, [](double, double s) { return s <= 2 ? s : not_known; },
+     [](const Mode& m) {
+       return Artificial{-m.s / 2, -m.W};
+     }},
+    {"explicit-midpoint", 0, truncated_exponential<2>,
+     [](double, double s) { return s <= 2 ? s + std::sqrt(s * (4 - s)) : not_known; }, nothing_artificial},
+    {"rk4", 0, truncated_exponential<4>, rk4_bound, nothing_artificial},
+    {"rk4-substeps", 0, truncated_exponential<4>, rk4_bound, nothing_artificial},
+    {"bridson", 0,  //
+     [](const Mode& m) { return dz * dz + m.s / 2 * (z * z + -1) + m.W * z; }, [](double, double) { return 4.0; },
+     nothing_artificial},
+    {"rkl2", 0, legendre, none_if_undamped, nothing_artificial},
+    {"rkc2", 0, chebyshev, none_if_undamped, nothing_artificial},
 };
 
 const Theory& theory(std::string_view method) { return base::find_named<Theory>(theories, "method with a theory", method); }

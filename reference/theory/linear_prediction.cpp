@@ -71,7 +71,7 @@ std::optional<LinearPrediction> predict(const solver::Method& method, double sti
   double nu = 8 * stiffness;
   for (int k = 0; k < octaves; ++k, nu /= 2)
     for (const double part : parts) {
-      const Mode mode{nu, part * nu, nu / stiffness_to_damping};
+      const Mode mode{nu, part * nu, nu / stiffness_to_damping, 8 * stiffness / stiffness_to_damping};
       prediction.radius = base::larger(prediction.radius, radius(method, mode));
       if (has_theory(method.name)) prediction.loop = base::larger(prediction.loop, loop_contraction(method.name, mode));
     }

@@ -1,36 +1,13 @@
-#include <algorithm>
-#include <cmath>
-
+#include "solver/methods/sub_steps.hpp"
 #include "solver/stability.hpp"
-#include "solver/step.hpp"
 
 namespace drape::solver {
 namespace {
 
-/// Number of sub-steps above which a step counts as failed: at some microseconds each it would take minutes.
-constexpr double most_substeps = 1e8;
+double verlet_step_limit(const SplitOde& ode, double t, const State& y) { return verlet_limit(spectrum(ode, t, y)); }
 
-double limit_at(Step& s, double t, const State& y) {
-  ++s.sub_stepping.limits;
-  s.sub_stepping.stretch_watch.begin(s.ode.stiffness, y.x);
-  return verlet_limit(spectrum(s.ode, t, y));
-}
-
-/// After a sub-step to time t with the force f: whether the limit is narrower now than the one in use. It is estimated only if
-/// edges have stretched, or modes alternate and grow.
 bool narrowed(Step& s, double t, const Vectors& f) {
-  constexpr int stretch_period = 8;
-  constexpr double worthwhile = 0.98;
-  const bool alarmed = s.sub_stepping.limit_watch.alarmed(f, s.scratch.ax);
-  const bool due = ++s.sub_stepping.substeps % stretch_period == 0;
-  if (!alarmed && !(due && s.sub_stepping.stretch_watch.stretched(s.ode.stiffness, s.y1().x))) return false;
-  const double limit = limit_at(s, t, {s.y1().x, s.scratch.av});
-  if (limit < worthwhile * s.sub_stepping.limit) {
-    s.sub_stepping.limit = limit;
-    return true;
-  }
-  if (alarmed) s.sub_stepping.limit_watch.rest();
-  return false;
+  return limit_narrowed(s, verlet_step_limit, t, s.scratch.av, alternates(s, f, s.scratch.ax));
 }
 
 /// The state is kept at (x1, v at the middle of the sub-step), so that there is one pass over memory between two evaluations of
@@ -87,8 +64,7 @@ bool whole_step(Step& s, double substeps) {
   State& y = s.y1();
   y = s.y0();
   prescribe(s.ode.pins, y.v);
-  for (int c = 0; c < 3; ++c) s.scratch.ax.col(c) = s.ode.mass.cwiseInverse();  // 0 in pinned coordinates:
-  filter(s.ode.pins, s.scratch.ax);
+  inverse_masses(s.ode, s.scratch.ax);
   if (s.now().has_f)
     s.next.f = s.now().f;
   else
@@ -107,21 +83,6 @@ bool whole_step(Step& s, double substeps) {
 // evaluation a sub-step   [Verlet 1967; Groot, Warren 1997, λ = 1].
 // The limit is that of the initial state until neighbours have moved apart by a tenth, or modes alternate and grow: then it is
 // estimated again, and if it has become narrower the step is repeated.
-void verlet(Step& s) {
-  if (s.sub_stepping.limit == 0) s.sub_stepping.limit = limit_at(s, s.t, s.y0());
-  for (bool done = false; !done;) {
-    if (!(s.sub_stepping.limit > 0)) {
-      s.result.outcome = Outcome::not_finite;
-      return;
-    }
-    const double substeps = std::max(1.0, std::ceil(s.h / (s.options.verlet_fraction * s.sub_stepping.limit)));
-    if (substeps > most_substeps) {
-      s.result.outcome = Outcome::not_converged;
-      return;
-    }
-    done = whole_step(s, substeps);
-    if (!done && s.sub_stepping.impacts != nullptr) s.sub_stepping.impacts->begin(s.t, s.h, s.y0());
-  }
-}
+void verlet(Step& s) { sub_step(s, verlet_step_limit, whole_step); }
 
 }  // namespace drape::solver

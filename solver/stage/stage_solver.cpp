@@ -1,5 +1,7 @@
 #include "solver/stage/stage_solver.hpp"
 
+#include <algorithm>
+
 #include "solver/stage/accelerated_stage.hpp"
 
 namespace drape::solver {
@@ -19,8 +21,16 @@ StageResult StageSolver::solve(const Stage& stage, State& y) {
   return accelerates() ? accelerated_->solve(stage, y) : fixed_point(stage, nullptr, y);
 }
 
+const Vectors& StageSolver::solve_damping(double gamma, const Vectors& r, StageResult& result) {
+  result.outcome = system_.prepare_damping(gamma);
+  if (result.outcome != Outcome::success) return system_.correction();
+  ++work_.updates;
+  ++result.updates;
+  return respond(r, result);
+}
+
 const Vectors& StageSolver::respond(const Vectors& r, StageResult& result) {
-  const LinearResult system = system_.respond(r, options_.cg_tolerance);
+  const LinearResult system = system_.respond(r, std::max(options_.cg_tolerance, StageSystem::round_off(1)));
   result.outcome = system.outcome;
   result.cg_iterations += system.iterations;
   return system_.correction();

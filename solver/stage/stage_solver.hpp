@@ -24,6 +24,10 @@ class StageSolver {
   /// residual passes the test of CG.
   StageResult solve(const Stage& stage, State& y);
 
+  /// The d of (M − γ D) d = r in the directions that pins leave free: one linear system, for methods whose springs are
+  /// explicit.
+  const Vectors& solve_damping(double gamma, const Vectors& r, StageResult& result);
+
   /// Whether the next stage is accelerated.
   bool accelerates() const { return accelerated_ && !system_.touches(); }
 

@@ -98,10 +98,15 @@ StageSystem::StageSystem(const SplitOde& ode, const Merged& merged, const Option
 }
 
 Outcome StageSystem::prepare(double gamma, double different) {
-  if (std::abs(gamma - gamma_) <= different * gamma_) return Outcome::success;
+  return std::abs(gamma - gamma_) <= different * gamma_ ? Outcome::success : make(gamma, gamma * gamma);
+}
+
+Outcome StageSystem::prepare_damping(double gamma) { return gamma == gamma_ ? Outcome::success : make(gamma, 0); }
+
+Outcome StageSystem::make(double gamma, double springs) {
   gamma_ = gamma;
   ++work_.builds;
-  Eigen::Map<Eigen::ArrayXd>(A_.valuePtr(), A_.nonZeros()) = mass_ - gamma * gamma * stiffness_ - gamma * damping_;
+  Eigen::Map<Eigen::ArrayXd>(A_.valuePtr(), A_.nonZeros()) = mass_ - springs * stiffness_ - gamma * damping_;
   const Outcome outcome = cg_.factor(A_);
   if (outcome != Outcome::success) gamma_ = 0;
   return outcome;

@@ -27,6 +27,9 @@ class StageSystem {
   /// Assembles and factors A for this γ, unless its own γ differs by less than `different`, relatively.
   Outcome prepare(double gamma, double different = 1e-12);
 
+  /// Assembles and factors M − γ D in place of A, for methods whose springs are explicit.
+  Outcome prepare_damping(double gamma);
+
   /// γ of A [s].
   double gamma() const { return gamma_; }
 
@@ -79,6 +82,7 @@ class StageSystem {
   struct Merged;
   StageSystem(const SplitOde& ode, const Merged& merged, const Options& options, ContactResponse* contacts);
 
+  Outcome make(double gamma, double springs);
   const Filter& filtered() const { return touches() ? contacts_->filter() : pinned_; }
 
   const SplitOde& ode_;

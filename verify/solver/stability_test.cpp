@@ -1,4 +1,4 @@
-// The largest step of `verlet`: found where it blows up, and computed from what the ODE's stiffest modes are.
+// The largest steps of `verlet` and `rk4`: found where they blow up, and computed from what the ODE's stiffest modes are.
 
 #include "solver/stability.hpp"
 
@@ -15,17 +15,18 @@ namespace {
 using namespace small_problems;
 using solver::Integrator;
 using solver::Outcome;
+using solver::rk4_limit;
 using solver::Spectrum;
 using solver::spectrum;
 using solver::verlet_limit;
 
 /// How far x'' = −ω² x − c x' gets from (1, 1) in sub-steps of tau, measured in x and v together; stops beyond 1e9.
-double farthest(const Spectrum& mode, double tau, int steps) {
+double farthest(std::string_view method, const Spectrum& mode, double tau, int steps) {
   const auto scalar = [](double a) -> SparseMatrix { return Eigen::MatrixXd::Constant(1, 1, a).sparseView(); };
   const auto ode = known_motions::linear_ode(Eigen::VectorXd::Ones(1), scalar(-mode.omega_squared), scalar(-mode.decay));
   Options options;
   options.verlet_fraction = 1e9;  // one sub-step, stable or not
-  Integrator integrator(ode, solver::method("verlet"), options, {Vectors::Ones(1, 3), Vectors::Ones(1, 3)});
+  Integrator integrator(ode, solver::method(method), options, {Vectors::Ones(1, 3), Vectors::Ones(1, 3)});
   double distance = 0;
   for (int n = 0; n < steps && distance < 1e9; ++n) {
     EXPECT_EQ(integrator.step(tau).outcome, Outcome::success);
@@ -49,16 +50,36 @@ INSTANTIATE_TEST_SUITE_P(, VerletLimitOf,
 
 TEST_P(VerletLimitOf, IsStableJustBelow) {
   for (const double part : {0.01, 0.1, 0.3, 0.5, 0.7, 0.9, 0.99})
-    EXPECT_LE(farthest(mode, part * verlet_limit(mode), 2000), 1e3) << part;
-  EXPECT_LE(farthest(mode, 0.999 * verlet_limit(mode), 100'000), 1e3);
+    EXPECT_LE(farthest("verlet", mode, part * verlet_limit(mode), 2000), 1e3) << part;
+  EXPECT_LE(farthest("verlet", mode, 0.999 * verlet_limit(mode), 100'000), 1e3);
 }
 
-TEST_P(VerletLimitOf, BlowsUpJustAbove) { EXPECT_GE(farthest(mode, 1.001 * verlet_limit(mode), 100'000), 1e9); }
+TEST_P(VerletLimitOf, BlowsUpJustAbove) { EXPECT_GE(farthest("verlet", mode, 1.001 * verlet_limit(mode), 100'000), 1e9); }
 
 TEST(VerletLimit, IsKnownForPureModes) {
   EXPECT_NEAR(verlet_limit({4, 0}), 2 / std::sqrt(4), 1e-5);
   EXPECT_NEAR(verlet_limit({0, 3}), 1 / 3.0, 1e-5);
   EXPECT_EQ(verlet_limit({0, 0}), std::numeric_limits<double>::infinity());
+}
+
+TEST(Rk4Limit, IsKnownForPureModes) {
+  EXPECT_NEAR(rk4_limit({4, 0}), std::sqrt(2), 1e-5);
+  EXPECT_NEAR(rk4_limit({0, 3}), 2.78529 / 3, 1e-5);
+  EXPECT_EQ(rk4_limit({0, 0}), std::numeric_limits<double>::infinity());
+}
+
+TEST(Rk4Limit, IsThatOfTheWorstModeBelow) {
+  for (const Spectrum& stiffest : {Spectrum{4, 0}, {0, 3}, {4, 0.2}, {4, 3}, {4, 40}}) {
+    const double limit = rk4_limit(stiffest);
+    double most = 0;
+    for (double part = 0; part <= 1; part += 0.05)
+      for (const Spectrum& mode :
+           {Spectrum{stiffest.omega_squared, part * stiffest.decay}, Spectrum{part * stiffest.omega_squared, stiffest.decay}}) {
+        EXPECT_LE(farthest("rk4", mode, 0.99 * limit, 3000), 1e3) << part;
+        most = std::max(most, farthest("rk4", mode, 1.02 * limit, 30'000));
+      }
+    EXPECT_GE(most, 1e9) << "omega^2 = " << stiffest.omega_squared << ", decay = " << stiffest.decay;
+  }
 }
 
 /// The largest |eigenvalue| of M⁻¹ ∂f/∂x (or ∂f/∂v) of the free coordinates, by differences and a dense solver.

@@ -71,7 +71,7 @@ bool tries(const Sheet& sheet, const Row& row) { return !sheet.spot_check || is_
 
 /// What a run may cost. A sub-step of an explicit method is far cheaper than an update of an implicit one.
 std::int64_t evaluations(const Method& method) {
-  if (method.sub_steps) return 100'000;
+  if (method.explicit_springs()) return 100'000;
   return is_bar_method(method.name) ? 20'000 : 4'000;
 }
 
