@@ -22,7 +22,6 @@ export const looks = {
     "rodas3": "#6E2C00",
     "ros34pw2": "#4A235A",
     "ros2-w": "#73C6B6",
-    "ros34pw2-w": "#BB8FCE",
     "cvode-bdf": "#C2185B",
     "cvode-adams": "#E57373",
     "arkode-dirk": "#6D4C41",

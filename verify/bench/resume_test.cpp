@@ -13,6 +13,7 @@
 #include "results/file/journal.hpp"
 #include "results/file/run_file.hpp"
 #include "results/file/validate.hpp"
+#include "solver/methods.hpp"
 #include "verify/support/bench_integrators.hpp"
 #include "verify/support/record_text.hpp"
 #include "verify/support/slow.hpp"
@@ -165,10 +166,11 @@ bool appears(const std::filesystem::path& file) {
   return std::filesystem::exists(file);
 }
 
-/// Four groups of 19 cells.
+/// Four groups of runs.
 const Words large_sweep{"study", "hung-sheets", "--quick", "--repeat", "1", "--no-reference", "--out", "a.h5"};
 
 TEST(Sweep, RefusesASecondProcessAndEndsWithWhatIsDone) {
+  const std::size_t group = 6 + solver::methods().size();
   const BenchIntegrators program;
   RunningProgram first(program.command(large_sweep));
   ASSERT_TRUE(appears(program.folder() / "a.h5")) << "with the first group";
@@ -183,8 +185,8 @@ TEST(Sweep, RefusesASecondProcessAndEndsWithWhatIsDone) {
   EXPECT_THAT(lines(interrupted.err), SizeIs(1));
   EXPECT_THAT(interrupted.err, AllOf(HasSubstr("SIGTERM"), HasSubstr("--resume --out a.h5")));
   const auto runs = results::read_runs(program.folder() / "a.h5");
-  EXPECT_GE(runs.size(), 19);
-  EXPECT_EQ(runs.size() % 19, 0);
+  EXPECT_GE(runs.size(), group);
+  EXPECT_EQ(runs.size() % group, 0);
   EXPECT_THAT(results::validate(program.folder() / "a.h5"), IsEmpty());
 
   program.output(large_sweep + Words{"--resume"});

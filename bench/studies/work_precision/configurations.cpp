@@ -101,9 +101,16 @@ void add_loose(std::vector<Configuration>& all, const model::Scene& scene, const
   all.back().name += fmt::format(" to {:g}", options.stage_accuracy);
 }
 
+/// Methods that the study tries unasked, so that both sides have as many configurations.
+constexpr std::string_view searched[] = {"imex-euler",    "implicit-euler", "sbdf2",   "bdf2",    "midpoint",
+                                         "imex-midpoint", "verlet",         "tr-bdf2", "esdirk3", "esdirk4",
+                                         "bdf3",          "bdf4",           "bdf5"};
+
 /// Why a method is not tried; empty if it is. `named`: it was asked for by its name.
 std::string reason_against(const solver::Method& method, const model::Scene& scene, Search search, bool named) {
   if (!scene.obstacles.empty() && !method.meets_obstacles) return "meets no obstacles";
+  if (!named && std::ranges::find(searched, method.name) == std::end(searched))
+    return "both sides are searched alike; name it by --method";
   if (named || method.sub_steps || !tries_few(search) || std::ranges::find(few, method.name) != std::end(few)) return "";
   return search == Search::quick ? "--quick: few methods; name it by --method"
                                  : "large sheet: few methods; name it by --method";
