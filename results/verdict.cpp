@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace drape::results {
 namespace {
@@ -20,9 +21,9 @@ std::optional<Standing> standing_named(std::string_view name) {
 }
 
 std::string to_string(const Verdict& verdict) {
-  const std::string word(to_string(verdict.standing));
+  std::string word(to_string(verdict.standing));
   if (verdict.detail.empty()) return word;
-  return verdict.standing == Standing::open ? verdict.detail : word + ": " + verdict.detail;
+  return verdict.standing == Standing::open ? verdict.detail : std::move(word) + ": " + verdict.detail;
 }
 
 }  // namespace drape::results

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <ranges>
 #include <span>
 #include <string>
 #include <string_view>
@@ -31,11 +30,11 @@ struct Method {
   bool explicit_springs() const { return stages == Stages::none || sub_steps; }
 };
 
-/// All methods.
+/// All methods, those with `in_thesis` first.
 std::span<const Method> methods();
 
-/// The rows with `in_thesis`, in the order of the table.
-inline auto thesis_methods() { return methods() | std::views::filter(&Method::in_thesis); }
+/// The rows with `in_thesis`.
+std::span<const Method> thesis_methods();
 
 /// The method with this name. Throws std::invalid_argument, listing the names.
 const Method& method(std::string_view name);

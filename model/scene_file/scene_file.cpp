@@ -202,7 +202,7 @@ std::vector<KeyValue> key_values(const Scene& scene) {
 Scene scene_of(std::span<const Override> rows, std::string_view origin) {
   std::string text;
   for (std::size_t k = 0; k < rows.size(); ++k) {
-    const auto& [key, value] = rows[k];
+    const std::string &key = rows[k].key, &value = rows[k].value;
     const bool is_entry = value.starts_with('{');
     const auto beside = [&](std::size_t other) { return is_entry && other < rows.size() && rows[other].key == key; };
     text += k > 0 && beside(k - 1) ? ", " : fmt::format("{} = {}", key, is_entry ? "[" : "");

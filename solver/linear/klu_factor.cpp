@@ -19,7 +19,7 @@ using LongSparseMatrix = Eigen::SparseMatrix<double, Eigen::RowMajor, std::int64
 /// KLU is given the transpose: our rows are its columns.
 class KluFactor::Factors {
  public:
-  explicit Factors(LongSparseMatrix A) : A_(std::move(A)) {
+  explicit Factors(const LongSparseMatrix& A) : A_(A) {
     klu_l_defaults(&common_);
     symbolic_ = klu_l_analyze(A_.rows(), A_.outerIndexPtr(), A_.innerIndexPtr(), &common_);
     if (symbolic_ == nullptr) throw std::bad_alloc();
