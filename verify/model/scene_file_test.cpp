@@ -270,9 +270,12 @@ TEST(SceneFile, HasTheUnitOfEveryKeyInItsHelpAndItsRow) {
   EXPECT_EQ(unit(named("x"), "material.bend"), "N m") << "of the plate";
   EXPECT_EQ(unit(named("x"), "forces.drag"), "1");
   EXPECT_EQ(unit(parsed(complete), "pins"), "");
-  for (const auto& [path, description] : model::scene_keys())
-    if (const std::string of_key = unit(parsed(complete, {"material.bend_form=plate"}), path); of_key.size() > 1)
+  for (const auto& [path, description] : model::scene_keys()) {
+    const std::string of_key = unit(parsed(complete, {"material.bend_form=plate"}), path);
+    if (of_key.size() > 1) {
       EXPECT_THAT(description, HasSubstr("[" + of_key.substr(0, 3))) << path;
+    }
+  }
 }
 
 TEST(SceneFile, NamesAllShapesInItsHelp) {
