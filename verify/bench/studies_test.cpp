@@ -271,8 +271,7 @@ TEST_F(ProgramStudies, OrdersAreAsDeclared) {
                           "met: 2 as declared", "met: 2 as declared", "met: 2 as declared", "met: 2 as declared",
                           "met: 3 as declared", testing::_, "met: 3 as declared", "met: 4 as declared", testing::_))
       << "the reference ends the fourth order early; BDF(5) is not stable for what swings";
-  EXPECT_THAT(std::vector(found.begin() + known, found.end()),
-              Each(AnyOf(HasSubstr("as declared"), "no order to be seen")))
+  EXPECT_THAT(std::vector(found.begin() + known, found.end()), Each(AnyOf(HasSubstr("as declared"), "no order to be seen")))
       << "what was added; the reference ends the fourth order of rk4 early";
   EXPECT_THAT(found, Contains(HasSubstr("as declared")).Times(testing::Ge(16)));
 }
