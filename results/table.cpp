@@ -119,13 +119,18 @@ std::optional<Figure> figure_named(std::string_view name) { return named<Figure>
 void draw(Table& table, Figure figure, const std::vector<Binding>& parts) {
   table.figure = figure;
   for (const auto& [part, name] : parts) {
-    const auto column = std::ranges::find(table.columns, name, &Column::name);
-    if (column == table.columns.end()) throw std::invalid_argument(fmt::format("{} has no column {}", table.name, name));
+    Column* column = find_column(table, name);
+    if (column == nullptr) throw std::invalid_argument(fmt::format("{} has no column {}", table.name, name));
     column->part = part;
   }
 }
 
 std::size_t rows(const Table& table) { return table.columns.empty() ? 0 : table.columns.front().cells.size(); }
+
+Column* find_column(Table& table, std::string_view name) {
+  const auto found = std::ranges::find(table.columns, name, &Column::name);
+  return found == table.columns.end() ? nullptr : &*found;
+}
 
 const Column* find_column(const Table& table, std::string_view name) {
   const auto found = std::ranges::find(table.columns, name, &Column::name);

@@ -105,6 +105,7 @@ std::size_t rows(const Table& table);
 
 /// The column with this name, null if there is none.
 const Column* find_column(const Table& table, std::string_view name);
+Column* find_column(Table& table, std::string_view name);
 
 /// The first column with this role, null if there is none.
 const Column* find_column(const Table& table, Role role);

@@ -70,8 +70,8 @@ enum class Language { prose, slashes, hashes };
 
 Language language_of(const fs::path& path) {
   const std::string extension = path.extension();
-  if (extension == ".md" || extension == ".txt")
-    return extension == ".txt" && path.filename() == "CMakeLists.txt" ? Language::hashes : Language::prose;
+  if (path.filename() == "CMakeLists.txt") return Language::hashes;
+  if (extension == ".md" || extension == ".txt") return Language::prose;
   return extension == ".hpp" || extension == ".cpp" || extension == ".js" ? Language::slashes : Language::hashes;
 }
 

@@ -12,7 +12,7 @@ bool one_of(std::string_view name, std::initializer_list<std::string_view> names
   return std::ranges::find(names, name) != names.end();
 }
 
-/// The tables of a list; a value that is no list of tables, as it is. Older programs left a comma behind the last particle of a
+/// The tables of a list; any other value as it is. Older programs left a comma behind the last particle of a
 /// pin.
 std::vector<std::string> entries_of(std::string_view value) {
   if (!value.starts_with("[{")) return {std::string(value)};

@@ -13,15 +13,10 @@ const std::vector<std::string> endings{"accurate", "stable but wrong", "stable, 
                                        "unstable", "not converged",    "not finished"};
 const std::vector<std::string> predictions{"stable", "unstable", "loop too slow"};
 
-Column* column_named(Table& table, std::string_view name) {
-  const auto found = std::ranges::find(table.columns, name, &Column::name);
-  return found == table.columns.end() ? nullptr : &*found;
-}
-
 /// The parts that there are columns for.
 void draw_known(Table& table, const std::vector<Binding>& parts) {
   for (const auto& [part, name] : parts)
-    if (Column* column = column_named(table, name)) column->part = part;
+    if (Column* column = find_column(table, name)) column->part = part;
 }
 
 void find_outcomes(Table& table) {
@@ -92,7 +87,7 @@ void find_parts(Table& table) {
                                 {Part::detail, "factorisations"},
                                 {Part::caption, "build"}});
     case Figure::stability:
-      if (Column* predicted = column_named(table, "predicted")) predicted->classes = predictions;
+      if (Column* predicted = find_column(table, "predicted")) predicted->classes = predictions;
       return draw_known(table, {{Part::figure, "n"},
                                 {Part::figure, "step"},
                                 {Part::curve, "method"},

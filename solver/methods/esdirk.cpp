@@ -1,7 +1,7 @@
 #include <array>
 #include <cmath>
 
-#include "solver/step.hpp"
+#include "solver/methods/acceleration.hpp"
 
 namespace drape::solver {
 namespace {
@@ -28,9 +28,7 @@ void add(double weight, const State& rate, Vectors& x, Vectors& v) {
 void start_rate(Step& s) {
   Point& now = s.now();
   if (!now.has_f) {
-    s.ode.force(s.t, now.y.x, now.y.v, now.f);
-    filter(s.ode.pins, now.f);
-    now.f = s.ode.mass.cwiseInverse().asDiagonal() * now.f;
+    acceleration(s.ode, s.t, now.y, now.f);
     now.has_f = true;
   }
   State& rate = s.scratch.rates[0];

@@ -69,11 +69,8 @@ bool is_bar_method(std::string_view name) { return std::ranges::find(bar_methods
 
 bool tries(const Sheet& sheet, const Row& row) { return !sheet.spot_check || is_bar_method(row.name); }
 
-/// What a run may cost. A sub-step of an explicit method is far cheaper than an update of an implicit one.
-std::int64_t evaluations(const Method& method) {
-  if (method.explicit_springs()) return 100'000;
-  return is_bar_method(method.name) ? 20'000 : 4'000;
-}
+/// What a run may cost.
+std::int64_t evaluations(const Method& method) { return is_bar_method(method.name) ? 20'000 : usual_evaluations(method); }
 
 /// All methods, and the thesis' loop where a method has one.
 std::vector<Row> rows(const Methods& methods) {

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -87,6 +88,9 @@ inline constexpr results::ColumnOf<ClassifiedRun> classified_columns[] = {
     {"reason", "reason", "", "why it did not succeed", results::Role::note,
      [](const ClassifiedRun& run) -> results::Cell { return reason(run.end); }},
 };
+
+/// What a run may cost. A sub-step of an explicit method is far cheaper than an update of an implicit one.
+inline std::int64_t usual_evaluations(const solver::Method& method) { return method.explicit_springs() ? 100'000 : 4'000; }
 
 /// The largest of equal steps to the horizon, by bisection [s]; 0: none.
 struct LargestSteps {

@@ -28,7 +28,7 @@ class FewestSteps {
       : sheet_(sheet),
         reference_(reference),
         spec_{sheet.scene, "", &method, 0, options},
-        limits_{.evaluations = method.explicit_springs() ? 100'000 : 4'000} {}
+        limits_{.evaluations = usual_evaluations(method)} {}
 
   /// Where doubling the number first does well, bisected between there and the number before; 0 if none does.
   template <class Good>

@@ -120,7 +120,7 @@ std::vector<Endured> endured(const StressCase& stress, int n, const Methods& met
   for (const solver::Method* method : methods)
     rows.push_back(checkpoint.once(fmt::format("{}, {}", stress.name, method->name), [&] {
       if (!sheet) reference.emplace(sheet.emplace(stress.make(n)), run);
-      const Limits limits{.evaluations = method->explicit_springs() ? 100'000 : 4'000};
+      const Limits limits{.evaluations = usual_evaluations(*method)};
       return Endured{stress.name, std::string(method->name),
                      classified(run({sheet->scene, "", method, stress_step, {}}, limits), *reference)};
     }));
