@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <xxhash.h>
 
 #include <Eigen/Core>
 #include <cstdlib>
@@ -13,6 +12,7 @@
 #include "reference/reference_file.hpp"
 #include "reference/sundials/sundials_build.hpp"
 #include "solver/base/atomic_file.hpp"
+#include "solver/base/hash.hpp"
 #include "solver/base/input_file.hpp"
 #include "solver/base/temporary.hpp"
 
@@ -42,9 +42,7 @@ std::filesystem::path default_cache_folder() {
 Cache::Cache(std::filesystem::path folder) : folder_(std::move(folder)) { base::remove_leftovers(folder_); }
 
 std::filesystem::path Cache::file(std::string_view key) const {
-  const std::string text = complete(key);
-  const auto hash = XXH3_128bits(text.data(), text.size());
-  return folder_ / fmt::format("{:016x}{:016x}.reference", hash.high64, hash.low64);
+  return folder_ / (base::long_hash_text(complete(key)) + ".reference");
 }
 
 std::optional<Reference> Cache::find(std::string_view key, const Check& check) {

@@ -1,6 +1,6 @@
 #include "reference/reference_file.hpp"
+#include "solver/base/hash.hpp"
 
-#include <xxhash.h>
 
 #include <algorithm>
 #include <bit>
@@ -70,7 +70,7 @@ void require_consistent(const Reference& reference) {
 }
 
 std::string checksum(std::string_view bytes) {
-  const std::uint64_t hash = XXH3_64bits(bytes.data(), bytes.size());
+  const std::uint64_t hash = base::hash(bytes);
   return {reinterpret_cast<const char*>(&hash), sizeof hash};
 }
 

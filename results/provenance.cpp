@@ -3,7 +3,6 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <sys/utsname.h>
-#include <xxhash.h>
 
 #include <algorithm>
 #include <array>
@@ -38,7 +37,7 @@ std::string program_hash() {
   std::string bytes(static_cast<std::size_t>(file.tellg()), '\0');  // read as a whole: with debug information it is 100 MB
   file.seekg(0);
   file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  return fmt::format("{:016x}", XXH3_64bits(bytes.data(), bytes.size()));
+  return base::hash_text(bytes);
 }
 
 constexpr std::array<std::string_view, 6> of_a_start{"started", "command_line", "cores", "host_os", "resumed", "finished"};
@@ -73,6 +72,7 @@ Provenance provenance(std::string command_line, std::string sweep) {
 // Both are written by CMake: rows {name, value, description}.
 #include "results/build_facts.inc"
 #include "results/git_commit.inc"
+#include "solver/base/hash.hpp"
   };
   facts.push_back({"program_hash", program_hash(), "hash of the program file"});
   facts.push_back({"cpu", cpu_model(), "model of the processor"});

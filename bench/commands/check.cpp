@@ -6,8 +6,8 @@
 #include "bench/commands/commands.hpp"
 #include "bench/commands/help.hpp"
 #include "bench/commands/output.hpp"
-#include "bench/runs/identity.hpp"
 #include "bench/studies/method_check.hpp"
+#include "solver/base/hash.hpp"
 
 namespace drape::bench {
 namespace {
@@ -28,7 +28,7 @@ int check(const CheckArguments& a) {
   const Job job = method_check(a.method);
   SweepOptions options = a.output.sweep;
   options.out = out_file(a.output, "check");
-  const Results all = record_in_file(options, hash_of("check " + a.method), {job});
+  const Results all = record_in_file(options, base::long_hash_text("check " + a.method), {job});
   if (a.output.format == "table" && !all.summary.empty())
     fmt::print("{}", all.summary);
   else

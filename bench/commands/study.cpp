@@ -15,6 +15,7 @@
 #include "bench/runs/identity.hpp"
 #include "bench/studies/studies.hpp"
 #include "model/scene_file/scene_file.hpp"
+#include "solver/base/hash.hpp"
 #include "solver/base/printable.hpp"
 
 namespace drape::bench {
@@ -68,7 +69,7 @@ void check_options_of_tables(const Study& chosen, const SweepOptions& options) {
 
 /// Hash of all that determines the tables of a study.
 std::string identity(const StudyArguments& a, const std::optional<model::Scene>& scene) {
-  return hash_of(fmt::format("{}{}{}{}\n{}", a.name, a.quick ? " quick" : "", a.methods.empty() ? "" : " by ",
+  return base::long_hash_text(fmt::format("{}{}{}{}\n{}", a.name, a.quick ? " quick" : "", a.methods.empty() ? "" : " by ",
                              fmt::join(a.methods, ","), scene ? model::to_toml(*scene) : ""));
 }
 

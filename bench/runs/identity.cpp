@@ -1,9 +1,9 @@
 #include "bench/runs/identity.hpp"
 
 #include <fmt/format.h>
-#include <xxhash.h>
 
 #include "model/scene_file/scene_file.hpp"
+#include "solver/base/hash.hpp"
 #include "solver/base/threads.hpp"
 
 namespace drape::bench {
@@ -19,15 +19,10 @@ std::string all_of(const solver::Options& o, int threads) {
 
 }  // namespace
 
-std::string hash_of(std::string_view text) {
-  const auto hash = XXH3_128bits(text.data(), text.size());
-  return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
-}
-
 std::string identity(const RunSpec& spec, const SweepOptions& options) {
   const std::string errors = options.reference ? fmt::format("errors to {}", options.agreement) : "no errors";
   const std::string frames = options.frames_every ? fmt::format("\nframes every {} s", *options.frames_every) : "";
-  return hash_of(fmt::format("{}\n{} {}\n{}{}{}", model::to_toml(spec.scene), spec.method->name, spec.step,
+  return base::long_hash_text(fmt::format("{}\n{} {}\n{}{}{}", model::to_toml(spec.scene), spec.method->name, spec.step,
                              all_of(spec.options, base::threads_for(spec.scene.sheet.grid.particles())), errors, frames));
 }
 
@@ -38,7 +33,7 @@ std::string identity(const std::vector<Group>& groups, const SweepOptions& optio
     for (const RunSpec& spec : group) all += identity(spec, options) + ' ';
     all += '\n';
   }
-  return hash_of(all);
+  return base::long_hash_text(all);
 }
 
 }  // namespace drape::bench

@@ -1,14 +1,10 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 
 #include "bench/runs/sweep_options.hpp"
 
 namespace drape::bench {
-
-/// 32 hexadecimal digits.
-std::string hash_of(std::string_view text);
 
 /// Identity of a run: a hash of all that determines its result beside the program itself and the machine, thus equal in all
 /// files where the same was asked for: scene, method, solvers with their options, step, and whether errors are measured and the

@@ -18,6 +18,7 @@
 #include "bench/runs/timing.hpp"
 #include "bench/runs/trajectory_observer.hpp"
 #include "results/file/xdmf.hpp"
+#include "solver/base/hash.hpp"
 #include "solver/base/largest.hpp"
 
 namespace drape::bench {
@@ -192,7 +193,7 @@ Results run_group(const Group& group, const SweepOptions& options, Checkpoint& c
   }
   checkpoint.show("timing " + scene.name);
   auto timed =
-      checkpoint.once("times " + hash_of(ids), [&] { return time_all(group, options.repetitions, measured, checkpoint); });
+      checkpoint.once("times " + base::long_hash_text(ids), [&] { return time_all(group, options.repetitions, measured, checkpoint); });
   for (std::size_t k = 0; k < measured.size(); ++k) {
     if (timed[k].times.empty()) continue;
     measured[k].run.times_ms = std::move(timed[k].times);

@@ -13,6 +13,7 @@
 #include "bench/score/scoring.hpp"
 #include "model/scene_file/scene_file.hpp"
 #include "results/columns.hpp"
+#include "solver/base/hash.hpp"
 
 namespace drape::bench {
 namespace {
@@ -281,7 +282,7 @@ Job score_job(const model::Scene& scene, const ExternalMotion& external, const S
 }
 
 std::string score_identity(const model::Scene& scene, const ExternalMotion& external, const ScoreOptions& options) {
-  return hash_of(fmt::format("score\n{}\n{} {} {}\n{} {} {} {}\n{}", model::to_toml(scene), external.name, external.differenced,
+  return base::long_hash_text(fmt::format("score\n{}\n{} {} {}\n{} {} {} {}\n{}", model::to_toml(scene), external.name, external.differenced,
                              fmt::join(external.times, " "), fmt::join(options.methods, " "), options.cost.value_or(0),
                              options.agreement, options.repetitions, bits(external.states)));
 }

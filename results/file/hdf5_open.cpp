@@ -1,4 +1,3 @@
-#include <xxhash.h>
 
 #include <algorithm>
 #include <array>
@@ -10,6 +9,7 @@
 
 #include "results/file/hdf5_copy.hpp"
 #include "results/file/hdf5_library.hpp"
+#include "solver/base/hash.hpp"
 #include "solver/base/sandbox.hpp"
 
 namespace drape::results::hdf5 {
@@ -25,14 +25,12 @@ Handle in_memory() {
 
 /// What follows the library's part of a file: who wrote it, and the checksum of that part.
 constexpr std::string_view seal_name = "drape: XXH3-128\n";
-constexpr std::size_t seal_size = seal_name.size() + sizeof(XXH128_canonical_t);
+constexpr std::size_t seal_size = seal_name.size() + sizeof(base::LongHash);
 
 std::array<std::byte, seal_size> seal_of(std::span<const std::byte> content) {
-  XXH128_canonical_t hash;
-  XXH128_canonicalFromHash(&hash, XXH3_128bits(content.data(), content.size()));
   std::array<std::byte, seal_size> seal{};
   const auto after_name = std::ranges::copy(std::as_bytes(std::span(seal_name)), seal.begin()).out;
-  std::ranges::copy(std::as_bytes(std::span(hash.digest)), after_name);
+  std::ranges::copy(base::long_hash(content), after_name);
   return seal;
 }
 

@@ -1,6 +1,6 @@
 #include "results/file/hdf5_value.hpp"
+#include "solver/base/hash.hpp"
 
-#include <xxhash.h>
 
 #include <algorithm>
 #include <array>
@@ -124,7 +124,7 @@ void write_dataset(const Handle& group, const std::string& name, const Value& va
   });
 }
 
-std::uint64_t key_of(const std::string& path) { return XXH3_64bits(path.data(), path.size()); }
+std::uint64_t key_of(const std::string& path) { return base::hash(path); }
 
 std::uint64_t hash_of(const std::vector<std::string>& names) {
   std::string all;
@@ -136,7 +136,7 @@ std::uint64_t hash_of(const Value& value) {
   std::vector<std::string> parts{value.type};
   for (const std::uint64_t extent : value.shape) parts.push_back(std::to_string(extent));
   parts.insert(parts.end(), value.texts.begin(), value.texts.end());
-  return XXH3_64bits_withSeed(value.numbers.data(), value.numbers.size(), hash_of(parts));
+  return base::hash({reinterpret_cast<const char*>(value.numbers.data()), value.numbers.size()}, hash_of(parts));
 }
 
 }  // namespace drape::results::hdf5

@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <sys/file.h>
 #include <sys/stat.h>
-#include <xxhash.h>
 
 #include <algorithm>
 #include <limits>
@@ -11,6 +10,7 @@
 #include <sstream>
 #include <utility>
 
+#include "solver/base/hash.hpp"
 #include "solver/base/input_file.hpp"
 #include "solver/base/temporary.hpp"
 
@@ -93,7 +93,7 @@ Provenance facts_in(const json& header) {
 }
 
 std::uint64_t checksum(const std::string& id, const Journal::Bytes& value) {
-  return XXH3_64bits_withSeed(value.data(), value.size(), XXH3_64bits(id.data(), id.size()));
+  return base::hash({reinterpret_cast<const char*>(value.data()), value.size()}, base::hash(id));
 }
 
 bool is_checkpoint(const json& item) {

@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <xxhash.h>
 
 #include <cstdint>
 #include <filesystem>
@@ -8,6 +7,7 @@
 
 #include "model/obstacles/mesh_shape.hpp"
 #include "model/obstacles/shapes/shape_kinds.hpp"
+#include "solver/base/hash.hpp"
 #include "solver/base/input_file.hpp"
 #include "solver/base/printable.hpp"
 
@@ -37,8 +37,7 @@ std::string absolute_path(const std::filesystem::path& file) { return std::files
 /// XXH3 of the bytes of a file.
 std::string checksum(const std::string& file) {
   try {
-    const std::string bytes = base::content_of(file, most_mesh_bytes);
-    return fmt::format("{:016x}", XXH3_64bits(bytes.data(), bytes.size()));
+    return base::hash_text(base::content_of(file, most_mesh_bytes));
   } catch (const base::UnreadableFile& error) {
     throw std::invalid_argument(fmt::format("{}: {}: expected the mesh of an obstacle", file, error.what()));
   }
