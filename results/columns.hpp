@@ -52,7 +52,11 @@ struct ColumnGroup {
 
 namespace detail {
 
-std::string filled(std::string_view text, std::string_view filling);
+inline std::string filled(std::string_view text, std::string_view filling) {
+  const std::size_t place = text.find("{}");
+  std::string result(text);
+  return place == std::string_view::npos ? result : result.replace(place, 2, filling);
+}
 
 template <class Row>
 Column column_of(const ColumnOf<Row>& column, const ColumnGroup& group) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -143,6 +144,9 @@ struct RunRecord {
 };
 
 /// The count of a kind of work, 0 if the run knows no such kind.
-std::int64_t work_count(const RunRecord& run, const std::string& name);
+inline std::int64_t work_count(const RunRecord& run, const std::string& name) {
+  const auto known = std::ranges::find(run.work, name, &WorkCount::name);
+  return known == run.work.end() ? 0 : known->count;
+}
 
 }  // namespace drape::results

@@ -5,9 +5,9 @@
 
 #include <algorithm>
 
-#include "bench/runs/terminal.hpp"
 #include "bench/studies/studies.hpp"
 #include "model/scene_file/scene_file.hpp"
+#include "solver/base/terminal.hpp"
 #include "solver/methods.hpp"
 
 namespace drape::bench {
@@ -46,10 +46,10 @@ Choices study_choices() { return from_table(studies()); }
 std::string paragraph(std::string_view title, const Choices& choices) {
   const auto length = [](const Choice& choice) { return choice.name.size(); };
   const std::size_t width = length(std::ranges::max(choices, {}, length));
-  const int indent = static_cast<int>(width) + 4, columns = columns_of(STDOUT_FILENO);
+  const int indent = static_cast<int>(width) + 4, columns = base::columns_of(STDOUT_FILENO);
   std::string text = fmt::format("{}:\n", title);
   for (const Choice& choice : choices)
-    text += fmt::format("  {:<{}}  {}\n", choice.name, width, wrapped(choice.description, columns - indent, indent));
+    text += fmt::format("  {:<{}}  {}\n", choice.name, width, base::wrapped(choice.description, columns - indent, indent));
   return text;
 }
 

@@ -5,17 +5,17 @@
 
 #include <sstream>
 
-#include "bench/runs/terminal.hpp"
 #include "results/provenance.hpp"
+#include "solver/base/terminal.hpp"
 
 namespace drape::bench {
 
-std::string help_text(const std::string& text) { return wrapped(text, columns_of(STDOUT_FILENO)); }
+std::string help_text(const std::string& text) { return base::wrapped(text, base::columns_of(STDOUT_FILENO)); }
 
 HelpFormat::HelpFormat() { column_width(28); }
 
 std::string HelpFormat::described(const std::string& text) const {
-  return wrapped(text, columns_of(STDOUT_FILENO) - static_cast<int>(get_column_width()));
+  return base::wrapped(text, base::columns_of(STDOUT_FILENO) - static_cast<int>(get_column_width()));
 }
 
 std::string HelpFormat::make_option_desc(const CLI::Option* option) const { return described(option->get_description()); }

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "solver/base/process.hpp"
-#include "solver/base/temporary_folder.hpp"
+#include "solver/base/temporary.hpp"
 
 namespace drape::bench {
 namespace {

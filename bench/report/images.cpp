@@ -12,7 +12,7 @@
 #include "bench/report/browser.hpp"
 #include "bench/runs/interruption.hpp"
 #include "solver/base/atomic_file.hpp"
-#include "solver/base/temporary_folder.hpp"
+#include "solver/base/temporary.hpp"
 
 namespace drape::bench {
 namespace {

@@ -8,8 +8,8 @@
 #include <cstdio>
 #include <utility>
 
-#include "bench/runs/terminal.hpp"
 #include "solver/base/printable.hpp"
+#include "solver/base/terminal.hpp"
 
 namespace drape::bench {
 Progress::Progress(int total) : terminal_(isatty(STDERR_FILENO) == 1), total_(total) {}
@@ -56,7 +56,7 @@ void Progress::draw() const {
   }
   const std::string line =
       fmt::format("[{:=<{}}{:{}}] {}/{}  {}  {}", "", filled, "", width - filled, done_, total_, left, activity_);
-  fmt::print(stderr, "\r\033[K{:.{}}", line, columns_of(STDERR_FILENO) - 1);  // a line that wraps could not be drawn over
+  fmt::print(stderr, "\r\033[K{:.{}}", line, base::columns_of(STDERR_FILENO) - 1);  // a line that wraps could not be drawn over
   std::fflush(stderr);
 }
 

@@ -13,6 +13,9 @@ struct PulledSheet {
 ///   s = X + (f/k) (L X - X²/2)   [m, from the fixed edge],
 /// the solution of d/dX (k (|s'| - 1)) + f = 0, s(0) = 0, s'(L) = 1   [Etzmuß 2002, (2.10, 2.19)]. The masses and springs of
 /// a grid with dual-cell masses have the same equilibrium at the nodes, without any error of discretisation.
-double pulled_position(const PulledSheet& sheet, double X);
+inline double pulled_position(const PulledSheet& sheet, double X) {
+  const auto [L, k, f] = sheet;
+  return X + f / k * (L * X - X * X / 2);
+}
 
 }  // namespace drape::reference

@@ -11,7 +11,6 @@
 
 #include "solver/base/descriptor.hpp"
 #include "solver/base/temporary.hpp"
-#include "solver/base/temporary_folder.hpp"
 
 namespace drape::base {
 namespace fs = std::filesystem;

@@ -1,19 +1,36 @@
 #include "solver/base/temporary.hpp"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <cerrno>
+#include <cstdlib>
 #include <string>
 #include <string_view>
 #include <system_error>
 
+#include "solver/base/atomic_file.hpp"
+
 namespace drape::base {
 namespace fs = std::filesystem;
 namespace {
+
+Temporary folder_in(const fs::path& parent, const std::string& name) {
+  try {
+    return {parent, Temporary::Kind::folder};
+  } catch (const std::system_error& error) {
+    throw FileError(fmt::format("{}: cannot create files in it ({})", name, error.code().message()));
+  }
+}
+
+fs::path system_folder() {
+  const char* named = std::getenv("TMPDIR");
+  return named == nullptr || *named == 0 ? "/tmp" : named;
+}
 
 constexpr std::string_view prefix = ".drape-tmp-";  // of names that are ours alone to remove
 
@@ -47,6 +64,12 @@ int create(const fs::path& path, Temporary::Kind kind) {
 bool locked(int fd) { return flock(fd, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK; }
 
 }  // namespace
+
+TemporaryFolder::TemporaryFolder()
+    : folder_(folder_in(system_folder(), fmt::format("TMPDIR, the folder for temporary files, {}", system_folder().string()))) {
+}
+
+TemporaryFolder::TemporaryFolder(const fs::path& parent) : folder_(folder_in(parent, parent.string())) {}
 
 Temporary::Temporary(const fs::path& folder, Kind kind) {
   remove_leftovers(folder);

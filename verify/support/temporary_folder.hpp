@@ -1,6 +1,6 @@
 #pragma once
 
-#include "solver/base/temporary_folder.hpp"
+#include "solver/base/temporary.hpp"
 
 namespace drape::verify {
 

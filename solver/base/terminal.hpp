@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-namespace drape::bench {
+namespace drape::base {
 
 /// Columns of the terminal behind a file descriptor, 80 if it is none or does not say.
 int columns_of(int descriptor);
@@ -12,4 +12,4 @@ int columns_of(int descriptor);
 /// words stay whole, and so do line breaks.
 std::string wrapped(std::string_view text, int width, int indent = 0);
 
-}  // namespace drape::bench
+}  // namespace drape::base

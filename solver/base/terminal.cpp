@@ -1,10 +1,10 @@
-#include "bench/runs/terminal.hpp"
+#include "solver/base/terminal.hpp"
 
 #include <sys/ioctl.h>
 
 #include <algorithm>
 
-namespace drape::bench {
+namespace drape::base {
 namespace {
 
 constexpr int usual_columns = 80;
@@ -42,4 +42,4 @@ std::string wrapped(std::string_view text, int width, int indent) {
   return lines;
 }
 
-}  // namespace drape::bench
+}  // namespace drape::base
