@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace drape::results {
 
@@ -22,6 +23,11 @@ struct Verdict {
 
   bool operator==(const Verdict&) const = default;
 };
+
+/// Met or missed, with what to say of it.
+inline Verdict check(bool holds, std::string met, std::string missed) {
+  return holds ? Verdict{Standing::met, std::move(met)} : Verdict{Standing::missed, std::move(missed)};
+}
 
 /// "met: 2 as declared", or "met" without a detail; of an open one the detail alone: "no theory known".
 std::string to_string(const Verdict& verdict);

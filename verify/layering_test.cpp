@@ -109,7 +109,7 @@ const std::vector<Confined> confined_libraries = {
     {{"hdf5", "H5"}, {"results/file/hdf5"}},
     {{"arkode/", "cvode/", "cvodes/", "ida/", "idas/", "kinsol/", "sundials/", "nvector/", "sunmatrix/", "sunlinsol/",
       "sunnonlinsol/"},
-     {"verify/reference/state_vector_test.cpp", "reference/sundials/"}},
+     {"verify/reference/sundials/state_vector_test.cpp", "reference/sundials/"}},
     {{"cholmod", "suitesparse/cholmod", "Eigen/CholmodSupport"}, {"solver/linear/"}},
     {{"klu", "suitesparse/klu"}, {"solver/linear/klu_factor.cpp"}},
     {{"assimp/", "unsupported/Eigen/BVH"}, {"model/obstacles/mesh_shape.cpp"}},

@@ -88,11 +88,11 @@ Json pins(const model::Cloth& cloth, std::span<const double> times) {
   return all;
 }
 
-/// Shape and lengths: what else there is of it, as the file of a mesh, is in obstacle-k.obj.
+/// Shape and numbers: what else there is of it, as the file of a mesh, is in obstacle-k.obj.
 Json shape(const model::ObstacleRule& rule) {
   Json entry{{"shape", rule.kind->name}, {"meaning", rule.kind->description}};
   for (const model::KeyValue& key : model::key_values(rule))
-    if (key.unit == "m") entry[key.key] = to_json(key.value);
+    if (!key.unit.empty()) entry[key.key] = to_json(key.value);
   return entry;
 }
 

@@ -206,9 +206,7 @@ Errors errors(const Experiment& experiment, int n) {
 std::optional<results::Verdict> conclusion(const Experiment& experiment, const std::optional<results::OrderFit>& fit,
                                            double finest_error) {
   constexpr double round_off = 1e-10;
-  if (experiment.order == 0)
-    return finest_error <= round_off ? results::Verdict{results::Standing::met, "exact as declared"}
-                                     : results::Verdict{results::Standing::missed, "not exact"};
+  if (experiment.order == 0) return results::check(finest_error <= round_off, "exact as declared", "not exact");
   if (std::isnan(experiment.order) && fit) return std::nullopt;
   return results::order_verdict(fit, experiment.order);
 }

@@ -172,8 +172,7 @@ results::Table swings(const Runs& runs) {
     for (std::size_t method = 0; method < runs[k].size(); ++method)
       rows.push_back({number(dampings[k]), figure_methods[method], &runs[k][method], {}});
     const bool less = runs[k].front().peak_to_peak() < runs[k].back().peak_to_peak();
-    rows[euler].verdict =
-        less ? results::Verdict{Standing::met, "swings less"} : results::Verdict{Standing::missed, "does not swing less"};
+    rows[euler].verdict = results::check(less, "swings less", "does not swing less");
   }
   return results::make_table("figure-3.2",
                              fmt::format("Figure 3.2: the sheet in the wind, h = {} s, the last second", figure_step),

@@ -170,9 +170,8 @@ constexpr results::ColumnOf<Lags> lags_verdict[] = {
     {"verdict", "verdict", "", "whether both lags, and what they leave of t, are within a tenth of what is predicted",
      Role::verdict,
      [](const Lags& row) -> results::Cell {
-       return row.sbdf2.is_as_predicted(row.t) && row.imex_euler.is_as_predicted(row.t)
-                  ? results::Verdict{results::Standing::met, "as predicted"}
-                  : results::Verdict{results::Standing::missed, "not as predicted"};
+       return results::check(row.sbdf2.is_as_predicted(row.t) && row.imex_euler.is_as_predicted(row.t), "as predicted",
+                             "not as predicted");
      }},
 };
 

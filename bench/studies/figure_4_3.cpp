@@ -135,7 +135,7 @@ results::Verdict contact_verdict(const RunRecord& run, double value, double most
   if (!run.succeeded()) return {Standing::open, std::string(to_string(run.outcome))};
   const bool touched = before_contact(run).size() < run.steps.size();
   if (!touched) return results::Verdict{Standing::open, "no contact"};
-  return value <= most ? results::Verdict{Standing::met, "below"} : results::Verdict{Standing::missed, "not below"};
+  return results::check(value <= most, "below", "not below");
 }
 
 Ratio ratio(std::string_view method, const RunRecord& run, const char* what, double value, double most) {

@@ -60,8 +60,7 @@ using results::Role;
 using results::Standing;
 
 results::Verdict as_theory(bool equal, const char* agreement) {
-  return equal ? results::Verdict{Standing::met, agreement}
-               : results::Verdict{Standing::missed, fmt::format("not {}", agreement)};
+  return results::check(equal, agreement, fmt::format("not {}", agreement));
 }
 
 const results::Verdict no_theory{Standing::open, "no theory known"};

@@ -87,9 +87,7 @@ constexpr ColumnOf<double> round_columns[] = {
      [](const double& growth) -> Cell { return growth; }},
 };
 
-results::Verdict judge(double factor) {
-  return factor <= bar ? results::Verdict{Standing::met, "as wanted"} : results::Verdict{Standing::missed, "not as wanted"};
-}
+results::Verdict judge(double factor) { return results::check(factor <= bar, "as wanted", "not as wanted"); }
 
 constexpr ColumnOf<Grown> factor_columns[] = {
     {"factor", "factor", "1", "the largest over the last", Role::quantity,
@@ -175,10 +173,7 @@ struct PeerSolution {
   std::optional<double> distance;
 };
 
-results::Verdict agreement(double distance) {
-  return distance <= closest ? results::Verdict{Standing::met, "agrees"}
-                             : results::Verdict{Standing::missed, "not in agreement"};
-}
+results::Verdict agreement(double distance) { return results::check(distance <= closest, "agrees", "not in agreement"); }
 
 constexpr ColumnOf<PeerSolution> compared_columns[] = {
     {"scene", "scene", "", "its name", Role::key, field<&PeerSolution::scene>},

@@ -231,8 +231,7 @@ struct MethodSummary {
 
   results::Verdict verdict() const {
     if (fails + explodes == runs) return results::Verdict{Standing::open, "no run ends"};
-    return over + fails == 0 ? results::Verdict{Standing::met, "proportional"}
-                             : results::Verdict{Standing::missed, "not proportional"};
+    return results::check(over + fails == 0, "proportional", "not proportional");
   }
 };
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "bench/studies/bar.hpp"
 #include "bench/studies/scaling/scaling.hpp"
+#include "bench/studies/target.hpp"
 #include "results/columns.hpp"
 #include "solver/base/statistics.hpp"
 
@@ -50,7 +50,7 @@ std::vector<double> force_times(int n) {
 /// A target, and what was measured in some turns.
 struct Asked {
   std::string what;
-  Bar bar;
+  Target bar;
   std::vector<double> values;
 
   double value() const { return base::quantile(values, 0.5); }

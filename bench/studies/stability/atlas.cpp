@@ -281,8 +281,7 @@ constexpr results::ColumnOf<Converging> converging_columns[] = {
      results::field<&Converging::rise>},
     {"verdict", "verdict", "", "whether all of them do", Role::verdict,
      [](const Converging& row) -> results::Cell {
-       return row.converge == row.stable ? results::Verdict{results::Standing::met, "all converge"}
-                                         : results::Verdict{results::Standing::missed, "not all converge"};
+       return results::check(row.converge == row.stable, "all converge", "not all converge");
      }},
 };
 

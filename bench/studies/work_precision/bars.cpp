@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "bench/studies/bar.hpp"
+#include "bench/studies/target.hpp"
 #include "bench/studies/work_precision/winners.hpp"
 #include "results/columns.hpp"
 #include "results/verdict.hpp"
@@ -18,15 +18,14 @@ using results::Standing;
 /// A bar about a scene, or about all that reaches an error on it.
 struct BarRow {
   std::string scene, name;
-  Bar bar;
+  Target target;
   std::optional<double> error;
   std::optional<double> value;  ///< nothing: not reached
   std::string detail;
 
   results::Verdict verdict() const {
-    if (value) return bench::verdict(bar, *value);
-    return bar.at_least ? results::Verdict{Standing::met, "they do not reach it in time"}
-                        : results::Verdict{Standing::missed, "not met: not reached"};
+    if (value) return check(target, *value);
+    return results::check(target.at_least, "they do not reach it in time", "not met: not reached");
   }
 };
 
@@ -35,7 +34,7 @@ constexpr results::ColumnOf<BarRow> bar_row_columns[] = {
     {"bar", "target", "", "what is compared", Role::key, field<&BarRow::name>},
     {"error", "error", "1", "at most", Role::key, field<&BarRow::error>},
     {"wanted", "target value", "", "bound of the value", Role::key,
-     [](const BarRow& row) -> Cell { return to_string(row.bar); }},
+     [](const BarRow& row) -> Cell { return to_string(row.target); }},
     {"detail", "", "", "what was compared", Role::note, field<&BarRow::detail>},
     {"value", "value", "1", "measured value", Role::time, field<&BarRow::value>},
     {"verdict", "verdict", "", "whether the target is met", Role::verdict,

@@ -17,7 +17,7 @@ namespace {
 using namespace results;
 using testing::ElementsAre;
 
-const std::filesystem::path file_of_5 = std::filesystem::path(DRAPE_SOURCE_DIR) / "verify/results/schema-5.h5";
+const std::filesystem::path file_of_5 = std::filesystem::path(DRAPE_SOURCE_DIR) / "verify/data/schema-5.h5";
 
 TEST(SchemaFive, ReadsWithOutcomesAndParts) {
   const std::vector<Table> tables = read_tables(file_of_5);

@@ -15,7 +15,7 @@ namespace {
 
 using namespace results;
 
-const std::filesystem::path old_file = std::filesystem::path(DRAPE_SOURCE_DIR) / "verify/results/schema-4.h5";
+const std::filesystem::path old_file = std::filesystem::path(DRAPE_SOURCE_DIR) / "verify/data/schema-4.h5";
 
 TEST(SchemaFour, ReadsWithRolesVerdictsAndFigures) {
   const std::vector<Table> tables = read_tables(old_file);

@@ -1,0 +1,79 @@
+#include "model/scene_file/pin_keys.hpp"
+
+#include <fmt/format.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "model/keys/key.hpp"
+
+namespace drape::model {
+namespace {
+
+/// A pin with the grid whose particles it names.
+struct PinOfGrid {
+  const Grid& grid;
+  PinRule pin = {};
+};
+
+void read_where(const Value& value, PinOfGrid& rule) {
+  const std::vector<std::string_view> names(pin_places().begin(), pin_places().end());
+  rule.pin.where = names[value.one_of(names)];
+}
+
+Data where_data(const PinOfGrid& rule) { return rule.pin.where.empty() ? Data() : rule.pin.where; }
+
+void read_particles(const Value& value, PinOfGrid& rule) {
+  const Grid& grid = rule.grid;
+  for (const Value& pair : value.list()) {
+    const std::vector<Value> ab = pair.list(2);
+    const double a = ab[0].number(), b = ab[1].number();
+    if (a < 0 || b < 0 || a >= grid.nu || b >= grid.nv || a != static_cast<int>(a) || b != static_cast<int>(b))
+      value.fail(fmt::format("places [a, b] with 0 ≤ a < {} and 0 ≤ b < {}", grid.nu, grid.nv));
+    rule.pin.particles.emplace_back(static_cast<int>(a), static_cast<int>(b));
+  }
+}
+
+Data particles_data(const PinOfGrid& rule) {
+  List pairs;
+  for (const auto& [a, b] : rule.pin.particles) pairs.emplace_back(List{double(a), double(b)});
+  return rule.pin.where.empty() ? Data(pairs) : Data();
+}
+
+void read_directions(const Value& value, PinOfGrid& rule) {
+  const std::string text = value.text();
+  rule.pin.directions = {};
+  for (const char c : text) {
+    if (c < 'x' || c > 'z' || rule.pin.directions[c - 'x']) value.fail("some of the letters x, y and z");
+    rule.pin.directions[c - 'x'] = true;
+  }
+  if (text.empty()) value.fail("some of the letters x, y and z");
+}
+
+Data directions_data(const PinOfGrid& rule) {
+  std::string text;
+  for (int c = 0; c < 3; ++c)
+    if (rule.pin.directions[c]) text += static_cast<char>('x' + c);
+  return text;
+}
+
+constexpr Key<PinOfGrid> pin_keys[] = {
+    {"where", "", "the name of a place", read_where, where_data},
+    {"particles", "", "[a, b] along u and v", read_particles, particles_data},
+    {"directions", "", "letters of x, y and z", read_directions, directions_data},
+    {"velocity", "m/s", "[x, y, z]", at<&PinOfGrid::pin, &PinRule::velocity>, check::number},
+};
+
+}  // namespace
+
+PinRule read_pin(const Value& value, const Grid& grid) {
+  PinOfGrid rule{grid};
+  read_table<PinOfGrid>(value, "pin", pin_keys, rule);
+  if (rule.pin.where.empty() == rule.pin.particles.empty()) value.fail("either 'where' or 'particles' in every pin");
+  return std::move(rule.pin);
+}
+
+Entries entries_of(const PinRule& pin, const Grid& grid) { return entries_of<PinOfGrid>(pin_keys, {grid, pin}); }
+
+}  // namespace drape::model
