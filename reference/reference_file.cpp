@@ -106,7 +106,7 @@ std::string encode(std::string_view key, const Reference& reference) {
 }
 
 Reference decode(std::string_view bytes, std::string_view key) {
-  const std::string_view body = bytes.substr(0, bytes.size() - std::min(bytes.size(), sizeof(XXH64_hash_t)));
+  const std::string_view body = bytes.substr(0, bytes.size() - std::min(bytes.size(), sizeof(std::uint64_t)));
   if (checksum(body) != bytes.substr(body.size())) throw DamagedFile("its checksum is wrong");
   try {
     return reference_of(Json::from_cbor(body, true, true, Json::cbor_tag_handler_t::store), key);

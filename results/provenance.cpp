@@ -13,6 +13,8 @@
 #include <thread>
 #include <utility>
 
+#include "solver/base/hash.hpp"
+
 namespace drape::results {
 namespace {
 
@@ -72,7 +74,6 @@ Provenance provenance(std::string command_line, std::string sweep) {
 // Both are written by CMake: rows {name, value, description}.
 #include "results/build_facts.inc"
 #include "results/git_commit.inc"
-#include "solver/base/hash.hpp"
   };
   facts.push_back({"program_hash", program_hash(), "hash of the program file"});
   facts.push_back({"cpu", cpu_model(), "model of the processor"});
