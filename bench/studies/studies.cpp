@@ -49,6 +49,9 @@ std::span<const Study> studies() {
       {.name = "figure-4.3",
        .description = "CG iterations and contacts over time of a sheet that swings against a box; what contact costs",
        .answer = figure_4_3},
+      {.name = "conditioning",
+       .description = "condition of a stage's matrix and iterations against the bound (3.7); the dense inverse against solvers",
+       .answer = conditioning},
       {.name = "scaling",
        .description =
            "time of a step and of a CG iteration from 20 x 20 to a million particles, beside the machine's bandwidth",

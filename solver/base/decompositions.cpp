@@ -13,6 +13,12 @@ SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& A) {
   return {eigen.eigenvalues(), eigen.eigenvectors()};
 }
 
+Eigen::VectorXd tridiagonal_eigenvalues(const Eigen::VectorXd& diagonal, const Eigen::VectorXd& beside) {
+  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen;
+  eigen.computeFromTridiagonal(diagonal, beside, Eigen::EigenvaluesOnly);
+  return eigen.eigenvalues();
+}
+
 Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& A) { return A.completeOrthogonalDecomposition().pseudoInverse(); }
 
 std::function<Eigen::VectorXd(const Eigen::VectorXd& b)> lu_inverse(const Eigen::SparseMatrix<double>& A) {

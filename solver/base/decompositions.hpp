@@ -19,6 +19,9 @@ struct SymmetricEigen {
 /// Eigenvalues and eigenvectors of a symmetric matrix, of which only the lower triangle is read.
 SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& A);
 
+/// Eigenvalues of a symmetric tridiagonal matrix, ascending. `beside`: the entries beside the diagonal, one less than on it.
+Eigen::VectorXd tridiagonal_eigenvalues(const Eigen::VectorXd& diagonal, const Eigen::VectorXd& beside);
+
 /// The pseudo-inverse of a small matrix.
 Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& A);
 

@@ -25,6 +25,8 @@ std::span<const LinearSolver> linear_solvers() {
       {.name = "multigrid",
        .description = "conjugate gradients with a multigrid cycle where the scene is a grid, else as mic0",
        .make = make_multigrid},
+      {.name = "cg", .description = "conjugate gradients without a preconditioner", .make = make_unpreconditioned},
+      {.name = "jacobi", .description = "conjugate gradients with the diagonal, as Baraff and Witkin", .make = make_jacobi},
   };
   return table;
 }

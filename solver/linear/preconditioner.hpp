@@ -56,6 +56,8 @@ std::unique_ptr<Preconditioner> make_incomplete_cholesky();
 std::unique_ptr<Preconditioner> make_modified_incomplete_cholesky();
 std::unique_ptr<Preconditioner> make_cholesky();
 std::unique_ptr<Preconditioner> make_multigrid();
+std::unique_ptr<Preconditioner> make_unpreconditioned();
+std::unique_ptr<Preconditioner> make_jacobi();
 std::unique_ptr<Preconditioner> make_automatic();
 
 }  // namespace drape::solver
