@@ -10,7 +10,7 @@
 #include "model/cloth.hpp"
 #include "model/scene_file/scene_file.hpp"
 #include "solver/base/decompositions.hpp"
-#include "verify/support/known_motions.hpp"
+#include "verify/support/small_problems.hpp"
 
 namespace drape::verify::condition_test {
 namespace {
@@ -56,7 +56,7 @@ class Condition : public testing::TestWithParam<Sheet> {
 
   /// Components along all eigenvectors of the free particles.
   solver::Vectors solution() const {
-    solver::Vectors x = known_motions::noise(n * n, 3);
+    solver::Vectors x = small_problems::noise(n * n, 3);
     solver::filter(cloth.ode.pins, x);
     return x;
   }
