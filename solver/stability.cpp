@@ -94,11 +94,12 @@ double largest_stable_step(const Spectrum& spectrum, double (*amplification)(dou
 }  // namespace
 
 Spectrum spectrum(const SplitOde& ode, double t, const State& y) {
+  constexpr double difference = 1e-7;  // over the size of the argument: half of the digits
   Vectors f(ode.particles(), 3);
   ode.force(t, y.x, y.v, f);
   State moved = y;
-  const auto largest = [&](Vectors State::*argument) {
-    const double step = 1e-7 * (1 + (y.*argument).cwiseAbs().maxCoeff());
+  const auto largest = [&](Vectors State::*argument, double size) {
+    const double step = difference * (size > 0 ? size : 1);
     const double eigenvalue = largest_eigenvalue(ode, [&](const Vectors& z, Vectors& w) {
       const double delta = step / z.cwiseAbs().maxCoeff();
       moved.*argument = y.*argument + delta * z;
@@ -109,7 +110,9 @@ Spectrum spectrum(const SplitOde& ode, double t, const State& y) {
     moved.*argument = y.*argument;
     return spectrum_safety * eigenvalue;
   };
-  return {largest(&State::x), largest(&State::v)};
+  const double length = y.x.cwiseAbs().maxCoeff(), omega_squared = largest(&State::x, length);
+  const double speed = std::max(y.v.cwiseAbs().maxCoeff(), length * std::sqrt(omega_squared));
+  return {omega_squared, largest(&State::v, speed)};
 }
 
 double verlet_limit(const Spectrum& spectrum) { return largest_stable_step(spectrum, amplification, 2, 1); }

@@ -4,12 +4,18 @@
 #include <limits>
 
 namespace drape::model {
+namespace {
+
+constexpr double difference = 1e-4;  ///< over the time of a reaction: of the times whose poses give velocities
+
+}  // namespace
 
 Contacts::Contacts(std::span<const ObstacleRule> obstacles, const ContactRule& rule, double gravity, int particles,
                    solver::Counters& work)
     : obstacles_(obstacles.begin(), obstacles.end()),
       distance_(rule.distance),
       relaxation_(rule.relaxation),
+      moment_(difference * rule.reaction_time),
       gravity_(gravity),
       answers_(obstacles_.size(), std::vector<Answer>(particles)),
       queries_(work.counter("obstacle_queries", "particles whose distance from an obstacle was computed")) {}
@@ -43,10 +49,9 @@ void Contacts::find(double t, double h, const solver::State& y, std::vector<solv
 }
 
 void Contacts::inside(double t, const Vectors& x, std::vector<Depth>& found) const {
-  constexpr double moment = 1e-6;  // [s]: obstacles move uniformly between key frames
   found.clear();
   for (const Obstacle& obstacle : obstacles_) {
-    const Pose pose = obstacle.pose(t), later = obstacle.pose(t + moment);
+    const Pose pose = obstacle.pose(t), later = obstacle.pose(t + moment_);
     for (int i = 0; i < x.rows(); ++i) {
       const Eigen::Vector3d p = pose.to_body(x.row(i));
       const Nearest nearest = obstacle.nearest(p);
@@ -54,7 +59,7 @@ void Contacts::inside(double t, const Vectors& x, std::vector<Depth>& found) con
       if (nearest.distance >= distance_) continue;
       const Eigen::Vector3d surface = p - nearest.distance * nearest.normal;
       found.push_back({i, pose.rotation * nearest.normal, distance_ - nearest.distance,
-                       (later.to_world(surface) - pose.to_world(surface)) / moment, obstacle.friction()});
+                       (later.to_world(surface) - pose.to_world(surface)) / moment_, obstacle.friction()});
     }
   }
 }

@@ -66,7 +66,9 @@ class Contacts {
   };
 
   std::vector<Obstacle> obstacles_;
-  double distance_, relaxation_, gravity_;
+  double distance_, relaxation_;
+  double moment_;  ///< [s]: obstacles move uniformly between key frames
+  double gravity_;
   std::vector<std::vector<Answer>> answers_;  ///< for each obstacle and particle
   std::int64_t& queries_;
 };

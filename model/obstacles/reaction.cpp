@@ -5,7 +5,8 @@
 namespace drape::model {
 namespace {
 
-constexpr double creeping = 1e-3;  ///< speed at which friction has half of its strength [m/s]
+/// Speed at which friction has half of its strength, over that which crosses the collision area in the time of a reaction.
+constexpr double creeping = 1e-3;
 
 }  // namespace
 
@@ -18,7 +19,7 @@ bool Reaction::acts(double t, const Vectors& x) {
 }
 
 void Reaction::add(const Vectors& v, const Vectors& before, Vectors& f) const {
-  const double tau = rule_.reaction_time;
+  const double tau = rule_.reaction_time, slow = creeping * rule_.distance / tau;
   for (const Depth& at : inside_) {
     const Eigen::Vector3d n = at.normal, F = before.row(at.particle);
     if (F.dot(n) > 0) continue;
@@ -26,7 +27,7 @@ void Reaction::add(const Vectors& v, const Vectors& before, Vectors& f) const {
     const Eigen::Vector3d w_v = at.velocity - v.row(at.particle).transpose();
     const double normal = -F.dot(n) + m / (tau * tau) * at.depth + 2 * m / tau * w_v.dot(n);
     const Eigen::Vector3d back = w_v - w_v.dot(n) * n;
-    f.row(at.particle) += normal * n + at.friction * std::max(0.0, normal) / (back.norm() + creeping) * back;
+    f.row(at.particle) += normal * n + at.friction * std::max(0.0, normal) / (back.norm() + slow) * back;
   }
 }
 

@@ -8,11 +8,12 @@
 namespace drape::solver {
 namespace {
 
-/// A particle this near to the border counts as touching when a step begins with the constraints of the one before [m].
+/// A particle this near to the border, over the largest coordinate, counts as touching when a step begins with the constraints
+/// of the one before.
 constexpr double touching = 1e-9;
 
-/// Violations below this are round-off [m].
-double round_off(const Eigen::Vector3d& x) { return 1e-13 * (1 + x.norm()); }
+/// Violations below this are round-off, over the largest coordinate.
+constexpr double violation_round_off = 2e-13;
 
 }  // namespace
 
@@ -28,6 +29,7 @@ void ContactResponse::begin(double t0, double h, const State& y0, bool again) {
   t0_ = t0;
   h_ = h;
   y0_ = &y0;
+  size_ = y0.x.cwiseAbs().maxCoeff();
   if (!again) past_.clear();
   for (const Touched& p : touched_)
     for (std::size_t k = p.begin; k < p.end && !again; ++k)
@@ -63,7 +65,7 @@ void ContactResponse::touch(int particle, std::size_t begin, std::size_t end, st
       remember = past_[j];
       was = was || past_[j].obstacle == contact.obstacle;
     }
-    const bool near = contact.gap + h_ * (v - contact.velocity).dot(contact.normal) <= touching;
+    const bool near = contact.gap + h_ * (v - contact.velocity).dot(contact.normal) <= touching * size_;
     active_[k] = near && held < most_contacts && (contact.gap < 0 || was);
     held += active_[k];
     p.fresh = p.fresh || (active_[k] && !was);
@@ -222,7 +224,7 @@ bool ContactResponse::release(Touched& p, const PerContact& lambda, double noise
 bool ContactResponse::capture(Touched& p, const Eigen::Vector3d& x1) {
   int captured = 0;
   for (std::size_t k = p.begin; k < p.end && p.normals.cols() + captured < most_contacts; ++k) {
-    if (active_[k] || contacts_[k].least - x1.dot(contacts_[k].normal) <= round_off(x1)) continue;
+    if (active_[k] || contacts_[k].least - x1.dot(contacts_[k].normal) <= violation_round_off * size_) continue;
     if ((p.allowed * contacts_[k].normal).isZero(1e-6)) continue;  // pins decide
     active_[k] = p.fresh = true;
     ++captured;

@@ -114,6 +114,7 @@ class ContactResponse {
   const SplitOde& ode_;
   std::vector<Eigen::Matrix3d> allowed_;  ///< for each particle, if there are pins
   double t0_ = 0, h_ = 0;
+  double size_ = 0;  ///< largest coordinate of a particle [m]
   const State* y0_ = nullptr;
   std::vector<Contact> contacts_;
   std::vector<char> active_;  ///< for each contact

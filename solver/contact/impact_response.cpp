@@ -8,7 +8,7 @@
 namespace drape::solver {
 namespace {
 
-constexpr double border_noise = 1e-13;  ///< of a position [m]: distance from the border at which a particle rests on it
+constexpr double round_off = 1e-13;  ///< over the largest position, velocity or acceleration: less than that is none
 
 }  // namespace
 
@@ -36,10 +36,18 @@ void ImpactResponse::give(int particle, const Eigen::Vector3d& change, const Eig
   work_ += ode_.mass[particle] * change.dot(v);
 }
 
+/// The largest number in the rows of particles with contacts.
+double ImpactResponse::largest(const Vectors& rows) const {
+  double size = 0;
+  for (const Side& side : contacts_) size = std::max(size, rows.row(side.contact.particle).cwiseAbs().maxCoeff());
+  return size;
+}
+
 /// Several contacts of a particle disturb each other: they are corrected in turn, and unneeded corrections are undone, until
-/// none changes. `missing`: the correction that a contact needs; `note`: called for every change of a row.
+/// none changes by more than the noise. `missing`: the correction that a contact needs; `note`: called for every change of a
+/// row.
 template <class Missing, class Note>
-void ImpactResponse::take_turns(double Side::*given, Vectors& rows, const Missing& missing, const Note& note) {
+void ImpactResponse::take_turns(double Side::*given, double noise, Vectors& rows, const Missing& missing, const Note& note) {
   constexpr int most_turns = 50;
   for (Side& side : contacts_) side.*given = 0;
   bool again = true;
@@ -50,7 +58,7 @@ void ImpactResponse::take_turns(double Side::*given, Vectors& rows, const Missin
       side.*given += change;
       rows.row(side.contact.particle) += change * side.escape;
       note(side.contact.particle, change * side.escape);
-      again = again || std::abs(change) > border_noise;
+      again = again || std::abs(change) > noise;
     }
   }
 }
@@ -60,23 +68,26 @@ void ImpactResponse::push_out(double s, Vectors& x) {
     const double border = side.start + s / h_ * (side.contact.least - side.start);
     return border - x.row(side.contact.particle).dot(side.contact.normal);
   };
-  take_turns(&Side::pushed, x, depth, [](int, const Eigen::Vector3d&) {});
-  for (Side& side : contacts_) side.touched = depth(side) > -10 * border_noise;
+  const double noise = round_off * largest(x);
+  take_turns(&Side::pushed, noise, x, depth, [](int, const Eigen::Vector3d&) {});
+  for (Side& side : contacts_) side.touched = depth(side) > -10 * noise;
 }
 
 void ImpactResponse::stop(double tau, bool begins, Vectors& v, Vectors& a) {
   const double lasts = begins ? 0 : tau / 2;
+  const double pull = largest(a), noise = round_off * (largest(v) + tau * pull);
   const auto approach = [&](const Side& side) {
     const Contact& contact = side.contact;
     return side.touched ? (contact.velocity - v.row(contact.particle).transpose()).dot(contact.normal) : 0.0;
   };
   const auto pressure = [&](const Side& side) {
-    const bool leaves = !side.touched || approach(side) < -border_noise;
+    const bool leaves = !side.touched || approach(side) < -noise;
     return leaves ? 0.0 : -a.row(side.contact.particle).dot(side.contact.normal);
   };
-  take_turns(&Side::impact, v, approach,
+  take_turns(&Side::impact, noise, v, approach,
              [&](int i, const Eigen::Vector3d& jump) { give(i, jump, v.row(i).transpose() - 0.5 * jump); });
-  take_turns(&Side::load, a, pressure, [&](int i, const Eigen::Vector3d& borne) { give(i, lasts * borne, v.row(i)); });
+  take_turns(&Side::load, round_off * pull, a, pressure,
+             [&](int i, const Eigen::Vector3d& borne) { give(i, lasts * borne, v.row(i)); });
   for (const Side& side : contacts_) {
     if (side.contact.friction == 0 || !side.touched) continue;
     const int i = side.contact.particle;

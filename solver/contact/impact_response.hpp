@@ -40,7 +40,8 @@ class ImpactResponse {
   };
 
   template <class Missing, class Note>
-  void take_turns(double Side::*given, Vectors& rows, const Missing& missing, const Note& note);
+  void take_turns(double Side::*given, double noise, Vectors& rows, const Missing& missing, const Note& note);
+  double largest(const Vectors& rows) const;
   void give(int particle, const Eigen::Vector3d& change, const Eigen::Vector3d& v);
 
   /// Changes by friction.
