@@ -52,6 +52,9 @@ std::span<const Study> studies() {
       {.name = "conditioning",
        .description = "condition of a stage's matrix and iterations against the bound (3.7); the dense inverse against solvers",
        .answer = conditioning},
+      {.name = "limits",
+       .description = "where \"stable under all circumstances\" ends: shear and bending that the implicit part does not know",
+       .answer = limits},
       {.name = "scaling",
        .description =
            "time of a step and of a CG iteration from 20 x 20 to a million particles, beside the machine's bandwidth",

@@ -58,6 +58,7 @@ std::vector<Job> figure_3_2(const Question& question);
 std::vector<Job> figure_3_3(const Question& question);
 std::vector<Job> figure_4_3(const Question& question);
 std::vector<Job> conditioning(const Question& question);
+std::vector<Job> limits(const Question& question);
 std::vector<Job> scaling(const Question& question);
 std::vector<Job> stability(const Question& question);
 std::vector<Job> tolerance(const Question& question);
