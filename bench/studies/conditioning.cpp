@@ -58,7 +58,11 @@ model::Scene scene_of(const StageMatrix& system) {
   scene.sheet.material.tension = {spring_modulus, spring_modulus};
   scene.sheet.material.shear = 0;
   scene.pins.clear();
-  if (*system.border.place != 0) scene.pins.push_back({.where = system.border.place});
+  if (*system.border.place != 0) {
+    model::PinRule pin;
+    pin.where = system.border.place;
+    scene.pins.push_back(pin);
+  }
   return scene;
 }
 
@@ -100,7 +104,11 @@ Conditioned condition(const StageMatrix& system, const solver::LinearSolver& kin
   const model::Cloth cloth = model::compile(scene);
   const double h = spring_step, gamma = system.stage.c * h;
   const double area = scene.sheet.material.density * std::pow(scene.sheet.grid.spacing_u(), 2);  // ρ l² [kg]
-  Conditioned row{.n = system.n, .pinned = system.border.name, .method = system.stage.method, .solver = std::string(kind.name)};
+  Conditioned row;
+  row.n = system.n;
+  row.pinned = system.border.name;
+  row.method = system.stage.method;
+  row.solver = kind.name;
   row.nu = h * h * spring_modulus / area;
   row.delta = h * system.damping / area;
   const double g = system.stage.c * (system.stage.c * row.nu + row.delta);

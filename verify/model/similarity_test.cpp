@@ -69,19 +69,19 @@ const Case cases[] = {{"sheet", sheet},
                       {"reaction", [](const Units& u) { return fall(u, "reaction"); }, true}};
 
 /// The end of a run, in the units of the first, and its work.
-struct Run {
+struct Moved {
   Outcome outcome = Outcome::success;
   solver::State end;
   std::vector<std::int64_t> work;
   std::int64_t contacts = 0;
 };
 
-Run run(const Case& scene, const Method& method, const solver::Options& options, const Units& u) {
+Moved run(const Case& scene, const Method& method, const solver::Options& options, const Units& u) {
   constexpr int steps = 60;
   constexpr double h = 1.0 / 256;
   const model::Cloth cloth = model::compile(model::parse_scene(scene.toml(u), scene.name));
   Integrator integrator(cloth.ode, method, options, cloth.start);
-  Run all;
+  Moved all;
   for (int k = 0; k < steps && all.outcome == Outcome::success; ++k) {
     all.outcome = integrator.step(h * u.b).outcome;
     all.contacts += integrator.contacts().constrained;
@@ -100,10 +100,10 @@ TEST_P(Similar, ScenesMoveAlikeToTheLastBit) {
   for (const Case& scene : cases) {
     if (scene.obstacles && !method.meets_obstacles) continue;
     for (const solver::Options& options : {solver::Options(), solver::thesis_options()}) {
-      const Run first = run(scene, method, options, {});
+      const Moved first = run(scene, method, options, {});
       EXPECT_EQ(first.contacts > 0, scene.obstacles && scene.name == "constraint") << scene.name;
       for (const Units& u : other_units) {
-        const Run other = run(scene, method, options, u);
+        const Moved other = run(scene, method, options, u);
         const std::string what = fmt::format("{}, lengths × {}, times × {}, densities × {}", scene.name, u.a, u.b, u.c);
         EXPECT_EQ(other.outcome, first.outcome) << what;
         EXPECT_EQ((other.end.x - first.end.x).norm(), 0) << what;
@@ -120,7 +120,7 @@ TEST(SimilarScenes, HaveEqualRatios) {
     std::string text = sheet(u);
     return text.replace(text.find("lift = 0.5"), 10, "lift = 0.6");
   };
-  const Run first = run(cases[0], solver::method("bdf2"), {}, {}),
+  const Moved first = run(cases[0], solver::method("bdf2"), {}, {}),
             other = run({"other", lifted}, solver::method("bdf2"), {}, {});
   EXPECT_GT((other.end.x - first.end.x).norm(), 1e-6);
 }
