@@ -36,6 +36,7 @@ class Forces {
   bool has_active() const;
 
   double energy(const Vectors& x) const;
+  void mean_excess(const Vectors& x0, const Vectors& x1, Vectors& f) const;
   void jacobian(double t, const Vectors& x, const Vectors& v, ExactJacobian& matrix, SparseMatrix& df_dx, SparseMatrix& df_dv);
   void newton_matrix(double t, const Vectors& x, const Vectors& v, double gamma, NewtonMatrix& matrix, SparseMatrix& J);
 
@@ -74,6 +75,7 @@ Forces::Forces(const Sheet& sheet, solver::Counters& work, Plan& plan)
     std::optional<Term> term = kind.make(sheet);
     if (!term) continue;
     plan.terms.push_back(name);
+    if (term->without_energy) plan.without_energy.push_back(name);
     needs_normals_ = needs_normals_ || term->needs_normals;
     law_ += term->law;
     active += term->active_law;
@@ -124,6 +126,11 @@ double Forces::energy(const Vectors& x) const {
   for (const CountedTerm& counted : terms_)
     if (counted.term.energy) energy += counted.term.energy(x);
   return energy;
+}
+
+void Forces::mean_excess(const Vectors& x0, const Vectors& x1, Vectors& f) const {
+  for (const CountedTerm& counted : terms_)
+    if (counted.term.mean_excess) counted.term.mean_excess(x0, x1, f);
 }
 
 void Forces::jacobian(double t, const Vectors& x, const Vectors& v, ExactJacobian& matrix, SparseMatrix& df_dx,
@@ -233,6 +240,8 @@ Cloth compile(const Scene& scene) {
   ode.force = [forces](double t, const Vectors& x, const Vectors& v, Vectors& f) { forces->force(t, x, v, f, true); };
   ode.explicit_force = [forces](double t, const Vectors& x, const Vectors& v, Vectors& f) { forces->force(t, x, v, f, false); };
   ode.potential_energy = [forces](double, const Vectors& x) { return forces->energy(x); };
+  ode.mean_excess = [forces](double, const Vectors& x0, const Vectors& x1, Vectors& f) { forces->mean_excess(x0, x1, f); };
+  ode.without_energy = cloth.plan.without_energy;
   ode.jacobian = [forces, exact = ExactJacobian(3 * ode.particles())](double t, const Vectors& x, const Vectors& v,
                                                                       SparseMatrix& df_dx, SparseMatrix& df_dv) mutable {
     forces->jacobian(t, x, v, exact, df_dx, df_dv);
@@ -257,6 +266,13 @@ Cloth compile(const Scene& scene) {
   cloth.plan.stiffness_entries = static_cast<int>(ode.stiffness.nonZeros());
   cloth.plan.damping_entries = static_cast<int>(ode.damping.nonZeros());
   return cloth;
+}
+
+std::vector<std::string> forces_without_energy(const Sheet& sheet) {
+  std::vector<std::string> names;
+  for (const TermKind& kind : term_kinds())
+    if (const std::optional<Term> term = kind.make(sheet); term && term->without_energy) names.emplace_back(kind.name);
+  return names;
 }
 
 std::string to_string(const Plan& plan) {

@@ -11,8 +11,9 @@ namespace drape::model {
 
 /// What exists in a compiled scene, decided once: the rest costs nothing.
 struct Plan {
-  std::vector<std::string> terms;  ///< forces with nonzero coefficients
-  bool normals = false;            ///< whether any of them asks for normals
+  std::vector<std::string> terms;           ///< forces with nonzero coefficients
+  std::vector<std::string> without_energy;  ///< those that are elastic without being the gradient of an energy
+  bool normals = false;                     ///< whether any of them asks for normals
   int particles = 0;
   int pinned_dofs = 0;  ///< of 3N
   int obstacles = 0;
@@ -34,6 +35,9 @@ struct Cloth {
 
 /// Compiles a scene: only forces with nonzero coefficients are built, and normals only if one of these asks for them.
 Cloth compile(const Scene& scene);
+
+/// Plan::without_energy of a sheet that is not compiled.
+std::vector<std::string> forces_without_energy(const Sheet& sheet);
 
 /// The plan in one line, for users.
 std::string to_string(const Plan& plan);

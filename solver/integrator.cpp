@@ -78,6 +78,9 @@ Integrator::Integrator(const SplitOde& ode, const Method& method, const Options&
   if (ode.contacts && !method.meets_obstacles)
     throw std::invalid_argument("method '" + std::string(method.name) +
                                 "': expected a method that responds to obstacles, which this scene has");
+  if (method.needs_energies && !ode.without_energy.empty())
+    throw std::invalid_argument("method '" + std::string(method.name) + "': expected elastic forces with energies, not '" +
+                                ode.without_energy.front() + "'");
   const LinearCounters registered(*ode.work);  // so that explicit methods record zeros
   if (method.implicit()) {
     ContactResponse* const contacts = ode.contacts ? &contacts_.emplace(ode) : nullptr;

@@ -35,6 +35,11 @@ void rk4_substeps(Step& s);
 void bridson(Step& s);
 void rkl2(Step& s);
 void rkc2(Step& s);
+void generalized_alpha(Step& s);
+void generalized_alpha_half(Step& s);
+void newmark(Step& s);
+void hht(Step& s);
+void energy_momentum(Step& s);
 
 namespace {
 
@@ -221,6 +226,41 @@ constexpr Method method_rows[] = {
      .stages = Stages::none,
      .step = rkc2,
      .meets_obstacles = false},
+    {.name = "generalized-alpha",
+     .description = "generalised alpha of Chung and Hulbert, spectral radius 0.8 at infinity",
+     .order = 2,
+     .stages = Stages::nonlinear,
+     .step = generalized_alpha,
+     .forces = 1,
+     .meets_obstacles = false},
+    {.name = "generalized-alpha-0.5",
+     .description = "the same with the radius 0.5",
+     .order = 2,
+     .stages = Stages::nonlinear,
+     .step = generalized_alpha_half,
+     .forces = 1,
+     .meets_obstacles = false},
+    {.name = "newmark",
+     .description = "trapezoidal rule of Newmark",
+     .order = 2,
+     .stages = Stages::nonlinear,
+     .step = newmark,
+     .forces = 1,
+     .meets_obstacles = false},
+    {.name = "hht",
+     .description = "alpha method of Hilber, Hughes and Taylor, alpha 0.1",
+     .order = 2,
+     .stages = Stages::nonlinear,
+     .step = hht,
+     .forces = 1,
+     .meets_obstacles = false},
+    {.name = "energy-momentum",
+     .description = "discrete gradient of every energy, keeps energy and both momenta",
+     .order = 2,
+     .stages = Stages::nonlinear,
+     .step = energy_momentum,
+     .meets_obstacles = false,
+     .needs_energies = true},
 };
 
 constexpr auto thesis_rows =

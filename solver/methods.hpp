@@ -21,6 +21,7 @@ struct Method {
   int forces = 0;               ///< how many of these with a force or an acceleration
   bool meets_obstacles = true;  ///< whether its stages end where contacts are defined
   bool sub_steps = false;       ///< whether it divides its steps by a stability limit of its own
+  bool needs_energies = false;  ///< whether every elastic force must be the gradient of an energy
   bool in_thesis = false;       ///< true for velocity Verlet as well, which is measured beside its methods
 
   bool implicit() const { return stages == Stages::linear || nonlinear(); }  ///< whether it uses the stage solver

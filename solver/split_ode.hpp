@@ -3,6 +3,7 @@
 #include <array>
 #include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "solver/counters.hpp"
@@ -52,6 +53,14 @@ struct SplitOde {
 
   /// Potential energy [J] of the conservative forces.
   std::function<double(double t, const Vectors& x)> potential_energy;
+
+  /// Adds to the force f(t, (x0 + x1)/2, v) what the mean force between these positions has more: a discrete gradient, whose
+  /// work along x1 − x0 is the potential energy that is lost, and which keeps both momenta that the force keeps. Absent:
+  /// nothing, as where energies are quadratic.
+  std::function<void(double t, const Vectors& x0, const Vectors& x1, Vectors& f)> mean_excess;
+
+  /// Names of the elastic forces that are not the gradient of an energy, and have no such mean.
+  std::vector<std::string> without_energy;
 
   /// ∂f/∂x and ∂f/∂v of the whole force, 3N × 3N; coordinate c of particle i has the index 3i + c.
   std::function<void(double t, const Vectors& x, const Vectors& v, SparseMatrix& df_dx, SparseMatrix& df_dv)> jacobian;

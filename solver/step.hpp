@@ -12,6 +12,9 @@
 
 namespace drape::solver {
 
+/// Stage::accuracy of methods that keep energies only as far as their stages are solved.
+constexpr double exact_accuracy = 1e-10;
+
 /// Fields that every step may overwrite.
 struct Scratch {
   Vectors ax, av, f_hat;     ///< N × 3
@@ -79,6 +82,7 @@ struct Step {
       if (history.smooth() > 1) history.extrapolate(given.t, y.v);
       given.accuracy = options.stage_accuracy * std::min(1.0, error_over_extrapolation(given.t));
       if (!history.full()) given.accuracy *= 1e-2;  // the extrapolation is of a lower order than the step
+      if (given.start != nullptr) given.accuracy = exact_accuracy;
     }
     return accept(stage->solve(given, y));
   }

@@ -62,6 +62,35 @@ void add_jacobians(const Moduli& moduli, const std::array<Strained, 2>& pair, co
   }
 }
 
+/// An edge of a cell between two states, in the middle of them and on average.
+struct Averaged {
+  EdgeEnds ends;
+  double length;
+  Eigen::Vector3d middle;  ///< p̄ = (p0 + p1)/2
+  double inverse;          ///< 1/|p̄|
+  double mean_inverse;     ///< 2/(|p0| + |p1|), so that |p1| − |p0| = mean_inverse <p̄, p1 − p0>
+
+  Averaged(const Vectors& x0, const Vectors& x1, EdgeEnds edge, double l) : ends(edge), length(l) {
+    const Eigen::Vector3d p0 = difference(x0, edge), p1 = difference(x1, edge);
+    middle = 0.5 * (p0 + p1);
+    inverse = 1 / middle.norm();
+    mean_inverse = 2 / (p0.norm() + p1.norm());
+  }
+
+  double strain() const { return 1 / (inverse * length) - 1; }
+  double mean_strain() const { return 1 / (mean_inverse * length) - 1; }
+};
+
+/// A product of strains changes by each one's change times the other's mean.
+void add_mean_excess(double elastic, const std::array<Averaged, 2>& pair, const std::array<Averaged, 2>& other, Vectors& f) {
+  const double strain = other[0].strain() + other[1].strain();
+  const double mean_strain = other[0].mean_strain() + other[1].mean_strain();
+  for (const Averaged& p : pair) {
+    const double excess = mean_strain * p.mean_inverse - strain * p.inverse;
+    add_pull(f, p.ends, elastic / p.length * excess * p.middle);
+  }
+}
+
 }  // namespace
 
 /// Transverse contraction σ11 = C12 ε22 + d12 ε̇22, σ22 = C12 ε11 + d12 ε̇11 [Etzmuß 2002, (2.22)] in the consistent form
@@ -86,6 +115,14 @@ std::optional<Term> make_contraction(const Sheet& sheet) {
       energy += moduli.elastic * (strain(cell.lower(), lu) + strain(cell.upper(), lu)) *
                 (strain(cell.left(), lv) + strain(cell.right(), lv));
     return energy;
+  };
+  term.mean_excess = [=](const Vectors& x0, const Vectors& x1, Vectors& f) {
+    for (const Cell& cell : *all) {
+      const std::array u{Averaged(x0, x1, cell.lower(), lu), Averaged(x0, x1, cell.upper(), lu)};
+      const std::array v{Averaged(x0, x1, cell.left(), lv), Averaged(x0, x1, cell.right(), lv)};
+      add_mean_excess(moduli.elastic, u, v, f);
+      add_mean_excess(moduli.elastic, v, u, f);
+    }
   };
   term.jacobian = [=](const Configuration& c, const JacobianEntries& entries) {
     for (const Cell& cell : *all) {

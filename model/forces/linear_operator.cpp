@@ -83,6 +83,7 @@ Term projected(const Grid& grid, LinearOperators operators) {
     for (Eigen::Index i = 0; i < q.rows(); ++i) f.row(i) += c.normals.row(i).dot(q.row(i)) * c.normals.row(i);
   };
   term.active = true;
+  term.without_energy = evaluate->operators.elastic.nonZeros() > 0;
   const LinearOperators convex{symmetric_part(evaluate->operators.elastic), symmetric_part(evaluate->operators.viscous)};
   term.jacobian = [evaluate, convex, normals = Normals(grid)](const Configuration& c, const JacobianEntries& entries) {
     if (!entries.exact()) {

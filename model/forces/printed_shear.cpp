@@ -95,6 +95,7 @@ std::optional<Term> make_printed_shear(const Sheet& sheet) {
   Term term;
   term.force = [shared](const Configuration& c, Vectors& f) { add_force(*shared, c, f); };
   term.active = true;
+  term.without_energy = m.shear != 0;
   term.jacobian = [shared](const Configuration& c, const JacobianEntries& entries) { add_jacobian(*shared, c, entries); };
   return term;
 }

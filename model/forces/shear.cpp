@@ -59,6 +59,17 @@ std::optional<Term> make_shear(const Sheet& sheet) {
       }
     return energy;
   };
+  // The mean of κ <p, q> (q, p) is κ (<p0, q0> + <p1, q1>)/2 times the edges in the middle.
+  term.mean_excess = [=](const Vectors& x0, const Vectors& x1, Vectors& f) {
+    for (const Cell& cell : *all)
+      for (const auto& [p, q] : quadrants(cell)) {
+        const Eigen::Vector3d p0 = difference(x0, p), q0 = difference(x0, q);
+        const Eigen::Vector3d p1 = difference(x1, p), q1 = difference(x1, q);
+        const double excess = 0.25 * kappa * (p1 - p0).dot(q1 - q0);
+        add_pull(f, p, 0.5 * excess * (q0 + q1));
+        add_pull(f, q, 0.5 * excess * (p0 + p1));
+      }
+  };
   term.jacobian = [=](const Configuration& c, const JacobianEntries& entries) {
     if (entries.curvature == Curvature::tension) return;
     for (const Cell& cell : *all)

@@ -2,7 +2,7 @@
 #include <memory>
 
 #include "model/forces/term.hpp"
-#include "model/sheet/edges.hpp"
+#include "model/sheet/cells.hpp"
 
 namespace drape::model {
 
@@ -22,6 +22,15 @@ std::optional<Term> make_tension(const Sheet& sheet) {
       energy += 0.5 * along(k, edge) * strain * strain * edge.length * edge.width;
     }
     return energy;
+  };
+  // The mean of k (|d|/l − 1) d° is k (1/l − 2/(|d0| + |d1|)) (d0 + d1)/2.
+  term.mean_excess = [=](const Vectors& x0, const Vectors& x1, Vectors& f) {
+    for (const Edge& edge : *all) {
+      const EdgeEnds ends{edge.i, edge.j};
+      const Eigen::Vector3d d0 = difference(x0, ends), d1 = difference(x1, ends), middle = 0.5 * (d0 + d1);
+      const double excess = 1 / middle.norm() - 2 / (d0.norm() + d1.norm());
+      add_pull(f, ends, along(k, edge) * edge.width * excess * middle);
+    }
   };
   term.jacobian = [=](const Configuration& c, const JacobianEntries& entries) {
     for (const Edge& edge : *all) {

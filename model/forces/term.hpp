@@ -42,8 +42,14 @@ struct Term {
   std::function<void(const Configuration&, Vectors& f)> force;                 ///< all of it explicit; absent: none
   std::function<double(const Vectors& x)> energy;                              ///< [J]; absent: none
   std::function<void(const Configuration&, const JacobianEntries&)> jacobian;  ///< of law and force; absent: zero
-  GridLaw active_law;   ///< part of `law` that neither has an energy nor only dissipates
-  bool active = false;  ///< whether `force` neither has an energy nor only dissipates
+
+  /// Adds to the force in the middle of x0 and x1 what the mean force between them has more (SplitOde::mean_excess); absent:
+  /// nothing, as where the energy is at most quadratic.
+  std::function<void(const Vectors& x0, const Vectors& x1, Vectors& f)> mean_excess;
+
+  GridLaw active_law;           ///< part of `law` that neither has an energy nor only dissipates
+  bool active = false;          ///< whether `force` neither has an energy nor only dissipates
+  bool without_energy = false;  ///< whether it has an elastic part that is not the gradient of `energy`
   bool needs_normals = false;
 };
 

@@ -30,6 +30,12 @@ struct EdgeEnds {
   int begin, end;
 };
 
+/// Adds the pull of an edge on its ends.
+inline void add_pull(Vectors& f, EdgeEnds edge, const Eigen::Vector3d& pull) {
+  f.row(edge.begin) += pull;
+  f.row(edge.end) -= pull;
+}
+
 /// For an energy gradient g = ∂E/∂p of the edge vector p that depends on the edge vector r: adds the blocks of the forces
 /// −g on the end and +g on the beginning of p, differentiated by the ends of r. block = ∂g/∂r.
 template <class Add>

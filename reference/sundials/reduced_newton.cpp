@@ -29,7 +29,7 @@ ReducedNewton::ReducedNewton(const solver::SplitOde& ode, NewtonSolve::Matrix ma
 
 bool ReducedNewton::prepare(double t, const State& y, double gamma) {
   gamma_ = gamma;
-  if (constant_) return constant_->prepare(gamma, kept_) == solver::Outcome::success;
+  if (constant_) return constant_->prepare(gamma, 1, kept_) == solver::Outcome::success;
   ode_.newton_matrix(t, y.x, y.v, gamma, solver::Jacobian::whole, matrix_);
   return factor_->factor(matrix_) == solver::Outcome::success;
 }

@@ -162,10 +162,11 @@ Eigen::MatrixXd amplification_matrix(const solver::Method& method, const Mode& m
 
 std::vector<std::complex<double>> amplification_factors(const solver::Method& method, const Mode& mode) {
   const Eigen::MatrixXd G = amplification_matrix(method, mode);
-  // Velocities in units of ω, so that the entries are less unequal: the factors are the same with fewer roundings.
-  const double omega = std::sqrt(1 + mode.W);
+  // Velocities in units of ω and accelerations in those of ω², so that the entries are less unequal: the factors are the same
+  // with fewer roundings.
+  const double omega = std::sqrt(1 + mode.W), units[] = {1, omega, omega * omega};
   const Eigen::Index entries = G.rows() / method.history;
-  const auto unit = [&](Eigen::Index i) { return i % entries == 1 ? omega : 1; };
+  const auto unit = [&](Eigen::Index i) { return units[std::min<Eigen::Index>(i % entries, 2)]; };
   const Eigen::MatrixXd scaled =
       Eigen::MatrixXd::NullaryExpr(G.rows(), G.cols(), [&](auto i, auto j) { return G(i, j) * unit(j) / unit(i); });
   const Eigen::VectorXcd eigenvalues = base::eigenvalues(scaled);

@@ -36,12 +36,14 @@ struct Theory {
   Polynomial (*characteristic)(const Mode&);
   double (*stability_bound)(double nu, double s);
   Artificial (*artificial)(const Mode&);
+  double inertia = 1;  ///< μ of its stages
 };
 
 const Polynomial z{{0, 1, 0, 0, 0}};
 const Polynomial dz = z + -1, delta = 0.5 * (3 * z + -1) * dz;
 
 Polynomial implicit_euler(const Mode& m) { return dz * dz + m.s * z * dz + m.W * z * z; }
+Polynomial midpoint(const Mode& m) { return dz * dz + m.s / 2 * (z * z + -1) + m.W / 4 * (z + 1) * (z + 1); }
 Polynomial bdf2(const Mode& m) { return delta * delta + m.s * z * z * delta + m.W * z * z * z * z; }
 
 /// The two roots of μ² + s μ + W.
@@ -70,6 +72,21 @@ Polynomial rosenbrock(const Mode& m, int stages, int order, double gamma) {
   const auto [mu1, mu2] = exponents(m);
   return z * z + -(R(mu1) + R(mu2)).real() * z + (R(mu1) * R(mu2)).real();
 }
+
+/// Coefficients of the generalised α-method for equal steps   [Chung, Hulbert 1993].
+struct GeneralizedAlpha {
+  double m, f, gamma = 0.5 - m + f, beta = 0.25 * (1 - m + f) * (1 - m + f);
+
+  double stage() const { return beta / gamma; }
+  double inertia() const { return beta * (1 - m) / ((1 - f) * gamma * gamma); }
+
+  /// With a(z) for the accelerations: (z − 1) v = (1 − γ + γ z) a, (z − 1) x = v + (½ − β + β z) a.
+  Polynomial characteristic(const Mode& mode) const {
+    const Polynomial of_a = (1 - m) * z + m, of_y = (1 - f) * z + f, v = gamma * z + (1 - gamma);
+    return of_a * dz * dz + mode.s * of_y * v * dz + mode.W * of_y * (v + dz * (beta * z + (0.5 - beta)));
+  }
+};
+constexpr GeneralizedAlpha radius_08{1.0 / 3, 4.0 / 9}, radius_05{0, 1.0 / 3}, hht{0, 0.1}, newmark{0, 0};
 
 double no_bound(double, double) { return infinity; }
 Artificial nothing_artificial(const Mode&) { return {0, 0}; }
@@ -144,8 +161,7 @@ const Theory theories[] = {
     {"bdf2", 2.0 / 3,  //
      bdf2, no_bound, nothing_artificial},
     {"midpoint", 0.5,  //
-     [](const Mode& m) { return dz * dz + m.s / 2 * (z * z + -1) + m.W / 4 * (z + 1) * (z + 1); }, no_bound,
-     nothing_artificial},
+     midpoint, no_bound, nothing_artificial},
     {"imex-midpoint", 0,
      [](const Mode& m) { return (1 + m.s / 2 + m.nu / 4) * z * z + -(2 + m.nu / 2 - m.W) * z + (1 - m.s / 2 + m.nu / 4); },
      [](double nu, double) { return 4 + nu; },
@@ -174,6 +190,14 @@ const Theory theories[] = {
      nothing_artificial},
     {"rkl2", 0, legendre, none_if_undamped, nothing_artificial},
     {"rkc2", 0, chebyshev, none_if_undamped, nothing_artificial},
+    {"generalized-alpha", radius_08.stage(), [](const Mode& m) { return radius_08.characteristic(m); }, no_bound,
+     nothing_artificial, radius_08.inertia()},
+    {"generalized-alpha-0.5", radius_05.stage(), [](const Mode& m) { return radius_05.characteristic(m); }, no_bound,
+     nothing_artificial, radius_05.inertia()},
+    {"newmark", newmark.stage(), [](const Mode& m) { return newmark.characteristic(m); }, no_bound, nothing_artificial,
+     newmark.inertia()},
+    {"hht", hht.stage(), [](const Mode& m) { return hht.characteristic(m); }, no_bound, nothing_artificial, hht.inertia()},
+    {"energy-momentum", 0.5, midpoint, no_bound, nothing_artificial},
 };
 
 const Theory& theory(std::string_view method) { return base::find_named<Theory>(theories, "method with a theory", method); }
@@ -200,7 +224,7 @@ Eigen::VectorXd characteristic_polynomial(std::string_view method, const Mode& m
 
 double loop_contraction(std::string_view method, const Mode& mode) {
   const double c = theory(method).stage;
-  return c * c * std::abs(mode.nu - mode.W) / (1 + c * c * mode.nu + c * mode.s);
+  return c * c * std::abs(mode.nu - mode.W) / (theory(method).inertia + c * c * mode.nu + c * mode.s);
 }
 
 double stability_bound(std::string_view method, double nu, double s) { return theory(method).stability_bound(nu, s); }

@@ -65,7 +65,7 @@ bool AcceleratedStage::find_matrix(State& y) {
   if (const std::optional<Jacobian> part = policy_.first_matrix()) {
     if (!newton_.choose(*part, stage_->gamma)) return renew_matrix(y);
   } else {
-    result_.outcome = system_.prepare(stage_->gamma, similar_gamma);
+    result_.outcome = system_.prepare(stage_->gamma, stage_->inertia, similar_gamma);
   }
   recycle();
   return result_.outcome == Outcome::success;

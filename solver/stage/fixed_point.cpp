@@ -4,16 +4,24 @@
 #include "solver/stage/stage_solver.hpp"
 
 namespace drape::solver {
+namespace {
+
+/// Of the loop where energies are kept only as far as stages are solved.
+constexpr double exact_loop_tolerance = 1e-13;
+
+}  // namespace
 
 StageResult StageSolver::fixed_point(const Stage& stage, const Vectors* f_explicit, State& y) {
   StageResult result;
-  result.outcome = system_.prepare(stage.gamma);
+  result.outcome = system_.prepare(stage.gamma, stage.inertia);
   if (result.outcome != Outcome::success) return result;
   prescribe(ode_.pins, y.v);
   const auto ended = [&](Outcome outcome) { return StageResult{outcome, result.updates, result.cg_iterations}; };
 
   const bool linear = f_explicit != nullptr, contacts = system_.touches();
-  const double loop_tolerance = linear ? options_.cg_tolerance : options_.loop_tolerance;
+  const double asked =
+      stage.start != nullptr ? std::min(options_.loop_tolerance, exact_loop_tolerance) : options_.loop_tolerance;
+  const double loop_tolerance = linear ? options_.cg_tolerance : asked;
   const double cg_tolerance =
       linear ? loop_tolerance : std::min(options_.cg_tolerance, loop_tolerance / 2);  // else the loop could not end
   const int changing_updates = linear ? 10 : 50;

@@ -37,7 +37,7 @@ Outcome LaggedNewton::renew(const Stage& stage, State& y) {
   updates_ = 0;
   ++renewals_;
   y.x = stage.ax + stage.gamma * y.v;
-  return matrix_->renew(stage.t, y, stage.gamma);
+  return matrix_->renew(stage, y);
 }
 
 bool LaggedNewton::stagnates(double rate, bool improved) const {

@@ -5,7 +5,7 @@
 namespace drape::solver {
 
 StageResult StageSolver::one_system(const Stage& stage, const Vectors& f_explicit, State& y) {
-  const Outcome prepared = system_.prepare(stage.gamma);
+  const Outcome prepared = system_.prepare(stage.gamma, stage.inertia);
   if (prepared != Outcome::success) return {prepared, 0, 0};
   prescribe(ode_.pins, y.v);
   system_.evaluate(stage, &f_explicit, y);

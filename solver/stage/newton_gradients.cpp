@@ -67,8 +67,8 @@ double NewtonGradients::precondition() {
 /// Whether the error that d had five iterations ago is a small part of d; in the norm of M, |d|² = 2 E_kin.
 bool NewtonGradients::settled(const Vectors& d) const { return falls_.sum() <= unseen * unseen * 2 * kinetic_energy(ode_, d); }
 
-LinearResult NewtonGradients::solve(const SparseMatrix& J, double gamma, const Vectors& r, Vectors& d) {
-  const Outcome prepared = system_.prepare(gamma, distant_gamma);
+LinearResult NewtonGradients::solve(const SparseMatrix& J, double gamma, double inertia, const Vectors& r, Vectors& d) {
+  const Outcome prepared = system_.prepare(gamma, inertia, distant_gamma);
   if (prepared != Outcome::success) return {prepared, 0};
   r_ = r;
   d.setZero(r.rows(), 3);

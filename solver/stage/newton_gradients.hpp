@@ -24,8 +24,8 @@ class NewtonGradients {
   /// Prepares for new values of J: the upper triangle, 3N × 3N.
   void prepare(const SparseMatrix& J);
 
-  /// J d ≈ r for the matrix that was prepared last, made for this γ; r is 0 in pinned coordinates.
-  LinearResult solve(const SparseMatrix& J, double gamma, const Vectors& r, Vectors& d);
+  /// J d ≈ r for the matrix that was prepared last, made for this γ and μ; r is 0 in pinned coordinates.
+  LinearResult solve(const SparseMatrix& J, double gamma, double inertia, const Vectors& r, Vectors& d);
 
  private:
   double precondition();

@@ -57,7 +57,7 @@ void NewtonSearch::solve(const Stage& stage, const Vectors& guess, NewtonSystem&
   for (int k = 0; k < most_matrices && result.updates < options_.max_updates; ++k) {
     result.outcome = Outcome::not_finite;
     if (!y.v.allFinite() || !system_.residual().allFinite()) return;
-    result.outcome = newton.renew(stage.t, y, stage.gamma);
+    result.outcome = newton.renew(stage, y);
     if (result.outcome != Outcome::success) return;
     const LinearResult solved = newton.solve(system_.residual(), d_);
     result.cg_iterations += solved.iterations;

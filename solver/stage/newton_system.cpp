@@ -24,9 +24,12 @@ NewtonSystem::NewtonSystem(const SplitOde& ode, const Options& options, StageSys
       factors_(factors(*options.linear_solver, ode.particles())),
       factor_(*ode.work) {}
 
-Outcome NewtonSystem::renew(double t, const State& y, double gamma) {
+Outcome NewtonSystem::renew(const Stage& stage, const State& y) {
   gamma_ = 0;
-  ode_.newton_matrix(t, y.x, y.v, gamma, part_, J_);
+  inertia_ = stage.inertia;
+  ode_.newton_matrix(stage.t, y.x, y.v, stage.gamma, part_, J_);
+  if (inertia_ != 1)
+    for (Eigen::Index i = 0; i < J_.rows(); ++i) J_.coeffRef(i, i) += (inertia_ - 1) * ode_.mass[i / 3];
   Outcome outcome = Outcome::success;
   if (factors_) {
     outcome = factor_.factor(J_);
@@ -34,12 +37,12 @@ Outcome NewtonSystem::renew(double t, const State& y, double gamma) {
     if (!gradients_) gradients_.emplace(ode_, options_, system_);
     gradients_->prepare(J_);
   }
-  if (outcome == Outcome::success) gamma_ = gamma;
+  if (outcome == Outcome::success) gamma_ = stage.gamma;
   return outcome;
 }
 
 LinearResult NewtonSystem::solve(const Vectors& r, Vectors& d) {
-  if (gradients_) return gradients_->solve(J_, gamma_, r, d);
+  if (gradients_) return gradients_->solve(J_, gamma_, inertia_, r, d);
   factor_.solve(r, d);
   return {};
 }

@@ -17,8 +17,8 @@ class NewtonSystem {
   bool empty() const { return gamma_ == 0; }
   double gamma() const { return gamma_; }  ///< γ of the last renewal, 0 if there is no matrix
 
-  /// Evaluates the Jacobian at this state, and factors it unless conjugate gradients solve.
-  Outcome renew(double t, const State& y, double gamma);
+  /// Evaluates the Jacobian at this state with the stage's γ and μ, and factors it unless conjugate gradients solve.
+  Outcome renew(const Stage& stage, const State& y);
 
   /// J d = r, both N × 3; r is 0 in pinned coordinates.
   LinearResult solve(const Vectors& r, Vectors& d);
@@ -32,7 +32,7 @@ class NewtonSystem {
   SparseMatrix J_;
   NewtonFactor factor_;                       ///< of J, if it factors
   std::optional<NewtonGradients> gradients_;  ///< if it does not, from the first renewal on
-  double gamma_ = 0;
+  double gamma_ = 0, inertia_ = 1;
 };
 
 }  // namespace drape::solver

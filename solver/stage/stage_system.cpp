@@ -97,16 +97,18 @@ StageSystem::StageSystem(const SplitOde& ode, const Merged& merged, const Option
   work_.entries = A_.nonZeros();
 }
 
-Outcome StageSystem::prepare(double gamma, double different) {
-  return std::abs(gamma - gamma_) <= different * gamma_ ? Outcome::success : make(gamma, gamma * gamma);
+Outcome StageSystem::prepare(double gamma, double inertia, double different) {
+  const bool near = std::abs(gamma - gamma_) <= different * gamma_ && std::abs(inertia - inertia_) <= different * inertia_;
+  return near ? Outcome::success : make(gamma, gamma * gamma, inertia);
 }
 
-Outcome StageSystem::prepare_damping(double gamma) { return gamma == gamma_ ? Outcome::success : make(gamma, 0); }
+Outcome StageSystem::prepare_damping(double gamma) { return gamma == gamma_ ? Outcome::success : make(gamma, 0, 1); }
 
-Outcome StageSystem::make(double gamma, double springs) {
+Outcome StageSystem::make(double gamma, double springs, double inertia) {
   gamma_ = gamma;
+  inertia_ = inertia;
   ++work_.builds;
-  Eigen::Map<Eigen::ArrayXd>(A_.valuePtr(), A_.nonZeros()) = mass_ - springs * stiffness_ - gamma * damping_;
+  Eigen::Map<Eigen::ArrayXd>(A_.valuePtr(), A_.nonZeros()) = inertia * mass_ - springs * stiffness_ - gamma * damping_;
   const Outcome outcome = cg_.factor(A_);
   if (outcome != Outcome::success) gamma_ = 0;
   return outcome;
@@ -133,6 +135,10 @@ void StageSystem::evaluate(const Stage& stage, const Vectors* f_explicit, State&
   if (touches()) contacts_->impose(stage, y);
   if (f_explicit == nullptr) {
     ode_.force(stage.t, y.x, y.v, r_);
+    if (stage.start != nullptr && ode_.mean_excess) {
+      q_ = 2 * y.x - *stage.start;
+      ode_.mean_excess(stage.t, *stage.start, q_, r_);
+    }
   } else {
     multiply(ode_.stiffness, y.x, r_);
     ++work_.products;
@@ -145,7 +151,7 @@ void StageSystem::evaluate(const Stage& stage, const Vectors* f_explicit, State&
     }
     r_ += *f_explicit;
   }
-  flat(r_) = momentum_ * (flat(stage.av) - flat(y.v)) + stage.gamma * flat(r_);
+  flat(r_) = stage.inertia * momentum_ * (flat(stage.av) - flat(y.v)) + stage.gamma * flat(r_);
 }
 
 bool StageSystem::adapt_contacts(const Stage& stage, const Vectors* f_explicit, State& y, double noise, bool settled) {

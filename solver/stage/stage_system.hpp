@@ -16,16 +16,16 @@ struct StageResult {
   int cg_iterations = 0;
 };
 
-/// The equation of a stage as r(v) = M (av − v) + γ f = 0, with the constant matrix A = M − γ² K − γ D for corrections of v. A
-/// is assembled again only when γ changes.
+/// The equation of a stage as r(v) = μ M (av − v) + γ f = 0, with the constant matrix A = μ M − γ² K − γ D for corrections of
+/// v. A is assembled again only when γ or μ changes.
 ///
 /// Particles that are pinned in all three directions have only their diagonal in A. Only the constructor allocates.
 class StageSystem {
  public:
   StageSystem(const SplitOde& ode, const Options& options, ContactResponse* contacts);
 
-  /// Assembles and factors A for this γ, unless its own γ differs by less than `different`, relatively.
-  Outcome prepare(double gamma, double different = 1e-12);
+  /// Assembles and factors A for this γ and μ, unless its own γ differs by less than `different`, relatively.
+  Outcome prepare(double gamma, double inertia = 1, double different = 1e-12);
 
   /// Assembles and factors M − γ D in place of A, for methods whose springs are explicit.
   Outcome prepare_damping(double gamma);
@@ -82,7 +82,7 @@ class StageSystem {
   struct Merged;
   StageSystem(const SplitOde& ode, const Merged& merged, const Options& options, ContactResponse* contacts);
 
-  Outcome make(double gamma, double springs);
+  Outcome make(double gamma, double springs, double inertia);
   const Filter& filtered() const { return touches() ? contacts_->filter() : pinned_; }
 
   const SplitOde& ode_;
@@ -92,7 +92,7 @@ class StageSystem {
   SparseMatrix A_;
   Eigen::ArrayXd mass_, stiffness_, damping_;  // each aligned with the entries of A
   Eigen::ArrayXd momentum_, spring_;           // mass and diagonal of K, three times each, as coordinates lie in memory
-  double gamma_ = 0;
+  double gamma_ = 0, inertia_ = 1;
   Vectors r_, d_, q_;
   LinearCounters work_;
 };

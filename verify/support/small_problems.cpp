@@ -65,6 +65,7 @@ Problem manufactured(const std::string& name, const std::vector<Pin>& pins) {
     f_expl(t, x, v, f);
     f += linear(x, v);
   };
+  ode.mean_excess = Nonlinear::mean_excess;
   ode.jacobian = [K = threefold(ode.stiffness), D = threefold(ode.damping)](double t, const Vectors& x, const Vectors& v,
                                                                             SparseMatrix& df_dx, SparseMatrix& df_dv) {
     Eigen::MatrixXd dx = K, dv = D;
@@ -117,6 +118,16 @@ Vectors Nonlinear::force(double t, const Vectors& x, const Vectors& v) {
     f.row(s.j) -= pull;
   }
   return f;
+}
+
+void Nonlinear::mean_excess(double t, const Vectors& x0, const Vectors& x1, Vectors& f) {
+  for (const Spring& s : springs) {
+    const Eigen::RowVector3d r0 = x0.row(s.j) - x0.row(s.i), r1 = x1.row(s.j) - x1.row(s.i), middle = (r0 + r1) / 2;
+    const auto root = [](const Eigen::RowVector3d& r) { return std::sqrt(1 + r.squaredNorm()); };
+    const Eigen::RowVector3d pull = a(t) * (2 / (root(r0) + root(r1)) - 1 / root(middle)) * middle;
+    f.row(s.i) += pull;
+    f.row(s.j) -= pull;
+  }
 }
 
 void Nonlinear::jacobian(double t, const Vectors& x, const Vectors& v, Eigen::MatrixXd& df_dx, Eigen::MatrixXd& df_dv) {
@@ -172,6 +183,7 @@ Problem problem_named(const std::string& name) {
 std::string identifier(std::string name) {
   std::ranges::replace(name, '-', '_');
   std::ranges::replace(name, '/', '_');
+  std::ranges::replace(name, '.', '_');
   return name;
 }
 

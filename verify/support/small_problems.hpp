@@ -51,6 +51,10 @@ SparseMatrix laplacian(double Spring::*weight);
 struct Nonlinear {
   static Vectors force(double t, const Vectors& x, const Vectors& v);
 
+  /// Adds what the mean force between x0 and x1 has more than that in the middle: the energy of a spring is a(t) sqrt(1 +
+  /// |r|²).
+  static void mean_excess(double t, const Vectors& x0, const Vectors& x1, Vectors& f);
+
   /// Adds to the derivatives, both 3N × 3N.
   static void jacobian(double t, const Vectors& x, const Vectors& v, Eigen::MatrixXd& df_dx, Eigen::MatrixXd& df_dv);
 };

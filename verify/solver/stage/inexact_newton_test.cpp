@@ -45,7 +45,7 @@ struct Solved {
     r.setZero(cloth.ode.particles(), 3);
     cloth.ode.force(0, y.x, y.v, r);
     solver::filter(cloth.ode.pins, r);
-    EXPECT_EQ(newton.renew(0, y, gamma), Outcome::success);
+    EXPECT_EQ(newton.renew({gamma, 0, y.x, y.v}, y), Outcome::success);
     result = newton.solve(r, d);
     SparseMatrix J;
     cloth.ode.newton_matrix(0, y.x, y.v, gamma, solver::Jacobian::whole, J);
