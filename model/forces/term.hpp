@@ -7,6 +7,7 @@
 
 #include "model/forces/fused/law.hpp"
 #include "model/sheet/sheet.hpp"
+#include "solver/split_ode.hpp"
 
 namespace drape::model {
 
@@ -42,9 +43,16 @@ struct Term {
   std::function<void(const Configuration&, Vectors& f)> force;                 ///< all of it explicit; absent: none
   std::function<double(const Vectors& x)> energy;                              ///< [J]; absent: none
   std::function<void(const Configuration&, const JacobianEntries&)> jacobian;  ///< of law and force; absent: zero
+  /// Adds the compliant constraints that stand for all of `law` except `unconstrained_law`; absent: none, they stand for
+  /// nothing.
+  std::function<void(std::vector<solver::CompliantConstraint>& all)> list_constraints;
+  GridLaw unconstrained_law;
   GridLaw active_law;   ///< part of `law` that neither has an energy nor only dissipates
   bool active = false;  ///< whether `force` neither has an energy nor only dissipates
   bool needs_normals = false;
+
+  /// The part of `law` that no constraint stands for.
+  const GridLaw& law_without_constraints() const { return list_constraints ? unconstrained_law : law; }
 };
 
 /// A row of the table of forces. `make` returns nothing if the sheet does not have the force.
