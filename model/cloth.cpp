@@ -16,7 +16,8 @@ namespace {
 
 struct CountedTerm {
   Term term;
-  bool in_explicit_force;  ///< whether K x + D v is not all of it
+  bool in_explicit_force;       ///< whether K x + D v is not all of it
+  bool in_unconstrained_force;  ///< whether compliant constraints do not stand for all of it
   std::int64_t* evaluations;
 };
 
@@ -27,6 +28,10 @@ class Forces {
 
   /// Sets f and counts.
   void force(double t, const Vectors& x, const Vectors& v, Vectors& f, bool whole);
+  void unconstrained_force(double t, const Vectors& x, const Vectors& v, Vectors& f);
+
+  bool has_constraints() const;
+  std::vector<solver::CompliantConstraint> constraints() const;
 
   /// For the energy guard, whose evaluations do not count as work of a method: sets f, uncounted.
   void whole(double t, const Vectors& x, const Vectors& v, Vectors& f) { add_up(whole_law_, {t, x, v, normals_of(x)}, f); }
@@ -53,7 +58,7 @@ class Forces {
   Grid grid_;
   GridLaw law_;
   std::vector<CountedTerm> terms_;
-  std::unique_ptr<FusedForces> whole_law_, explicit_law_, active_law_;  ///< null if the law is zero
+  std::unique_ptr<FusedForces> whole_law_, explicit_law_, unconstrained_law_, active_law_;  ///< null if the law is zero
   Vectors normals_;
   Normals vertex_normals_;
   bool needs_normals_ = false;
@@ -68,7 +73,7 @@ Forces::Forces(const Sheet& sheet, solver::Counters& work, Plan& plan)
       jacobians_(work.counter("jacobians", "evaluations of the exact Jacobian")),
       newton_matrices_(work.counter("newton_matrices", "assemblies of the Newton matrix from the exact Jacobian")),
       normal_evaluations_(work.counter("normals", "evaluations of all vertex normals")) {
-  GridLaw active;
+  GridLaw active, unconstrained;
   for (const TermKind& kind : term_kinds()) {
     const std::string name(kind.name);
     std::int64_t& evaluations = work.counter("force/" + name, "evaluations of: " + std::string(kind.description));
@@ -79,13 +84,16 @@ Forces::Forces(const Sheet& sheet, solver::Counters& work, Plan& plan)
     needs_normals_ = needs_normals_ || term->needs_normals;
     law_ += term->law;
     active += term->active_law;
+    unconstrained += term->law_without_constraints();
     const bool in_explicit_force = term->force || term->law.explicit_part().acts();
-    terms_.push_back({std::move(*term), in_explicit_force, &evaluations});
+    const bool unconstrained_acts = term->force || term->law_without_constraints().acts();
+    terms_.push_back({std::move(*term), in_explicit_force, unconstrained_acts, &evaluations});
   }
   const auto fused = [&](const GridLaw& law) { return law.acts() ? std::make_unique<FusedForces>(grid_, law) : nullptr; };
   whole_law_ = fused(law_);
   explicit_law_ = fused(law_.explicit_part());
   active_law_ = fused(active);
+  if (has_constraints()) unconstrained_law_ = fused(unconstrained);
   if (needs_normals_) normals_.resize(grid_.particles(), 3);
   plan.normals = needs_normals_;
 }
@@ -115,6 +123,24 @@ void Forces::force(double t, const Vectors& x, const Vectors& v, Vectors& f, boo
   ++(whole ? forces_ : explicit_forces_);
   add_up(whole ? whole_law_ : explicit_law_, configuration(t, x, v), f);
   for (const CountedTerm& counted : terms_) *counted.evaluations += whole || counted.in_explicit_force ? 1 : 0;
+}
+
+/// Counted as explicit, which they are to methods that need them.
+void Forces::unconstrained_force(double t, const Vectors& x, const Vectors& v, Vectors& f) {
+  ++explicit_forces_;
+  add_up(unconstrained_law_, configuration(t, x, v), f);
+  for (const CountedTerm& counted : terms_) *counted.evaluations += counted.in_unconstrained_force ? 1 : 0;
+}
+
+bool Forces::has_constraints() const {
+  return std::ranges::any_of(terms_, [](const CountedTerm& counted) { return bool(counted.term.list_constraints); });
+}
+
+std::vector<solver::CompliantConstraint> Forces::constraints() const {
+  std::vector<solver::CompliantConstraint> all;
+  for (const CountedTerm& counted : terms_)
+    if (counted.term.list_constraints) counted.term.list_constraints(all);
+  return all;
 }
 
 bool Forces::has_active() const {
@@ -176,6 +202,8 @@ std::shared_ptr<Reaction> respond(const ContactRule& rule, const std::shared_ptr
     };
     return {};
   }
+  ode.compliant_constraints = {};  // a reaction depends on the whole force
+  ode.unconstrained_force = {};
   auto reaction = std::make_shared<Reaction>(contacts, rule, ode.mass);
   const auto whole = std::make_shared<Vectors>(ode.particles(), 3);
   const auto force = ode.force;
@@ -239,6 +267,12 @@ Cloth compile(const Scene& scene) {
   ode.damping = forces->damping();
   ode.force = [forces](double t, const Vectors& x, const Vectors& v, Vectors& f) { forces->force(t, x, v, f, true); };
   ode.explicit_force = [forces](double t, const Vectors& x, const Vectors& v, Vectors& f) { forces->force(t, x, v, f, false); };
+  if (forces->has_constraints()) {
+    ode.compliant_constraints = [forces] { return forces->constraints(); };
+    ode.unconstrained_force = [forces](double t, const Vectors& x, const Vectors& v, Vectors& f) {
+      forces->unconstrained_force(t, x, v, f);
+    };
+  }
   ode.potential_energy = [forces](double, const Vectors& x) { return forces->energy(x); };
   ode.mean_excess = [forces](double, const Vectors& x0, const Vectors& x1, Vectors& f) { forces->mean_excess(x0, x1, f); };
   ode.without_energy = cloth.plan.without_energy;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <any>
 #include <functional>
 #include <optional>
 #include <string>
@@ -67,6 +68,7 @@ class Integrator {
   Scratch scratch_;
   SubStepping sub_stepping_;
   StepError step_error_;
+  std::any kept_;
   Step step_;
   const bool extrapolates_;  ///< whether the history is longer than the method needs
   double tolerance_;

@@ -40,10 +40,17 @@ void generalized_alpha_half(Step& s);
 void newmark(Step& s);
 void hht(Step& s);
 void energy_momentum(Step& s);
+void xpbd(Step& s);
+void xpbd_jacobi(Step& s);
+void baraff_witkin_cg(Step& s);
+void desbrun(Step& s);
+void kang(Step& s);
+void strain_limited(Step& s);
 
 namespace {
 
 using Stages = Method::Stages;
+using Repeats = Method::Repeats;
 constexpr Method method_rows[] = {
     {.name = "imex-euler",
      .description = "IMEX Euler (3.23)",
@@ -261,6 +268,49 @@ constexpr Method method_rows[] = {
      .step = energy_momentum,
      .meets_obstacles = false,
      .needs_energies = true},
+    {.name = "xpbd",
+     .description = "extended position-based dynamics, 20 sub-steps of one Gauss-Seidel sweep unless named as xpbd/4x5",
+     .order = 1,
+     .stages = Stages::linear,
+     .step = xpbd,
+     .meets_obstacles = false,
+     .repeats = Repeats::sub_steps_and_sweeps},
+    {.name = "xpbd-jacobi",
+     .description = "the same with Jacobi sweeps",
+     .order = 1,
+     .stages = Stages::linear,
+     .step = xpbd_jacobi,
+     .meets_obstacles = false,
+     .repeats = Repeats::sub_steps_and_sweeps},
+    {.name = "baraff-witkin-cg",
+     .description = "baraff-witkin by conjugate gradients as in the paper, with the symmetric part of the Jacobian",
+     .order = 1,
+     .stages = Stages::linearised,
+     .step = baraff_witkin_cg,
+     .meets_obstacles = false},
+    {.name = "desbrun",
+     .description = "IMEX Euler of Desbrun, by a dense inverse, which then restores the angular momentum",
+     .order = 1,
+     .stages = Stages::own,
+     .step = desbrun,
+     .meets_obstacles = false},
+    {.name = "kang",
+     .description = "IMEX Euler of Kang, which divides by the diagonal: does not converge where there is damping",
+     .order = 1,
+     .stages = Stages::own,
+     .step = kang,
+     .meets_obstacles = false,
+     .repeats = Repeats::sweeps,
+     .converges = false},
+    {.name = "strain-limited",
+     .description = "Verlet with springs a hundred times softer, then cut to a tenth of strain (Provot): does not converge",
+     .order = 1,
+     .stages = Stages::none,
+     .step = strain_limited,
+     .meets_obstacles = false,
+     .sub_steps = true,
+     .repeats = Repeats::sweeps,
+     .converges = false},
 };
 
 constexpr auto thesis_rows =

@@ -14,15 +14,19 @@ struct Method {
   std::string_view description;  ///< a few words, with the equation
   int order;
   /// linear: one system a stage, with the constant matrix; linearised: one system a stage, with the exact Jacobian and
-  /// without the stage solver; none: no systems that the program knows of.
-  enum class Stages { none, linear, nonlinear, linearised } stages;
+  /// without the stage solver; own: systems with the constant matrix that the method itself solves, or does not quite; none: no
+  /// systems that the program knows of.
+  enum class Stages { none, linear, nonlinear, linearised, own } stages;
   void (*step)(Step&);
   int history = 1;              ///< points of the history that it reads, the start of the step among them
   int forces = 0;               ///< how many of these with a force or an acceleration
   bool meets_obstacles = true;  ///< whether its stages end where contacts are defined
   bool sub_steps = false;       ///< whether it divides its steps by a stability limit of its own
   bool needs_energies = false;  ///< whether every elastic force must be the gradient of an energy
-  bool in_thesis = false;       ///< true for velocity Verlet as well, which is measured beside its methods
+  /// What users may ask for by METHOD/SWEEPS, or by METHOD/SUB_STEPSxSWEEPS.
+  enum class Repeats { none, sweeps, sub_steps_and_sweeps } repeats = Repeats::none;
+  bool converges = true;   ///< whether its error vanishes with the step; if not, `order` is that without what hinders it
+  bool in_thesis = false;  ///< true for velocity Verlet as well, which is measured beside its methods
 
   bool implicit() const { return stages == Stages::linear || nonlinear(); }  ///< whether it uses the stage solver
   bool nonlinear() const { return stages == Stages::nonlinear; }

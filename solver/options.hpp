@@ -51,6 +51,8 @@ struct Options {
   int max_updates = 2000;        ///< fixed-point updates a stage before it counts as not converged
   int max_cg_iterations = 5000;  ///< iterations a linear solve before it counts as not converged
   double verlet_fraction = 0.9;  ///< sub-step of `verlet` as a fraction of its stability limit
+  int sub_steps = 20;            ///< of `xpbd` a step
+  int sweeps = 1;                ///< over all constraints a sub-step, or over all rows of the matrix a step
   StepControl control;
   ErrorControl error_control;
   double stage_accuracy = 0.1;  ///< error left in an accelerated stage over the error of the time step

@@ -31,6 +31,18 @@ struct Contact {
   double friction = 0;                                 ///< η, Coulomb's coefficient
 };
 
+/// An energy ½ C²/α of a function C of the positions of two or three particles, as methods need it that move positions towards
+/// C = 0   [Macklin, Müller, Chentanez 2016].
+struct CompliantConstraint {
+  enum class Kind {
+    distance,     ///< C = |x1 − x0| − rest [m]
+    right_angle,  ///< C = <x1 − x0, x2 − x0> [m²]
+  } kind;
+  std::array<int, 3> particles;  ///< of x0, x1, x2; the last is not used by `distance`
+  double rest;                   ///< [m], 0 if not used
+  double compliance;             ///< α [m/N], of right angles [m³/N], positive
+};
+
 /// The part of the Jacobian in a Newton matrix.
 enum class Jacobian {
   whole,
@@ -50,6 +62,10 @@ struct SplitOde {
   using Force = std::function<void(double t, const Vectors& x, const Vectors& v, Vectors& f)>;
   Force force;           ///< K x + D v + f_expl
   Force explicit_force;  ///< f_expl
+
+  /// The compliant constraints whose energies are part of the potential energy, in a fixed order; absent: there are none.
+  std::function<std::vector<CompliantConstraint>()> compliant_constraints;
+  Force unconstrained_force;  ///< force without theirs; absent: that is all of it
 
   /// Potential energy [J] of the conservative forces.
   std::function<double(double t, const Vectors& x)> potential_energy;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <any>
 #include <cmath>
 #include <vector>
 
@@ -51,6 +52,7 @@ struct Step {
   Scratch& scratch;
   SubStepping& sub_stepping;
   StepError& error;
+  std::any& kept;  ///< empty until the method calls `keep`
 
   double t = 0;
   double h = 0;
@@ -65,6 +67,13 @@ struct Step {
   const State& y0() const { return history[0].y; }
   const State& ym1() const { return history[1].y; }
   State& y1() { return next.y; }
+
+  /// What the method makes of the ODE at its first step and keeps.
+  template <class Kept>
+  Kept& keep() {
+    if (!kept.has_value()) kept.emplace<Kept>(ode);
+    return *std::any_cast<Kept>(&kept);
+  }
 
   /// f_expl of a point of this step, evaluated at most once.
   const Vectors& explicit_force(Point& point, double time) const {

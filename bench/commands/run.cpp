@@ -74,6 +74,8 @@ Group run_group(const RunArguments& a) {
   for (const std::string& name : named_methods(a.methods, scene)) {
     spec.options.stage = a.options.stage;
     spec.options.linear_solver = a.options.linear_solver;
+    spec.options.sub_steps = a.options.sub_steps;
+    spec.options.sweeps = a.options.sweeps;
     choose_method(spec, name);
     if (!scene.obstacles.empty() && !spec.method->meets_obstacles)
       throw std::invalid_argument(

@@ -52,6 +52,7 @@ void Meter::watch(solver::SplitOde& ode) {
   };
   ode.force = counted(ode.force);
   ode.explicit_force = counted(ode.explicit_force);
+  if (ode.unconstrained_force) ode.unconstrained_force = counted(ode.unconstrained_force);
   ode.newton_matrix = [this, inner = counted(ode.newton_matrix)](auto&&... arguments) {
     ++newton_matrices_;
     inner(arguments...);

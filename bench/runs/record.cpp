@@ -32,6 +32,10 @@ std::vector<results::Parameter> parameters(const RunSpec& spec, int particles) {
     all.push_back({"max_cg_iterations", double(o.max_cg_iterations), "1", "iterations a solve before it counts as failed"});
   }
   if (spec.method->sub_steps) all.push_back({"verlet_fraction", o.verlet_fraction, "1", "sub-step over its stability limit"});
+  if (spec.method->repeats == solver::Method::Repeats::sub_steps_and_sweeps)
+    all.push_back({"sub_steps", double(o.sub_steps), "1", "sub-steps a step"});
+  if (spec.method->repeats != solver::Method::Repeats::none)
+    all.push_back({"sweeps", double(o.sweeps), "1", "sweeps a sub-step, or a step if there are none"});
   if (spec.method->nonlinear()) {
     if (o.stage->accelerated)
       all.push_back({"stage_accuracy", o.stage_accuracy, "1", "error left in a stage over the error of the time step"});
@@ -56,6 +60,7 @@ std::string_view stage_solver(const RunSpec& spec) {
     case solver::Method::Stages::none: return "none";
     case solver::Method::Stages::linear: return "linear";
     case solver::Method::Stages::linearised: return "linearised";
+    case solver::Method::Stages::own: return "own";
     case solver::Method::Stages::nonlinear: break;
   }
   return spec.options.stage->name;

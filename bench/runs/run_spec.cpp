@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <span>
 #include <sstream>
 #include <stdexcept>
@@ -13,11 +14,46 @@
 namespace drape::bench {
 namespace {
 
+/// More would take minutes a step.
+constexpr int most_repeats = 100'000;
+
+using Repeats = solver::Method::Repeats;
+
 std::string expected(const solver::Method& method) {
   using Stages = solver::Method::Stages;
+  if (method.repeats == Repeats::sub_steps_and_sweeps)
+    return fmt::format("{}/SUB_STEPSxSWEEPS/LINEAR_SOLVER, whole numbers from 1 to {}", method.name, most_repeats);
+  if (method.repeats == Repeats::sweeps)
+    return fmt::format("{}/SWEEPS, a whole number from 1 to {}", method.name, most_repeats);
   if (!method.implicit()) return fmt::format("{}, it leaves no solver to choose", method.name);
   if (method.stages == Stages::linear) return fmt::format("{}/LINEAR_SOLVER, its stages are linear", method.name);
   return fmt::format("{}/STAGE_SOLVER/LINEAR_SOLVER", method.name);
+}
+
+bool set_repeats(int& repeats, std::string_view text) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), repeats);
+  return error == std::errc() && end == text.data() + text.size() && repeats >= 1 && repeats <= most_repeats;
+}
+
+/// Whether the text is SWEEPS or SUB_STEPSxSWEEPS, as the method has it, which is set then.
+bool set_repeats(const solver::Method& method, std::string_view text, solver::Options& options) {
+  solver::Options wanted = options;
+  const std::size_t x = text.find('x');
+  const bool both = method.repeats == Repeats::sub_steps_and_sweeps;
+  if (method.repeats == Repeats::none || both != (x != std::string_view::npos)) return false;
+  if (both && !set_repeats(wanted.sub_steps, text.substr(0, x))) return false;
+  if (!set_repeats(wanted.sweeps, both ? text.substr(x + 1) : text)) return false;
+  options = wanted;
+  return true;
+}
+
+/// The same text, empty if it is the usual one.
+std::string repeats(const solver::Method& method, const solver::Options& options) {
+  const solver::Options usual;
+  const bool both = method.repeats == Repeats::sub_steps_and_sweeps;
+  if (both && (options.sub_steps != usual.sub_steps || options.sweeps != usual.sweeps))
+    return fmt::format("/{}x{}", options.sub_steps, options.sweeps);
+  return method.repeats == Repeats::sweeps && options.sweeps != usual.sweeps ? fmt::format("/{}", options.sweeps) : "";
 }
 
 template <class Row>
@@ -29,6 +65,7 @@ bool knows(std::span<const Row> table, std::string_view name) {
 
 std::string RunSpec::method_name() const {
   std::string name(method->name);
+  name += repeats(*method, options);
   if (method->nonlinear() && options.stage != &solver::stage_kinds().front()) name += fmt::format("/{}", options.stage->name);
   if (method->implicit() && options.linear_solver != &solver::linear_solvers().front())
     name += fmt::format("/{}", options.linear_solver->name);
@@ -43,6 +80,7 @@ void choose_method(RunSpec& spec, const std::string& name) {
   spec.method = &solver::method(first);
   const solver::Method& method = *spec.method;
   std::size_t next = 1;
+  if (next < parts.size() && set_repeats(method, parts[next], spec.options)) ++next;
   if (next < parts.size() && method.nonlinear() && knows(solver::stage_kinds(), parts[next]))
     spec.options.stage = &solver::stage_kind(parts[next++]);
   if (next < parts.size() && method.implicit()) spec.options.linear_solver = &solver::linear_solver(parts[next++]);

@@ -17,7 +17,8 @@ struct RunSpec {
   double step;  ///< [s]
   solver::Options options;
 
-  /// The method with its stage and linear solvers where they are not the usual ones: "bdf2", "bdf2/fixed-point/ic0".
+  /// The method with its sub-steps, sweeps, stage and linear solvers where they are not the usual ones: "bdf2",
+  /// "bdf2/fixed-point/ic0", "xpbd/1x20".
   std::string method_name() const;
 };
 

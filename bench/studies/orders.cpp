@@ -52,7 +52,7 @@ OrdersOnScene orders_on(const model::Scene& scene, bool quick, const Methods& me
 }  // namespace
 
 std::vector<Job> orders(const Question& question) {
-  const Methods methods = all_or(question.methods);
+  const Methods methods = converging_or(question.methods);
   std::vector<Job> jobs;
   for (const model::Scene& scene : scenes(question.quick)) {
     const std::string name = "orders-" + scene.name;

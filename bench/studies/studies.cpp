@@ -86,6 +86,13 @@ Methods all_or(Methods methods) {
   return methods;
 }
 
+Methods converging_or(Methods methods) {
+  if (!methods.empty()) return methods;
+  methods = all_or({});
+  std::erase_if(methods, [](const solver::Method* method) { return !method->converges; });
+  return methods;
+}
+
 const Study& study(std::string_view name) { return base::find_named(studies(), "study", name); }
 
 }  // namespace drape::bench

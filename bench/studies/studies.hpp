@@ -17,6 +17,9 @@ using Methods = std::vector<const solver::Method*>;
 /// All methods if none were asked for.
 Methods all_or(Methods methods);
 
+/// All that converge if none were asked for.
+Methods converging_or(Methods methods);
+
 /// What one asks a study.
 struct Question {
   bool quick = false;                      ///< a short form for tests

@@ -274,7 +274,7 @@ std::vector<results::Table> tolerance_tables(const std::vector<ControlledRuns>& 
 }  // namespace
 
 std::vector<Job> tolerance(const Question& question) {
-  const Methods methods = all_or(question.methods);
+  const Methods methods = converging_or(question.methods);
   const std::vector<Setting> list = settings(question.quick);
   const auto compute = [=](Checkpoint& checkpoint) {
     std::vector<ControlledRuns> all;

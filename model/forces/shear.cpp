@@ -34,6 +34,17 @@ void quadrant_jacobian(const Configuration& c, EdgeEnds P, EdgeEnds Q, double ka
   add_edge_pair(dv, Q, Q, kappa_d * p * p.transpose());
 }
 
+/// Right angles of the quadrants: each at one corner of its cell, between the edges that end there.
+void list_quadrants(const std::vector<Cell>& all, double compliance, std::vector<solver::CompliantConstraint>& constraints) {
+  for (const Cell& cell : all)
+    for (const int a : {0, 1})
+      for (const int b : {0, 1})
+        constraints.push_back({solver::CompliantConstraint::Kind::right_angle,
+                               {cell.corner[a][b], cell.corner[1 - a][b], cell.corner[a][1 - b]},
+                               0,
+                               compliance});
+}
+
 }  // namespace
 
 /// Conservative shear: W = ½ G <s_u, s_v>² with the viscous stress dG d/dt <s_u, s_v>. Every particle evaluates it in its
@@ -70,6 +81,8 @@ std::optional<Term> make_shear(const Sheet& sheet) {
         add_pull(f, q, 0.5 * excess * (p0 + p1));
       }
   };
+  if (kappa > 0) term.list_constraints = [=](auto& constraints) { list_quadrants(*all, 1 / kappa, constraints); };
+  term.unconstrained_law.cell.shear_rate = kappa_d;
   term.jacobian = [=](const Configuration& c, const JacobianEntries& entries) {
     if (entries.curvature == Curvature::tension) return;
     for (const Cell& cell : *all)

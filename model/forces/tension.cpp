@@ -32,6 +32,14 @@ std::optional<Term> make_tension(const Sheet& sheet) {
       add_pull(f, ends, along(k, edge) * edge.width * excess * middle);
     }
   };
+  term.list_constraints = [=](std::vector<solver::CompliantConstraint>& constraints) {
+    for (const Edge& edge : *all)
+      if (along(k, edge) > 0)
+        constraints.push_back({solver::CompliantConstraint::Kind::distance,
+                               {edge.i, edge.j, edge.j},
+                               edge.length,
+                               edge.length / (along(k, edge) * edge.width)});
+  };
   term.jacobian = [=](const Configuration& c, const JacobianEntries& entries) {
     for (const Edge& edge : *all) {
       const Eigen::Vector3d d = c.x.row(edge.j) - c.x.row(edge.i);

@@ -7,6 +7,7 @@
 
 #include "model/forces/fused/law.hpp"
 #include "model/sheet/sheet.hpp"
+#include "solver/split_ode.hpp"
 
 namespace drape::model {
 
@@ -50,7 +51,15 @@ struct Term {
   GridLaw active_law;           ///< part of `law` that neither has an energy nor only dissipates
   bool active = false;          ///< whether `force` neither has an energy nor only dissipates
   bool without_energy = false;  ///< whether it has an elastic part that is not the gradient of `energy`
+
+  /// Adds the compliant constraints that stand for all of `law` except `unconstrained_law`; absent: none, they stand for
+  /// nothing.
+  std::function<void(std::vector<solver::CompliantConstraint>& all)> list_constraints;
+  GridLaw unconstrained_law;
   bool needs_normals = false;
+
+  /// The part of `law` that no constraint stands for.
+  const GridLaw& law_without_constraints() const { return list_constraints ? unconstrained_law : law; }
 };
 
 /// A row of the table of forces. `make` returns nothing if the sheet does not have the force.

@@ -83,6 +83,7 @@ solver::Point advance(const solver::Method& method, const solver::SplitOde& ode,
   solver::Point next = point(Eigen::VectorXd::Zero(2));
   solver::Scratch scratch{none, none, none, {}};
   solver::StepError error;
+  std::any kept;
   solver::SubStepping sub_stepping{.limit = method.sub_steps ? h : 0, .substeps = substeps, .limits = limits};
   solver::Step step{.ode = ode,
                     .options = options,
@@ -93,6 +94,7 @@ solver::Point advance(const solver::Method& method, const solver::SplitOde& ode,
                     .scratch = scratch,
                     .sub_stepping = sub_stepping,
                     .error = error,
+                    .kept = kept,
                     .h = h};
   method.step(step);
   if (step.result.outcome != solver::Outcome::success)

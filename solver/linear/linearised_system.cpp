@@ -34,7 +34,7 @@ LinearisedSystem::LinearisedSystem(const SplitOde& ode)
 }
 
 /// Row by row, which costs next to nothing beside the factors, whatever the patterns of the two derivatives.
-void LinearisedSystem::assemble() {
+void LinearisedSystem::merge_derivatives() {
   const int n = static_cast<int>(A_.rows());
   A_.setZero();  // keeps its memory
   for (int i = 0; i < n; ++i) {
@@ -55,14 +55,32 @@ void LinearisedSystem::assemble() {
   A_.finalize();
 }
 
-Outcome LinearisedSystem::factor(double gamma, double t, const State& y) {
+Outcome LinearisedSystem::make(double gamma, double t, const State& y) {
   gamma_ = gamma;
   ode_.jacobian(t, y.x, y.v, df_dx_, df_dv_);
-  assemble();
+  merge_derivatives();
   ++work_.builds;
   ++work_.factorisations;
   work_.entries = A_.nonZeros();
-  if (!std::isfinite(A_.coeffs().sum())) return Outcome::not_finite;
+  return std::isfinite(A_.coeffs().sum()) ? Outcome::success : Outcome::not_finite;
+}
+
+Outcome LinearisedSystem::assemble(double gamma, double t, const State& y) {
+  const Outcome outcome = make(gamma, t, y);
+  if (!gradients_) gradients_.emplace(ode_.particles(), *ode_.work);
+  if (outcome == Outcome::success) gradients_->prepare(A_, ode_.mass);
+  return outcome;
+}
+
+LinearResult LinearisedSystem::solve_symmetric(const Vectors& r, double tolerance, int max_iterations, Vectors& d) {
+  right_ = r;
+  filter(ode_.pins, right_);
+  ++work_.updates;
+  return gradients_->solve(A_, right_, d, tolerance * right_.norm(), max_iterations);
+}
+
+Outcome LinearisedSystem::factor(double gamma, double t, const State& y) {
+  if (const Outcome outcome = make(gamma, t, y); outcome != Outcome::success) return outcome;
   if (!klu_.factor(A_)) return Outcome::breakdown;
   work_.bytes += klu_.bytes();
   return Outcome::success;

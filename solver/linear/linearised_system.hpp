@@ -1,5 +1,8 @@
 #pragma once
 
+#include <optional>
+
+#include "solver/linear/block_jacobi.hpp"
 #include "solver/linear/counters.hpp"
 #include "solver/linear/klu_factor.hpp"
 #include "solver/outcome.hpp"
@@ -15,8 +18,15 @@ class LinearisedSystem {
  public:
   explicit LinearisedSystem(const SplitOde& ode);
 
-  /// Makes A of the Jacobian at (t, y).
+  /// Makes A of the Jacobian at (t, y) and factors it.
   Outcome factor(double gamma, double t, const State& y);
+
+  /// Makes A of the Jacobian at (t, y), for `solve_symmetric`.
+  Outcome assemble(double gamma, double t, const State& y);
+
+  /// Solves ½ (A + Aᵀ) d = r to |residual| ≤ tolerance |r|, by block-Jacobi preconditioned conjugate gradients; d = 0 in pinned
+  /// coordinates, whose rows and columns are those of the identity: the filter of Algorithm 7.
+  LinearResult solve_symmetric(const Vectors& r, double tolerance, int max_iterations, Vectors& d);
 
   /// f = ∂f/∂x x.
   void multiply_stiffness(const Vectors& x, Vectors& f);
@@ -28,7 +38,8 @@ class LinearisedSystem {
   void solve(const State& r, State& k);
 
  private:
-  void assemble();
+  Outcome make(double gamma, double t, const State& y);
+  void merge_derivatives();
 
   const SplitOde& ode_;
   std::vector<bool> pinned_;  ///< 3N
@@ -36,6 +47,7 @@ class LinearisedSystem {
   Vectors right_;
   double gamma_ = 0;
   KluFactor klu_;
+  std::optional<BlockJacobiGradients> gradients_;  ///< from the first `assemble` on
   LinearCounters work_;
 };
 

@@ -96,7 +96,7 @@ using TimeCase = std::tuple<std::string, NamedMaterial, Motion>;
 /// Every force alone in the most general motion, all together in every motion.
 std::vector<TimeCase> time_cases() {
   std::vector<TimeCase> all;
-  for (const Method& method : solver::methods())
+  for (const Method& method : small_problems::converging_methods())
     for (const NamedMaterial& material : single_materials())
       for (const Motion& motion : motions())
         if (method.order <= 3 && motion.moving && (material.name.starts_with("all") || (motion.curved && motion.free)))

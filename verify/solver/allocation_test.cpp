@@ -132,7 +132,7 @@ TEST(ExplicitMethods, DoNotAllocate) {
 TEST_P(Allocations, AreSeenIfTheForceAllocates) {
   const model::Override small[] = {{"grid.n", "10"}};
   model::Cloth cloth = model::compile(model::load_scene("hung-edge", small));
-  for (auto* f : {&cloth.ode.force, &cloth.ode.explicit_force})
+  for (auto* f : {&cloth.ode.force, &cloth.ode.explicit_force, &cloth.ode.unconstrained_force})
     *f = [original = *f](double t, const Vectors& x, const Vectors& v, Vectors& force) {
       used(std::vector<double>(1).data());
       original(t, x, v, force);

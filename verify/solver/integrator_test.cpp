@@ -84,7 +84,7 @@ TEST_P(IntegratorWith, ShowsEveryAcceptedStep) {
     EXPECT_NEAR(step.t, t + step.h, 1e-14);
     EXPECT_EQ(step.t, integrator.time());
     EXPECT_TRUE(same(step.y, integrator.state()));
-    EXPECT_LE(distance(step.y, problem.exact(step.t)), 0.1);
+    EXPECT_TRUE(distance(step.y, problem.exact(step.t)) <= 0.1 || !method.converges);
     t = step.t;
     updates += step.updates;
     ++seen;

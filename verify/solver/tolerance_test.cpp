@@ -85,7 +85,7 @@ const Setting& setting_named(const std::string& name) {
 
 class ToleranceOf : public testing::TestWithParam<std::tuple<std::string, std::string>> {};
 INSTANTIATE_TEST_SUITE_P(, ToleranceOf,
-                         testing::Combine(testing::ValuesIn(names(solver::methods())), testing::ValuesIn(names(settings))),
+                         testing::Combine(testing::ValuesIn(names(converging_methods())), testing::ValuesIn(names(settings))),
                          [](const auto& test) { return identifier(std::get<0>(test.param)) + "_" + std::get<1>(test.param); });
 
 TEST_P(ToleranceOf, IsThatOfTheError) {

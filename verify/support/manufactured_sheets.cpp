@@ -135,11 +135,12 @@ void Load::evaluate(double t) {
 }
 
 void add_load(SplitOde& ode, const SplitOde::Force& add) {
-  for (SplitOde::Force* force : {&ode.force, &ode.explicit_force})
-    *force = [original = *force, add](double t, const Vectors& x, const Vectors& v, Vectors& f) {
-      original(t, x, v, f);
-      add(t, x, v, f);
-    };
+  for (SplitOde::Force* force : {&ode.force, &ode.explicit_force, &ode.unconstrained_force})
+    if (*force)
+      *force = [original = *force, add](double t, const Vectors& x, const Vectors& v, Vectors& f) {
+        original(t, x, v, f);
+        add(t, x, v, f);
+      };
 }
 
 Problem unloaded(const Grid& grid, const Material& material, const Motion& motion) {

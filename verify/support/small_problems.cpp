@@ -169,6 +169,12 @@ Problem breaking(double time) {
 
 std::vector<Problem> problems() { return {free_particles(), pinned_particle(), partly_pinned(), towed_particle()}; }
 
+std::vector<Method> converging_methods() {
+  std::vector<Method> converging;
+  std::ranges::copy_if(solver::methods(), std::back_inserter(converging), &Method::converges);
+  return converging;
+}
+
 std::vector<Method> implicit_methods() {
   std::vector<Method> implicit;
   std::ranges::copy_if(solver::methods(), std::back_inserter(implicit), &Method::implicit);

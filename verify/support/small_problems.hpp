@@ -79,6 +79,7 @@ std::vector<std::string> names(Rows&& rows) {
   return result;
 }
 std::vector<Method> implicit_methods();
+std::vector<Method> converging_methods();
 Problem problem_named(const std::string& name);
 
 /// A name as GoogleTest wants it in the name of a test.

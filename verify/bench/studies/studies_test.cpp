@@ -14,6 +14,7 @@
 #include "solver/methods.hpp"
 #include "verify/support/bench_integrators.hpp"
 #include "verify/support/slow.hpp"
+#include "verify/support/small_problems.hpp"
 #include "verify/support/temporary_folder.hpp"
 
 namespace drape::verify::studies_test {
@@ -301,11 +302,12 @@ TEST_F(ProgramStudies, ErrorsAreNearTheirTolerances) {
   const auto known = AnyOf("met: within 10", HasSubstr("under by"), "cost explodes", "fails");
   for (const char* name : {"tolerance-hung-edge", "tolerance-chain"}) {
     const auto found = verdicts(*std::ranges::find(all, name, &Table::name));
-    EXPECT_THAT(found, AllOf(SizeIs(2 * solver::methods().size()), Each(known))) << name << ": one for each row";
+    EXPECT_THAT(found, AllOf(SizeIs(2 * small_problems::converging_methods().size()), Each(known)))
+        << name << ": one for each row";
     EXPECT_THAT(found, Contains("met: within 10").Times(testing::Ge(8))) << name;
   }
   const Table& summary = *std::ranges::find(all, "tolerance-summary", &Table::name);
-  for (const solver::Method& method : solver::methods()) {
+  for (const solver::Method& method : small_problems::converging_methods()) {
     const bool may_fail = (method.explicit_springs() && !method.sub_steps) || method.name == "imex-euler";  // its cost explodes
     const testing::Matcher<std::string> proportional = testing::Eq("met: proportional"), none = testing::Eq("no run ends");
     EXPECT_THAT(verdicts_of(summary, std::string(method.name)),

@@ -124,7 +124,7 @@ class Order : public testing::TestWithParam<std::tuple<std::string, std::string>
   const Problem problem = problem_named(std::get<1>(GetParam()));
 };
 INSTANTIATE_TEST_SUITE_P(, Order,
-                         testing::Combine(testing::ValuesIn(names(solver::methods())), testing::ValuesIn(names(problems()))),
+                         testing::Combine(testing::ValuesIn(names(converging_methods())), testing::ValuesIn(names(problems()))),
                          [](const auto& test) { return identifier(std::get<0>(test.param)) + "_" + std::get<1>(test.param); });
 
 TEST_P(Order, IsTheDeclaredOneWithEqualSteps) {
