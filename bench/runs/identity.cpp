@@ -10,11 +10,11 @@ namespace drape::bench {
 namespace {
 
 std::string all_of(const solver::Options& o, int threads) {
-  return fmt::format("{} {} {} {} {} {} {}\n{} {} {}\n{} {} {} {} {}\n{} {}\n", o.loop_tolerance, o.cg_tolerance, o.max_updates,
-                     o.max_cg_iterations, o.verlet_fraction, o.stage_accuracy, threads, o.control.min_updates,
+  return fmt::format("{} {} {} {} {} {} {}\n{} {} {}\n{} {} {} {} {}\n{} {}\n{} {}\n", o.loop_tolerance, o.cg_tolerance,
+                     o.max_updates, o.max_cg_iterations, o.verlet_fraction, o.stage_accuracy, threads, o.control.min_updates,
                      o.control.max_updates, o.control.factor, o.error_control.tolerance, o.error_control.length,
                      o.error_control.duration, o.error_control.global, o.error_control.most_steps, o.stage->name,
-                     o.linear_solver->name);
+                     o.linear_solver->name, o.passes, o.chebyshev_radius);
 }
 
 }  // namespace
