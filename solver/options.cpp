@@ -6,6 +6,7 @@ namespace drape::solver {
 
 std::span<const StageKind> stage_kinds() {
   using Matrix = StageKind::Matrix;
+  using Iteration = StageKind::Iteration;
   static constexpr StageKind table[] = {
       {.name = "auto",
        .description = "begins with anderson, goes on with newton where that is cheaper",
@@ -26,6 +27,26 @@ std::span<const StageKind> stage_kinds() {
        .description = "with the Jacobian of tension and damping, without shear and bending",
        .matrix = Matrix::tension_newton,
        .accelerated = true},
+      {.name = "projective",
+       .description = "projective dynamics: ten passes of the loop, which are its local and global steps",
+       .matrix = Matrix::constant,
+       .passes = 10},
+      {.name = "printed-loop",
+       .description = "Alg. 6 to the letter: one tolerance, until CG takes no iteration",
+       .matrix = Matrix::constant,
+       .iteration = Iteration::printed_loop},
+      {.name = "chebyshev",
+       .description = "the loop with Chebyshev's weights, for a spectral radius of 0.97",
+       .matrix = Matrix::constant,
+       .iteration = Iteration::chebyshev},
+      {.name = "lbfgs",
+       .description = "L-BFGS over the last eight updates, begun with the constant matrix",
+       .matrix = Matrix::constant,
+       .iteration = Iteration::lbfgs},
+      {.name = "vbd",
+       .description = "vertex block descent: Gauss-Seidel over particles, with Chebyshev's weights",
+       .matrix = Matrix::constant,
+       .iteration = Iteration::vertices},
   };
   return table;
 }

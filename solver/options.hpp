@@ -36,6 +36,8 @@ struct StageKind {
   std::string_view description;
   enum class Matrix { constant, newton, tension_newton, chosen } matrix;
   bool accelerated = false;  ///< by Anderson's method, until the estimated error is small; else until the residual is small
+  enum class Iteration { loop, printed_loop, chebyshev, lbfgs, vertices } iteration = Iteration::loop;  ///< if not accelerated
+  int passes = 0;  ///< updates after which a stage counts as solved, 0: when its residual is small
 };
 
 /// All stage solvers; the first is the default.
@@ -56,8 +58,16 @@ struct Options {
   StepControl control;
   ErrorControl error_control;
   double stage_accuracy = 0.1;  ///< error left in an accelerated stage over the error of the time step
+  int passes = 0;  ///< updates after which a stage that is not accelerated counts as solved [Etzmuß 2002, 3.4.3], 0: its kind's
+
+  /// Assumed spectral radius of the loop that `chebyshev` accelerates; the best one depends on scene and step.
+  double chebyshev_radius = 0.97;
+
   const StageKind* stage = &stage_kinds().front();
   const LinearSolver* linear_solver = &linear_solvers().front();
+
+  /// Updates after which a stage that is not accelerated counts as solved, 0: when its residual is small.
+  int accepted_passes() const { return passes > 0 ? passes : stage->passes; }
 };
 
 /// The options of the thesis: the fixed-point loop and CG with IC(0)   [Etzmuß 2002, 3.4].

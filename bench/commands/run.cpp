@@ -62,6 +62,10 @@ std::vector<std::string> named_methods(const std::vector<std::string>& names, co
   return all;
 }
 
+std::string ending_after_passes() {
+  return names_of(solver::stage_kinds(), [](const solver::StageKind& kind) { return !kind.accelerated; });
+}
+
 /// All methods with all steps.
 Group run_group(const RunArguments& a) {
   model::Scene scene = a.choice.load();
@@ -80,6 +84,9 @@ Group run_group(const RunArguments& a) {
     if (!scene.obstacles.empty() && !spec.method->meets_obstacles)
       throw std::invalid_argument(
           fmt::format("method '{}': expected one of {} in a scene with obstacles", name, for_obstacles()));
+    if (a.options.passes > 0 && spec.method->nonlinear() && spec.options.stage->accelerated)
+      throw std::invalid_argument(fmt::format("--passes: method '{}': expected one of the stage solvers {}, not {}", name,
+                                              ending_after_passes(), spec.options.stage->name));
     for (const double h : a.steps) {
       spec.step = h;
       group.push_back(spec);
@@ -137,6 +144,9 @@ void add_solver_options(CLI::App& command, RunArguments& a) {
       ->type_name("X")
       ->check(between(1e-9, 1.0))
       ->capture_default_str();
+  command.add_option("--passes", a.options.passes, "updates after which a stage counts as solved, whatever its residual")
+      ->type_name("M")
+      ->check(between(1, 1000000));
   command.add_option("--control", a.control, "step control by the number of updates a step")
       ->option_text("MIN MAX")
       ->check(between(0, 1000000))

@@ -10,11 +10,11 @@ namespace drape::bench {
 namespace {
 
 std::string all_of(const solver::Options& o, int threads) {
-  return fmt::format("{} {} {} {} {} {} {}\n{} {} {}\n{} {} {} {} {}\n{} {} {}x{}\n", o.loop_tolerance, o.cg_tolerance,
+  return fmt::format("{} {} {} {} {} {} {}\n{} {} {}\n{} {} {} {} {}\n{} {} {}x{}\n{} {}\n", o.loop_tolerance, o.cg_tolerance,
                      o.max_updates, o.max_cg_iterations, o.verlet_fraction, o.stage_accuracy, threads, o.control.min_updates,
                      o.control.max_updates, o.control.factor, o.error_control.tolerance, o.error_control.length,
                      o.error_control.duration, o.error_control.global, o.error_control.most_steps, o.stage->name,
-                     o.linear_solver->name, o.sub_steps, o.sweeps);
+                     o.linear_solver->name, o.sub_steps, o.sweeps, o.passes, o.chebyshev_radius);
 }
 
 }  // namespace
@@ -23,7 +23,8 @@ std::string identity(const RunSpec& spec, const SweepOptions& options) {
   const std::string errors = options.reference ? fmt::format("errors to {}", options.agreement) : "no errors";
   const std::string frames = options.frames_every ? fmt::format("\nframes every {} s", *options.frames_every) : "";
   return base::long_hash_text(fmt::format("{}\n{} {}\n{}{}{}", model::to_toml(spec.scene), spec.method->name, spec.step,
-                             all_of(spec.options, base::threads_for(spec.scene.sheet.grid.particles())), errors, frames));
+                                          all_of(spec.options, base::threads_for(spec.scene.sheet.grid.particles())), errors,
+                                          frames));
 }
 
 std::string identity(const std::vector<Group>& groups, const SweepOptions& options) {

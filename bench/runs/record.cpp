@@ -39,8 +39,12 @@ std::vector<results::Parameter> parameters(const RunSpec& spec, int particles) {
   if (spec.method->nonlinear()) {
     if (o.stage->accelerated)
       all.push_back({"stage_accuracy", o.stage_accuracy, "1", "error left in a stage over the error of the time step"});
-    else
+    else if (o.accepted_passes() > 0)
+      all.push_back({"passes", double(o.accepted_passes()), "1", "updates after which a stage counts as solved"});
+    else if (o.stage->iteration != solver::StageKind::Iteration::printed_loop)  // it has CG's tolerance only
       all.push_back({"loop_tolerance", o.loop_tolerance, "1", "residual of the fixed-point loop over |b|"});
+    if (o.stage->iteration == solver::StageKind::Iteration::chebyshev)
+      all.push_back({"chebyshev_radius", o.chebyshev_radius, "1", "spectral radius that is assumed of the loop"});
     all.push_back({"max_updates", double(o.max_updates), "1", "updates a stage before it counts as failed"});
   }
   if (o.error_control.enabled())

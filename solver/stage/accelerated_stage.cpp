@@ -1,5 +1,6 @@
 #include "solver/stage/accelerated_stage.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -149,6 +150,7 @@ void AcceleratedStage::advance(State& y) {
 }
 
 bool AcceleratedStage::close_enough(const State& y) const {
+  if (stage_->residual > 0) return false;
   const double error = estimate_.error(size_, anderson_.smallest_response());
   return part_ == 1 && error <= StageSystem::allowed_error(*stage_, guess_, y);
 }
@@ -163,7 +165,7 @@ StageResult AcceleratedStage::solve(const Stage& stage, State& y) {
     system_.filter_residual(stage.gamma);
     estimate_.measure(system_.residual(), stage.gamma);
     if (result_.updates == 0) noise_ = system_.noise(y, stage.gamma);
-    if (result_.updates > 0 && estimate_.residual() <= noise_) break;
+    if (result_.updates > 0 && estimate_.residual() <= std::max(noise_, stage.residual)) break;
     if (!correct()) return result_;
     ++result_.updates;
     ++work_.updates;

@@ -13,7 +13,7 @@ namespace drape::solver {
 /// or with a new matrix; where that does not help, a line search follows.
 ///
 /// It ends when the estimate of the error of v (ErrorEstimate) is a small part of the error of the time step, which the
-/// distance between solution and first guess indicates (Stage::accuracy).
+/// distance between solution and first guess indicates (Stage::accuracy); or when |r| is small, if Stage::residual says so.
 class AcceleratedStage {
  public:
   AcceleratedStage(const SplitOde& ode, const Options& options, StageSystem& system);

@@ -19,14 +19,18 @@ StageResult StageSolver::fixed_point(const Stage& stage, const Vectors* f_explic
   const auto ended = [&](Outcome outcome) { return StageResult{outcome, result.updates, result.cg_iterations}; };
 
   const bool linear = f_explicit != nullptr, contacts = system_.touches();
+  const int passes = linear ? 0 : options_.accepted_passes();
   const double asked =
       stage.start != nullptr ? std::min(options_.loop_tolerance, exact_loop_tolerance) : options_.loop_tolerance;
   const double loop_tolerance = linear ? options_.cg_tolerance : asked;
-  const double cg_tolerance =
-      linear ? loop_tolerance : std::min(options_.cg_tolerance, loop_tolerance / 2);  // else the loop could not end
+  const double cg_tolerance = linear || passes > 0
+                                  ? options_.cg_tolerance
+                                  : std::min(options_.cg_tolerance, loop_tolerance / 2);  // else the loop could not end
   const int changing_updates = linear ? 10 : 50;
   StageSystem::Scale size{};
   for (;; ++result.updates, ++work_.updates) {
+    const bool accepted = passes > 0 && result.updates >= passes;
+    if (accepted && !contacts) return y.x = stage.ax + stage.gamma * y.v, ended(Outcome::success);
     system_.evaluate(stage, f_explicit, y);
     const bool solved = result.updates > 0;
     const bool changed =
@@ -39,8 +43,9 @@ StageResult StageSolver::fixed_point(const Stage& stage, const Vectors* f_explic
 
     const double residual = system_.residual().norm();
     if (!std::isfinite(residual)) return ended(Outcome::not_finite);
-    const bool guessed = !linear && !contacts && residual <= size.target(cg_tolerance);
-    if (solved ? !changed && residual <= size.target(loop_tolerance) : guessed) return ended(Outcome::success);
+    const bool guessed = !linear && !contacts && passes == 0 && residual <= size.target(cg_tolerance);
+    const bool enough = passes > 0 ? accepted : residual <= size.target(loop_tolerance);
+    if (solved ? !changed && enough : guessed) return ended(Outcome::success);
     if (result.updates == options_.max_updates) return ended(Outcome::not_converged);
 
     const LinearResult system = system_.correct(size.target(cg_tolerance));

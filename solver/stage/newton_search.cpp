@@ -1,5 +1,6 @@
 #include "solver/stage/newton_search.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace drape::solver {
@@ -67,12 +68,12 @@ void NewtonSearch::solve(const Stage& stage, const Vectors& guess, NewtonSystem&
     ++work_.updates;
     const double size = d_.norm(), rate = before > 0 ? size / before : 1;
     const double error = size / std::max(1 - rate, least_ahead);
-    if (error <= StageSystem::allowed_error(stage, guess, y)) {
+    if (stage.residual == 0 && error <= StageSystem::allowed_error(stage, guess, y)) {
       y.v += d_;
       return;
     }
     if (!follow(stage, y)) break;
-    if (system_.residual().norm() <= noise) return;
+    if (system_.residual().norm() <= std::max(noise, stage.residual)) return;
     before = size;
   }
   result.outcome = Outcome::not_converged;

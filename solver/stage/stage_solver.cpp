@@ -3,12 +3,16 @@
 #include <algorithm>
 
 #include "solver/stage/accelerated_stage.hpp"
+#include "solver/stage/stage_iteration.hpp"
 
 namespace drape::solver {
 
 StageSolver::StageSolver(const SplitOde& ode, const Options& options, ContactResponse* contacts)
     : ode_(ode), options_(options), system_(ode, options, contacts), work_(*ode.work) {
-  if (options.stage->accelerated) accelerated_ = std::make_unique<AcceleratedStage>(ode, options_, system_);
+  if (options.stage->accelerated)
+    accelerated_ = std::make_unique<AcceleratedStage>(ode, options_, system_);
+  else
+    iteration_ = make_iteration(ode, options_, system_);
 }
 
 StageSolver::~StageSolver() = default;
@@ -18,7 +22,11 @@ StageResult StageSolver::solve_linear(const Stage& stage, const Vectors& f_expli
 }
 
 StageResult StageSolver::solve(const Stage& stage, State& y) {
-  return accelerates() ? accelerated_->solve(stage, y) : fixed_point(stage, nullptr, y);
+  if (system_.touches()) return fixed_point(stage, nullptr, y);
+  if (accelerated_) return accelerated_->solve(stage, y);
+  if (iteration_) return iteration_->solve(stage, y);
+  const bool printed = options_.stage->iteration == StageKind::Iteration::printed_loop;
+  return printed ? printed_loop(stage, y) : fixed_point(stage, nullptr, y);
 }
 
 const Vectors& StageSolver::solve_damping(double gamma, const Vectors& r, StageResult& result) {

@@ -7,6 +7,7 @@
 namespace drape::solver {
 
 class AcceleratedStage;
+class StageIteration;
 
 /// Solves stages as the options say. All calls take the state with a first guess of v; they set its prescribed velocities.
 class StageSolver {
@@ -19,9 +20,10 @@ class StageSolver {
   /// whenever contacts change.
   StageResult solve_linear(const Stage& stage, const Vectors& f_explicit, State& y);
 
-  /// The whole stage, either accelerated, unless something is touched, or by the fixed-point loop: a simplified Newton method
+  /// The whole stage, as its kind says, or by the fixed-point loop where something is touched: a simplified Newton method
   /// with A for the Jacobian [Etzmuß 2002, (3.33)–(3.36), Alg. 6]. There the guess counts as a solution only if its own
-  /// residual passes the test of CG.
+  /// residual passes the test of CG. If the options accept a number of passes, no residual is tested; in contact the stage
+  /// ends after these when its contacts do not change any more.
   StageResult solve(const Stage& stage, State& y);
 
   /// The d of (M − γ D) d = r in the directions that pins leave free: one linear system, for methods whose springs are
@@ -44,10 +46,14 @@ class StageSolver {
   /// Algorithm 6, with the response to contacts. f̂ is given for linear stages with contacts.
   StageResult fixed_point(const Stage& stage, const Vectors* f_explicit, State& y);
 
+  /// Algorithm 6 to the letter, without contacts.
+  StageResult printed_loop(const Stage& stage, State& y);
+
   const SplitOde& ode_;
   const Options options_;
   StageSystem system_;
   std::unique_ptr<AcceleratedStage> accelerated_;  ///< if the options ask for it
+  std::unique_ptr<StageIteration> iteration_;      ///< if the options ask for one
   LinearCounters work_;
 };
 
