@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "bench/runs/run.hpp"
+#include "model/cloth.hpp"
 #include "solver/base/largest.hpp"
 
 namespace drape::bench {
