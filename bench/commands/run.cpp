@@ -10,6 +10,7 @@
 #include "bench/commands/output.hpp"
 #include "bench/commands/scene_choice.hpp"
 #include "bench/runs/frames.hpp"
+#include "model/cloth.hpp"
 #include "solver/base/atomic_file.hpp"
 #include "solver/base/threads.hpp"
 
@@ -53,12 +54,17 @@ solver::StepControl step_control(const std::vector<int>& bounds) {
 
 std::string for_obstacles() { return names_of(solver::methods(), std::mem_fn(&solver::Method::meets_obstacles)); }
 
+/// The elastic forces without an energy that keep the method from the scene; empty if none does.
+std::string in_the_way(const solver::Method& method, const model::Scene& scene) {
+  return method.needs_energies ? fmt::format("{}", fmt::join(model::forces_without_energy(scene.sheet), ", ")) : "";
+}
+
 /// "all" is every method that the scene is for, with the chosen stage and linear solvers.
 std::vector<std::string> named_methods(const std::vector<std::string>& names, const model::Scene& scene) {
   if (names != std::vector<std::string>{"all"}) return names;
   std::vector<std::string> all;
   for (const solver::Method& method : solver::methods())
-    if (scene.obstacles.empty() || method.meets_obstacles) all.emplace_back(method.name);
+    if ((scene.obstacles.empty() || method.meets_obstacles) && in_the_way(method, scene).empty()) all.emplace_back(method.name);
   return all;
 }
 
@@ -87,6 +93,8 @@ Group run_group(const RunArguments& a) {
     if (a.options.passes > 0 && spec.method->nonlinear() && spec.options.stage->accelerated)
       throw std::invalid_argument(fmt::format("--passes: method '{}': expected one of the stage solvers {}, not {}", name,
                                               ending_after_passes(), spec.options.stage->name));
+    if (const std::string forces = in_the_way(*spec.method, scene); !forces.empty())
+      throw std::invalid_argument(fmt::format("method '{}': expected elastic forces with energies, not {}", name, forces));
     for (const double h : a.steps) {
       spec.step = h;
       group.push_back(spec);

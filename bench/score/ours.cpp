@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "bench/runs/run.hpp"
+#include "model/cloth.hpp"
 #include "solver/base/largest.hpp"
 
 namespace drape::bench {
@@ -84,6 +85,9 @@ void check_methods(const std::vector<std::string>& methods, const model::Scene& 
     choose_method(cell, name);
     if (!scene.obstacles.empty() && !cell.method->meets_obstacles)
       throw std::invalid_argument(fmt::format("method '{}': expected one that meets obstacles, as the scene has some", name));
+    if (cell.method->needs_energies && !model::forces_without_energy(scene.sheet).empty())
+      throw std::invalid_argument(
+          fmt::format("method '{}': expected elastic forces with energies, as not all of the scene", name));
   }
 }
 

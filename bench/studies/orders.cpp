@@ -39,6 +39,7 @@ OrdersOnScene orders_on(const model::Scene& scene, bool quick, const Methods& me
   checkpoint.advance();
   std::vector<RefinedRun> runs;
   for (const solver::Method* method : methods) {
+    if (method->needs_energies && !cloth.plan.without_energy.empty()) continue;
     checkpoint.show(fmt::format("{} on {}", method->name, scene.name));
     const std::string name(method->name);
     auto curve = refine(tight(scene, name), name, cloth, reference, quick ? 1e6 : 4e7, checkpoint);

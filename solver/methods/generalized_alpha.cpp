@@ -38,10 +38,9 @@ void start_acceleration(Step& s) {
 // M (α_m a0 + (1 − α_m) a1) = f(t*, α_f y0 + (1 − α_f) y1),   t* = t0 + (1 − α_f) h   [Chung, Hulbert 1993]
 // solved for the state y* of the force, whose x* = ax + ξ v* and M v* = M av + g f(t*, x*, v*) with ξ = h β/γ.
 void alpha_step(Step& s, Alphas alphas) {
-  const bool begins = !s.now().has_f || s.w() == 0;
   start_acceleration(s);
-  const double h = s.h;
-  const AlphaCoefficients c(alphas, begins ? 0 : (alphas.m - alphas.f) / s.w());
+  const double h = s.h, w = s.w() > 0 ? s.w() : 1;  // the first step is as those of its size, though its a0 is that of t0
+  const AlphaCoefficients c(alphas, (alphas.m - alphas.f) / w);
   const State& y0 = s.y0();
   const Vectors& a0 = s.now().f;
   const double end = 1 - c.f, xi = h * c.beta / c.gamma, g = h * end * c.gamma / (1 - c.m);

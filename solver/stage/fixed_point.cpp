@@ -6,7 +6,7 @@
 namespace drape::solver {
 namespace {
 
-/// Of the loop where energies are kept only as far as stages are solved.
+/// Tolerance of the loop where energies are kept only as far as stages are solved.
 constexpr double exact_loop_tolerance = 1e-13;
 
 }  // namespace

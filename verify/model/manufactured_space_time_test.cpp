@@ -52,12 +52,14 @@ using Case = std::tuple<std::string, NamedMaterial, Motion>;
 
 const Motion general{.curved = true, .free = true, .moving = true};
 
-/// All forces together by every method; every force by the thesis' method, carried by tension where it must be.
+/// All forces together, or all with energies, by every method; every force by the thesis' method, carried by tension where it
+/// must be.
 std::vector<Case> cases() {
   std::vector<Case> all;
-  const NamedMaterial together = joint_materials().front();
+  const NamedMaterial together = joint_materials().front(), with_energies = joint_materials()[1];
   for (const Method& method : small_problems::converging_methods())
-    for (const bool free : {false, true}) all.emplace_back(method.name, together, Motion{true, free, true});
+    for (const bool free : {false, true})
+      all.emplace_back(method.name, method.needs_energies ? with_energies : together, Motion{true, free, true});
   for (const NamedMaterial& material : carried_materials())
     if (material.name != together.name && material.name != "membrane") all.emplace_back("bdf2", material, general);
   return all;

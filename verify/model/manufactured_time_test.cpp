@@ -93,13 +93,18 @@ Measured in_time(const Problem& problem, const Method& method) {
 
 using TimeCase = std::tuple<std::string, NamedMaterial, Motion>;
 
+bool takes(const Method& method, const NamedMaterial& material) {
+  return !method.needs_energies || model::forces_without_energy({five_by_four(), material.material}).empty();
+}
+
 /// Every force alone in the most general motion, all together in every motion.
 std::vector<TimeCase> time_cases() {
   std::vector<TimeCase> all;
   for (const Method& method : small_problems::converging_methods())
     for (const NamedMaterial& material : single_materials())
       for (const Motion& motion : motions())
-        if (method.order <= 3 && motion.moving && (material.name.starts_with("all") || (motion.curved && motion.free)))
+        if (method.order <= 3 && takes(method, material) && motion.moving &&
+            (material.name.starts_with("all") || (motion.curved && motion.free)))
           all.emplace_back(method.name, material, motion);
   return all;
 }

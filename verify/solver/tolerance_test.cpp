@@ -91,6 +91,7 @@ INSTANTIATE_TEST_SUITE_P(, ToleranceOf,
 TEST_P(ToleranceOf, IsThatOfTheError) {
   const Method& method = solver::method(std::get<0>(GetParam()));
   const Sheet sheet(setting_named(std::get<1>(GetParam())));
+  if (method.needs_energies && !sheet.cloth.ode.without_energy.empty()) GTEST_SKIP() << "not for this sheet";
   const Motion truth = sheet.run("esdirk4", sheet.control(1e-9, false));
   ASSERT_EQ(truth.result.outcome, Outcome::success);
   const bool cheap = method.order > 1 && (method.nonlinear() || method.name == "verlet");

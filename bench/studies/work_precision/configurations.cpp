@@ -109,6 +109,8 @@ constexpr std::string_view searched[] = {"imex-euler",    "implicit-euler", "sbd
 /// Why a method is not tried; empty if it is. `named`: it was asked for by its name.
 std::string reason_against(const solver::Method& method, const model::Scene& scene, Search search, bool named) {
   if (!scene.obstacles.empty() && !method.meets_obstacles) return "meets no obstacles";
+  if (method.needs_energies && !model::forces_without_energy(scene.sheet).empty())
+    return "not all elastic forces have energies";
   if (!named && std::ranges::find(searched, method.name) == std::end(searched))
     return "both sides are searched alike; name it by --method";
   if (named || method.sub_steps || !tries_few(search) || std::ranges::find(few, method.name) != std::end(few)) return "";

@@ -107,6 +107,11 @@ const std::map<std::string_view, Residual> formulas = {
        return State{v - n.y0.v - n.h / 2 * n.acceleration(K + n.explicit_part(n.t0, n.y0.x, n.y0.v)),
                     n.y1.v - n.y0.v - n.h * n.acceleration(K + n.explicit_part(n.t0 + n.h / 2, x, v))};
      }},
+    {"newmark",
+     [](const Neighbours& n) {
+       const Vectors f = n.whole(n.t0, n.y0.x, n.y0.v) + n.whole(n.t1, n.y1.x, n.y1.v);
+       return State{n.y1.x - n.y0.x - n.h / 2 * (n.y0.v + n.y1.v), n.y1.v - n.y0.v - n.h / 2 * n.acceleration(f)};
+     }},
     {"explicit-euler",
      [](const Neighbours& n) {
        return State{n.y1.x - n.y0.x - n.h * n.y0.v, n.y1.v - n.y0.v - n.h * n.acceleration(n.whole(n.t0, n.y0.x, n.y0.v))};
@@ -341,9 +346,12 @@ TEST(MethodsOfSecondOrder, FollowAConstantAccelerationExactly) {
   }
 }
 
+/// They begin with the acceleration of the start in the place of one a part of a step away.
+bool begins_otherwise(const Method& m) { return m.name.starts_with("generalized-alpha") || m.name == "hht"; }
+
 TEST(MethodsOfSecondOrder, FollowALinearAccelerationExactlyInTheVelocity) {
   for (const Method& m : solver::methods()) {
-    if (m.order != 2) continue;
+    if (m.order != 2 || begins_otherwise(m)) continue;
     const auto [t, y] = fall(m.name, 0, 3);
     EXPECT_LE(largest((y.back().v - start.v).array() - 3 * t.back() * t.back() / 2), 1e-13) << m.name;
   }
