@@ -188,8 +188,10 @@ void add_run(CLI::App& app, const std::string& command_line) {
   a->output.sweep.command_line = command_line;
   command.add_option("--scene", a->choice.scene, "built-in scene or TOML file")->required()->type_name("NAME|FILE.toml");
   command
-      .add_option("--method", a->methods,
-                  "methods, with /STAGE_SOLVER and /LINEAR_SOLVER if not the first: bdf2,sbdf2/ic0,bdf2/newton; or all")
+      .add_option(
+          "--method", a->methods,
+          "methods, with /STAGE_SOLVER and /LINEAR_SOLVER if not the first: bdf2,sbdf2/ic0,bdf2/newton; with sub-steps and "
+          "sweeps: xpbd/4x5,kang/30; or all")
       ->required()
       ->type_name("A,B")
       ->delimiter(',')

@@ -30,17 +30,19 @@ std::string expected(const solver::Method& method) {
   return fmt::format("{}/STAGE_SOLVER/LINEAR_SOLVER", method.name);
 }
 
+bool begins_with_digit(std::string_view text) { return !text.empty() && text[0] >= '0' && text[0] <= '9'; }
+
 bool set_repeats(int& repeats, std::string_view text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), repeats);
   return error == std::errc() && end == text.data() + text.size() && repeats >= 1 && repeats <= most_repeats;
 }
 
-/// Whether the text is SWEEPS or SUB_STEPSxSWEEPS, as the method has it, which is set then.
+/// Whether the text is SWEEPS or SUB_STEPSxSWEEPS, as the method has it; sets these.
 bool set_repeats(const solver::Method& method, std::string_view text, solver::Options& options) {
   solver::Options wanted = options;
   const std::size_t x = text.find('x');
   const bool both = method.repeats == Repeats::sub_steps_and_sweeps;
-  if (method.repeats == Repeats::none || both != (x != std::string_view::npos)) return false;
+  if (both != (x != std::string_view::npos)) return false;
   if (both && !set_repeats(wanted.sub_steps, text.substr(0, x))) return false;
   if (!set_repeats(wanted.sweeps, both ? text.substr(x + 1) : text)) return false;
   options = wanted;
@@ -80,11 +82,12 @@ void choose_method(RunSpec& spec, const std::string& name) {
   spec.method = &solver::method(first);
   const solver::Method& method = *spec.method;
   std::size_t next = 1;
-  if (next < parts.size() && set_repeats(method, parts[next], spec.options)) ++next;
+  const bool repeated = next < parts.size() && method.repeats != Repeats::none && begins_with_digit(parts[next]);
+  const bool understood = !repeated || set_repeats(method, parts[next++], spec.options);
   if (next < parts.size() && method.nonlinear() && knows(solver::stage_kinds(), parts[next]))
     spec.options.stage = &solver::stage_kind(parts[next++]);
   if (next < parts.size() && method.implicit()) spec.options.linear_solver = &solver::linear_solver(parts[next++]);
-  if (next < parts.size() || name.ends_with('/'))
+  if (!understood || next < parts.size() || name.ends_with('/'))
     throw std::invalid_argument(fmt::format("method '{}': expected {}", base::quoted(name), expected(method)));
 }
 

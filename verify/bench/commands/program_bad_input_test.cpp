@@ -62,6 +62,10 @@ const std::vector<BadInput> bad_inputs = {
     {"OneOfTheMethods", run_with("--method", {"bdf2,rk9"}), {"'rk9'", "imex-euler, implicit-euler, sbdf2, bdf2"}},
     {"LinearSolver", run_with("--method", {"bdf2/lu"}), {"'lu'", "auto, ic0, mic0, cholesky, multigrid"}},
     {"LinearSolverOfVerlet", run_with("--method", {"verlet/cholesky"}), {"verlet/cholesky", "expected verlet"}},
+    {"NoSweeps", run_with("--method", {"xpbd/20x0"}), {"xpbd/20x0", "xpbd/SUB_STEPSxSWEEPS", "from 1 to 100000"}},
+    {"SweepsOnly", run_with("--method", {"xpbd/20"}), {"xpbd/20", "xpbd/SUB_STEPSxSWEEPS"}},
+    {"SubStepsOfSweeps", run_with("--method", {"kang/2x3"}), {"kang/2x3", "kang/SWEEPS"}},
+    {"SweepsOfVerlet", run_with("--method", {"verlet/3"}), {"verlet/3", "expected verlet"}},
     {"Study", {"study", "table-9"}, {"'table-9'", "hung-sheets"}},
     {"Format", run_with("--format", {"xml"}), {"--format", "xml", "table,csv,json"}},
 
