@@ -13,7 +13,7 @@ struct Stage {
   const Vectors& ax;
   const Vectors& av;
   double accuracy = 1e-3;  ///< part of the distance between guess and solution that may be left as an error
-  double residual = 0;     ///< |M (av − v) + γ f| [N s] at which an accelerated stage ends instead, if positive
+  double residual = 0;     ///< |M (av − v) + γ f| [N s] at which the stage ends instead of its tolerance, if positive
 };
 
 }  // namespace drape::solver

@@ -59,6 +59,8 @@ std::vector<Job> figure_3_3(const Question& question);
 std::vector<Job> figure_4_3(const Question& question);
 std::vector<Job> scaling(const Question& question);
 std::vector<Job> stability(const Question& question);
+std::vector<Job> stages(const Question& question);
+std::vector<Job> step_control(const Question& question);
 std::vector<Job> tolerance(const Question& question);
 std::vector<Job> work_precision(const Question& question);
 std::vector<Job> bars(const Question& question);
