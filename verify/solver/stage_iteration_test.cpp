@@ -27,7 +27,10 @@ Options with(const std::string& kind, double loop, double cg) {
 
 /// An implicit Euler step from the start of a problem, with a bad guess.
 struct Case {
-  explicit Case(const Problem& chosen) : problem(chosen) {}
+  explicit Case(const Problem& chosen) : problem(chosen) {
+    prescribe(problem.ode.pins, y.v);
+    y.x += gamma * y.v;
+  }
 
   Problem problem;
   const double gamma = 0.04;
@@ -74,18 +77,25 @@ TEST_P(Iterations, SolveTheStage) {
   }
 }
 
+/// The loop as printed compares with b where it ends, the others with b where they began.
 TEST_P(Iterations, EndAtTheirTolerance) {
   const auto& [kind, problem] = GetParam();
+  if (problem == "towed") GTEST_SKIP() << "A has no couplings with particles that are pinned, and b does not, either";
   int before = 0;
-  for (const double tolerance : {1e-2, 1e-5, 1e-8}) {
+  for (const double tolerance : {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9}) {
     Case c(problem_named(problem));
-    const StageResult result = c.solve(with(kind, tolerance, tolerance));
+    Options options = with(kind, tolerance, tolerance);
+    options.linear_solver = &solver::linear_solver("cholesky");
+    const double first = c.right_hand_side();
+    const StageResult result = c.solve(options);
     ASSERT_EQ(result.outcome, Outcome::success);
-    EXPECT_LE(c.residual().norm(), 5 * tolerance * c.right_hand_side()) << "b is that of the guess or of the solution";
-    EXPECT_GE(c.residual().norm(), 1e-4 * tolerance * c.right_hand_side()) << "more work than asked for";
-    EXPECT_GT(result.updates, before);
+    const double b = kind == "printed-loop" ? c.right_hand_side() : first;
+    EXPECT_LE(c.residual().norm(), tolerance * b * (1 + 1e-9)) << tolerance;
+    EXPECT_GE(c.residual().norm(), 1e-4 * tolerance * b) << "more work than asked for";
+    EXPECT_GE(result.updates, before);
     before = result.updates;
   }
+  EXPECT_GE(before, 5);
 }
 
 TEST_P(Iterations, GiveUpAfterTheAllowedUpdates) {
