@@ -64,6 +64,8 @@ std::vector<Job> conditioning(const Question& question);
 std::vector<Job> limits(const Question& question);
 std::vector<Job> scaling(const Question& question);
 std::vector<Job> stability(const Question& question);
+std::vector<Job> stages(const Question& question);
+std::vector<Job> step_control(const Question& question);
 std::vector<Job> tolerance(const Question& question);
 std::vector<Job> work_precision(const Question& question);
 std::vector<Job> bars(const Question& question);

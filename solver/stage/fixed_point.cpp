@@ -43,12 +43,13 @@ StageResult StageSolver::fixed_point(const Stage& stage, const Vectors* f_explic
 
     const double residual = system_.residual().norm();
     if (!std::isfinite(residual)) return ended(Outcome::not_finite);
-    const bool guessed = !linear && !contacts && passes == 0 && residual <= size.target(cg_tolerance);
-    const bool enough = passes > 0 ? accepted : residual <= size.target(loop_tolerance);
+    const double solved_to = stage.residual > 0 ? stage.residual / 2 : size.target(cg_tolerance);
+    const bool guessed = !linear && !contacts && passes == 0 && residual <= solved_to;
+    const bool enough = passes > 0 ? accepted : residual <= (stage.residual > 0 ? stage.residual : size.target(loop_tolerance));
     if (solved ? !changed && enough : guessed) return ended(Outcome::success);
     if (result.updates == options_.max_updates) return ended(Outcome::not_converged);
 
-    const LinearResult system = system_.correct(size.target(cg_tolerance));
+    const LinearResult system = system_.correct(solved_to);
     result.cg_iterations += system.iterations;
     y.v += system_.correction();
     if (system.outcome != Outcome::success) return ended(system.outcome);

@@ -25,13 +25,15 @@ StageResult StageIteration::solve(const Stage& stage, State& y) {
   prescribe(ode_.pins, y.v);
   evaluate(stage, y);
   const StageSystem::Scale size = system_.scale(y, stage.gamma);
-  const double linear_target = size.target(std::min(options_.cg_tolerance, options_.loop_tolerance / 2));
+  const double end = stage.residual > 0 ? stage.residual : size.target(options_.loop_tolerance);
+  const double linear_target =
+      stage.residual > 0 ? end / 2 : size.target(std::min(options_.cg_tolerance, options_.loop_tolerance / 2));
   const int passes = options_.accepted_passes();
   begin(y);
   for (;; ++result.updates, ++work_.updates) {
     const double residual = system_.residual().norm();
     if (!std::isfinite(residual)) return ended(Outcome::not_finite);
-    const double target = result.updates > 0 ? size.target(options_.loop_tolerance) : linear_target;
+    const double target = result.updates > 0 ? end : linear_target;
     if (passes > 0 ? result.updates == passes : residual <= target) return ended(Outcome::success);
     if (result.updates == options_.max_updates) return ended(Outcome::not_converged);
     const LinearResult advanced = advance(stage, y, linear_target);

@@ -132,6 +132,18 @@ TEST(ExplicitMethods, DoNotAllocate) {
   }
 }
 
+TEST(StageSolvers, DoNotAllocate) {
+  const model::Override small[] = {{"grid.n", "10"}};
+  const model::Cloth cloth = model::compile(model::load_scene("hung-edge", small));
+  using Matrix = solver::StageKind::Matrix;
+  for (const solver::StageKind& kind : solver::stage_kinds()) {
+    if (kind.matrix != Matrix::constant && kind.matrix != Matrix::chosen) continue;  // a new factor needs memory
+    Options options;
+    options.stage = &kind;
+    EXPECT_EQ(allocations_of_steps(cloth, solver::method("bdf2"), options), 0) << kind.name;
+  }
+}
+
 TEST_P(Allocations, AreSeenIfTheForceAllocates) {
   const model::Override small[] = {{"grid.n", "10"}};
   model::Cloth cloth = model::compile(model::load_scene("hung-edge", small));

@@ -96,6 +96,8 @@ const std::vector<BadInput> bad_inputs = {
     {"ControlNegative", run_with("--control", {"-1", "2"}), {"--control", "whole number from 0", "'-1'"}},
     {"ControlHalf", run_with("--control", {"1", "2.5"}), {"--control", "whole number", "'2.5'"}},
     {"ControlAlone", run_with("--control", {"5"}), {"--control", "2 required"}},
+    {"Passes", run_with("--passes", {"0"}), {"--passes", "from 1 to", "'0'"}},
+    {"PassesOfAcceleratedStages", run_with("--passes", {"2"}), {"--passes", "fixed-point, projective", "not auto"}},
     {"LoopToleranceZero", run_with("--loop-tolerance", {"0"}), {"--loop-tolerance", "from 1e-15 to 1", "'0'"}},
     {"LoopToleranceLarge", run_with("--loop-tolerance", {"1.1"}), {"--loop-tolerance", "from 1e-15 to 1", "'1.1'"}},
     {"LoopToleranceNaN", run_with("--loop-tolerance", {"nan"}), {"--loop-tolerance", "from 1e-15 to 1", "'nan'"}},

@@ -166,6 +166,8 @@ TEST(ProgramRun, HandsEveryOptionToTheSolver) {
   EXPECT_THAT(number(with({"--loop-tolerance", "1e-9"})[0], "updates"), Gt(number(usual[0], "updates")));
   EXPECT_THAT(number(with({"--cg-tolerance", "1e-9"})[0], "cg_iterations"), Gt(number(usual[0], "cg_iterations")));
   EXPECT_THAT(number(with({"--verlet-fraction", "0.1"})[1], "error_rms"), Lt(number(usual[1], "error_rms")));
+  const Words loop = tiny + Words{"--method", "bdf2/fixed-point", "--step", "0.01"};
+  EXPECT_THAT(csv(program, loop + Words{"--passes", "2"})[0], Contains(Row::value_type("updates", "10"))) << "in five steps";
   EXPECT_THAT(number(with({"--control", "0", "5"})[0], "steps"), Gt(number(usual[0], "steps")));
   EXPECT_THAT(number(with({"--stage-accuracy", "1e-6"})[2], "updates"), Gt(number(usual[2], "updates")));
   EXPECT_THAT(number(with({"--tolerance", "1e-7"})[2], "steps"), Gt(number(usual[2], "steps")));

@@ -403,6 +403,33 @@ TEST_F(ProgramStudies, EveryCellOfTheAtlasEndsInAVerdict) {
             numbers(table("steps"), "accurate", "method", "bdf2").at(0));
 }
 
+TEST_F(ProgramStudies, EveryStageSolverSolvesEveryStage) {
+  const auto all = tables("stages");
+  ASSERT_THAT(all, SizeIs(1));
+  EXPECT_EQ(rows(all[0]), 3u * (11 + 10)) << "the printed loop has a right-hand side of its own";
+  EXPECT_THAT(verdicts(all[0]), testing::IsEmpty()) << "of another sheet there is nothing to compare with";
+  const auto updates = [&](const char* solver) { return numbers(all[0], "updates", "solver", solver); };
+  for (const char* solver : {"fixed-point", "chebyshev 0.97", "lbfgs", "anderson", "vbd"}) {
+    ASSERT_THAT(updates(solver), SizeIs(6)) << solver;
+    EXPECT_LT(updates(solver)[0], updates(solver)[2]) << solver << ": from 0.1 |b| to 1e-5 |b|";
+    EXPECT_LE(updates(solver)[2], updates(solver)[5]) << solver << ": |b| is more than the momentum";
+  }
+  EXPECT_LT(updates("anderson")[2], updates("lbfgs")[2]);
+  EXPECT_LT(updates("lbfgs")[2], updates("fixed-point")[2]);
+  EXPECT_LT(10 * updates("anderson")[2], updates("vbd")[2]);
+}
+
+TEST_F(ProgramStudies, StepsByPassesAreComparedWithConstantOnes) {
+  const auto all = tables("step-control");
+  ASSERT_THAT(all, SizeIs(1));
+  ASSERT_EQ(rows(all[0]), 5u + 6 + 3);
+  EXPECT_THAT(verdicts(all[0]), SizeIs(6 + 3)) << "one for each controlled run";
+  EXPECT_THAT(numbers(all[0], "changes", "policy", "constant"), Each(0));
+  EXPECT_THAT(numbers(all[0], "changes", "policy", "passes"), Each(testing::Ge(1)));
+  const auto largest = numbers(all[0], "largest", "policy", "passes");
+  EXPECT_LT(largest.front(), largest.back()) << "with more passes allowed";
+}
+
 TEST_F(ProgramStudies, ScalingTellsWhatWasChosenAndWhatAnIterationMoves) {
   const auto all = tables("scaling");  // in the order of their names
   ASSERT_THAT(all, SizeIs(3));
