@@ -17,14 +17,18 @@ struct Method {
   /// without the stage solver; none: no systems that the program knows of.
   enum class Stages { none, linear, nonlinear, linearised } stages;
   void (*step)(Step&);
-  int history = 1;              ///< points of the history that it reads, the start of the step among them
-  int forces = 0;               ///< how many of these with a force or an acceleration
-  bool meets_obstacles = true;  ///< whether its stages end where contacts are defined
-  bool sub_steps = false;       ///< whether it divides its steps by a stability limit of its own
-  bool in_thesis = false;       ///< true for velocity Verlet as well, which is measured beside its methods
+  int history = 1;                   ///< points of the history that it reads, the start of the step among them
+  int forces = 0;                    ///< how many of these with a force or an acceleration
+  bool meets_obstacles = true;       ///< whether its stages end where contacts are defined
+  bool sub_steps = false;            ///< whether it divides its steps by a stability limit of its own
+  bool in_thesis = false;            ///< true for velocity Verlet as well, which is measured beside its methods
+  std::string_view own_family = {};  ///< of a method whose family the fields above do not tell
 
   bool implicit() const { return stages == Stages::linear || nonlinear(); }  ///< whether it uses the stage solver
   bool nonlinear() const { return stages == Stages::nonlinear; }
+
+  /// The kind of method by what a step solves, for example "semi-implicit": margins between methods are told family by family.
+  std::string_view family() const;
 
   /// Whether springs are explicit: their stability limits the steps, and a stage costs little more than a force.
   bool explicit_springs() const { return stages == Stages::none || sub_steps; }
