@@ -320,6 +320,14 @@ static_assert(std::all_of(method_rows, method_rows + thesis_rows, [](const Metho
 
 }  // namespace
 
+std::string_view Method::family() const {
+  if (!own_family.empty()) return own_family;
+  if (explicit_springs()) return "explicit";
+  if (stages == Stages::linear) return "semi-implicit";
+  if (stages == Stages::linearised) return "linearly implicit";
+  return history > 1 ? "implicit multi-step" : "implicit one-step";
+}
+
 std::span<const Method> methods() { return method_rows; }
 
 std::span<const Method> thesis_methods() { return methods().first(thesis_rows); }

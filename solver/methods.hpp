@@ -27,9 +27,13 @@ struct Method {
   enum class Repeats { none, sweeps, sub_steps_and_sweeps } repeats = Repeats::none;
   bool converges = true;   ///< whether its error vanishes with the step; if not, `order` is that without what hinders it
   bool in_thesis = false;  ///< true for velocity Verlet as well, which is measured beside its methods
+  std::string_view own_family = {};  ///< of a method whose family the fields above do not tell
 
   bool implicit() const { return stages == Stages::linear || nonlinear(); }  ///< whether it uses the stage solver
   bool nonlinear() const { return stages == Stages::nonlinear; }
+
+  /// The kind of method by what a step solves, for example "semi-implicit": margins between methods are told family by family.
+  std::string_view family() const;
 
   /// Whether springs are explicit: their stability limits the steps, and a stage costs little more than a force.
   bool explicit_springs() const { return stages == Stages::none || sub_steps; }

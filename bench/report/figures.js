@@ -210,10 +210,20 @@ function convergenceFigures(file, table) {
 }
 
 // Looks of classes, the best first: colours of Okabe and Ito, and marks for those who print in black and white.
-const classLooks =
-    [["#56B4E9", ""], ["#F0E442", "–"], ["#CFE8F7", "·"], ["#D55E00", "×"], ["#CC79A7", "+"], ["#999999", "…"]];
+const classLooks = [
+  ["#56B4E9", ""], ["#F0E442", "–"], ["#CFE8F7", "·"], ["#D55E00", "×"], ["#CC79A7", "+"], ["#999999", "…"],
+  ["#009E73", "△"], ["#E69F00", "□"]
+];
 
-const powerOfTen = (value) => (Number.isFinite(value) ? `10<sup>${Math.round(Math.log10(value))}</sup>` : "∞");
+const isPowerOfTen = (value) =>
+    !Number.isFinite(value) || Math.abs(Math.log10(value) - Math.round(Math.log10(value))) < 1e-9;
+
+/** Texts at some values of an axis: powers of ten where all are, else the numbers. */
+function ticksOf(values) {
+  const powers = values.every(isPowerOfTen),
+        finite = (value) => (powers ? `10<sup>${Math.round(Math.log10(value))}</sup>` : shortNumber(value));
+  return values.map((value) => (Number.isFinite(value) ? finite(value) : "∞"));
+}
 
 /** Lines between cells of which one is predicted to fail and the other is not. */
 function failingBorders(failing, x, y, colour) {
@@ -226,8 +236,8 @@ function failingBorders(failing, x, y, colour) {
   return lines;
 }
 
-/** The heat map of one method in its place k of the figure; xs and ys: the values that there are, from the least on. */
-function stabilityPanel(table, rows, xs, ys, k, colours) {
+/** The heat map of one curve in its place k of the figure; xs and ys: the values that there are, from the least on. */
+function mapPanel(table, rows, xs, ys, k, colours) {
   const [x, y, colour, outline] = ["x", "y", "colour", "outline"].map((part) => partOf(table, part));
   const details = detailsOf(table), looks = colour.classes.map((_, v) => classLooks[v % classLooks.length]);
   const suffix = k ? String(k + 1) : "", grid = () => ys.map(() => xs.map(() => null));
@@ -269,7 +279,7 @@ function stabilityPanel(table, rows, xs, ys, k, colours) {
   };
   const ticks = (values) => ({
     tickvals: values.map((_, at) => at),
-    ticktext: values.map(powerOfTen),
+    ticktext: ticksOf(values),
     showgrid: false,
     zeroline: false,
     ticks: "",
@@ -287,7 +297,8 @@ function stabilityPanel(table, rows, xs, ys, k, colours) {
   };
 }
 
-function stabilityFigures(file, table) {
+/** `words`: the title, what the figure says, and what stands beside a curve whose every cell is outlined. */
+function mapFigures(file, table, words) {
   const [x, y, curve, colour] = ["x", "y", "curve", "colour"].map((part) => partOf(table, part));
   const sheetOf = figureOf(table),
         valuesOf = (column, rows) => unique(rows.map((row) => row[column.name])).sort((a, b) => a - b);
@@ -296,7 +307,7 @@ function stabilityFigures(file, table) {
     const make = (width, colours) => {
       const columns = Math.min(methods.length, Math.max(1, Math.min(4, Math.floor(width / 180)))),
             lines = Math.ceil(methods.length / columns);
-      const panels = methods.map(([, of], k) => stabilityPanel(table, of, xs, ys, k, colours));
+      const panels = methods.map(([, of], k) => mapPanel(table, of, xs, ys, k, colours));
       const legend = colour.classes.map((name, v) => {
         const [color, mark] = classLooks[v % classLooks.length];
         return {
@@ -309,18 +320,17 @@ function stabilityFigures(file, table) {
         };
       });
       const height = 190 * lines + 110;
-      const titles =
-          methods.map(([name, of], k) => ({
-                        text: panels[k].failing.flat().every(Boolean) ? `${name}: predicted to fail everywhere` : name,
-                        showarrow: false,
-                        xref: `x${k ? k + 1 : ""} domain`,
-                        yref: `y${k ? k + 1 : ""} domain`,
-                        x: 0,
-                        y: 1,
-                        yanchor: "bottom",
-                        xanchor: "left",
-                        font: {size: 11, color: colours.text}
-                      }));
+      const titles = methods.map(([name, of], k) => ({
+                                   text: panels[k].failing.flat().every(Boolean) ? `${name}${words.everywhere}` : name,
+                                   showarrow: false,
+                                   xref: `x${k ? k + 1 : ""} domain`,
+                                   yref: `y${k ? k + 1 : ""} domain`,
+                                   x: 0,
+                                   y: 1,
+                                   yanchor: "bottom",
+                                   xanchor: "left",
+                                   font: {size: 11, color: colours.text}
+                                 }));
       const notes = [{
         text: `across: ${explained(x)}; up: ${explained(y)}`,
         showarrow: false,
@@ -347,9 +357,8 @@ function stabilityFigures(file, table) {
     return {
       file,
       make,
-      title: `Stability: ${sheet}`,
-      says:
-          "Each cell is a run, its colour what became of it; thick lines go round what linear theory predicts to fail.",
+      title: `${words.title}: ${sheet}`,
+      says: words.says,
       columns: () => columnsWhere(table, (row) => sheetOf(row) === sheet),
     };
   });
@@ -395,10 +404,24 @@ function overTimeFigure(file, table) {
   }];
 }
 
+const stabilityWords = {
+  title: "Stability",
+  says: "Each cell is a run, its colour what became of it; thick lines go round what linear theory predicts to fail.",
+  everywhere: ": predicted to fail everywhere"
+};
+
+const winnersWords = {
+  title: "The quickest",
+  says: "Each cell is an error on a scene, its colour the family of the quickest method; thick lines go round " +
+      "where it does not clearly lead.",
+  everywhere: ""
+};
+
 const figureMakers = {
   "convergence": convergenceFigures,
   "work-precision": trialsFigure,
-  "stability": stabilityFigures,
+  "stability": (file, table) => mapFigures(file, table, stabilityWords),
+  "map": (file, table) => mapFigures(file, table, winnersWords),
   "over time": overTimeFigure
 };
 

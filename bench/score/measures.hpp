@@ -28,9 +28,6 @@ struct FrameScore {
   double true_depth = std::numeric_limits<double>::quiet_NaN();  ///< the same of the reference
 };
 
-/// The part of a motion that it may be late by.
-inline constexpr double longest_lag = 0.25;
-
 /// How late a motion is, and how wrong if that is forgiven.
 struct Lag {
   Uncertain seconds;  ///< negative: it is ahead
@@ -39,10 +36,8 @@ struct Lag {
 
 std::vector<FrameScore> frame_scores(const ExternalMotion& external, const TrueMotion& truth);
 
-/// The delay τ that minimises the mean over frames and particles of |x(t) − x_ref(t − τ)|²: the best of a scan up to a quarter
-/// of the motion either way, improved by Gauss-Newton steps. Before the start the reference rests at its start; frames for
-/// which it would have to go on beyond its end are left out. A lag at either bound may be more. The uncertainty is that of
-/// positions over the mean velocity. NaN if nothing moves.
+/// The delay of the frames, as delay() has it. A lag at either bound may be more. The uncertainty is that of positions over the
+/// mean velocity. NaN if nothing moves.
 Lag lag(const ExternalMotion& external, const TrueMotion& truth);
 
 /// How much faster than the reference's the kinetic energy of a motion falls: the rate δ [1/s] for which (1 − δ t) K_ref(t − τ)

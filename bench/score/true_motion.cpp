@@ -9,21 +9,19 @@
 #include "reference/sundials/coordinates.hpp"
 #include "results/run_record.hpp"
 #include "solver/base/largest.hpp"
-#include "solver/dense_output.hpp"
 
 namespace drape::bench {
 namespace {
 
-constexpr int parts = 200;     ///< into which the motion is divided for interpolation
-constexpr double same = 1e-9;  ///< times this close, over the end, are one
+constexpr int parts = 200;  ///< into which the motion is divided for interpolation
 
 /// Those asked for after the start and the ends of all parts, each once.
 std::vector<double> all_times(std::span<const double> asked, double end) {
   std::vector<double> all(asked.begin(), asked.end());
   for (int k = 1; k <= parts; ++k) {
     const double t = k == parts ? end : end * k / parts;
-    const auto next = std::ranges::lower_bound(asked, t - same * end);
-    if (next == asked.end() || *next > t + same * end) all.push_back(t);
+    const auto next = std::ranges::lower_bound(asked, t - same_time * end);
+    if (next == asked.end() || *next > t + same_time * end) all.push_back(t);
   }
   std::ranges::sort(all);
   std::erase_if(all, [](double t) { return t <= 0; });
@@ -64,16 +62,6 @@ TrueMotion true_motion(const model::Scene& scene, std::span<const double> times,
   return truth;
 }
 
-solver::State state_at(const reference::Trajectory& motion, double t) {
-  const std::vector<double>& times = motion.times;
-  if (t < 0) return {motion.states.front().x, solver::Vectors::Zero(motion.states.front().x.rows(), 3)};
-  const double close = same * times.back();
-  const auto k = static_cast<std::size_t>(std::ranges::lower_bound(times, t - close) - times.begin());
-  if (k == times.size()) return motion.states.back();
-  if (times[k] <= t + close) return motion.states[k];
-  return solver::state_within(t, times[k - 1], motion.states[k - 1], times[k], motion.states[k]);
-}
-
 std::vector<solver::State> states_at(const reference::Trajectory& motion, std::span<const double> times) {
   std::vector<solver::State> states;
   for (const double t : times) states.push_back(state_at(motion, t));
@@ -81,21 +69,9 @@ std::vector<solver::State> states_at(const reference::Trajectory& motion, std::s
 }
 
 double uncertainty_at(const TrueMotion& truth, double t) {
-  const auto next = std::ranges::lower_bound(truth.motion.times, t - same * truth.motion.times.back());
+  const auto next = std::ranges::lower_bound(truth.motion.times, t - same_time * truth.motion.times.back());
   const auto k = std::min<std::ptrdiff_t>(next - truth.motion.times.begin(), std::ssize(truth.uncertainty) - 1);
   return truth.uncertainty[static_cast<std::size_t>(k)];
-}
-
-double interpolation_error(const reference::Trajectory& motion) {
-  constexpr double gain = 16;  // 2⁴: of steps half as long
-  double sum = 0;
-  int count = 0;
-  for (std::size_t k = 1; k + 1 < motion.times.size(); k += 2, ++count) {
-    const solver::State between = solver::state_within(motion.times[k], motion.times[k - 1], motion.states[k - 1],
-                                                       motion.times[k + 1], motion.states[k + 1]);
-    sum += (between.x - motion.states[k].x).squaredNorm() / static_cast<double>(between.x.rows());
-  }
-  return count == 0 ? 0 : std::sqrt(sum / count) / gain;
 }
 
 }  // namespace drape::bench

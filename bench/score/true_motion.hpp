@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/runs/lag.hpp"
 #include "bench/runs/reference_work.hpp"
 #include "model/cloth.hpp"
 #include "reference/trajectory.hpp"
@@ -27,18 +28,10 @@ struct TrueMotion {
 /// reference::ReferenceError.
 TrueMotion true_motion(const model::Scene& scene, std::span<const double> times, double agreement, const ReferenceWatch& watch);
 
-/// The state of a motion at a time: between its times by cubic Hermite interpolation, before the start as at the start, but at
-/// rest.
-solver::State state_at(const reference::Trajectory& motion, double t);
-
 /// States at times that the motion has, or between them.
 std::vector<solver::State> states_at(const reference::Trajectory& motion, std::span<const double> times);
 
 /// The uncertainty at a time [m]: that of the next time that the motion has.
 double uncertainty_at(const TrueMotion& truth, double t);
-
-/// Error of positions between the times, root mean square over time and particles [m], estimated by what leaving out every
-/// other time would change: the interpolation is of fourth order.
-double interpolation_error(const reference::Trajectory& motion);
 
 }  // namespace drape::bench

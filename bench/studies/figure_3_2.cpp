@@ -22,7 +22,7 @@ using results::Role;
 using results::Standing;
 
 constexpr double figure_step = 0.01;  ///< [s]
-constexpr double last = 1;            ///< part of the run that is looked at [s]
+constexpr double last_part = 1;       ///< part of the run that is looked at [s]
 constexpr double smoothed = 0.95;     ///< energy over the truth's below which it counts as smoothed away
 
 /// Waves between the side edges: the cosines, orthogonal in the dual cells along a line, and the sines of its inner particles.
@@ -99,7 +99,7 @@ Flutter flutter(const model::Scene& scene, const char* method) {
   Flutter seen;
   seen.bending = seen.kinetic = Eigen::VectorXd::Zero(waves.count());
   FunctionObserver observer([&](const solver::StepReport& s) {
-    if (s.t <= scene.end - last) return;
+    if (s.t <= scene.end - last_part) return;
     const Eigen::ArrayXd edge = s.y.x.col(1).head(scene.sheet.grid.nu);  // the lower one; the start is in the plane y = 0
     seen.swing.push_back(edge.mean());
     seen.wrinkles += (edge - edge.mean()).square().mean();

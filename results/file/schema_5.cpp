@@ -62,7 +62,8 @@ void find_groups(Table& table) {
 
 void find_parts(Table& table) {
   switch (table.figure) {
-    case Figure::none: return;
+    case Figure::none:
+    case Figure::map: return;  // versions before 6 had no maps
     case Figure::convergence:
       return draw_known(table, {{Part::figure, "scene"},
                                 {Part::figure, "experiment"},

@@ -1,0 +1,21 @@
+#include <algorithm>
+
+#include "bench/studies/field/tables.hpp"
+#include "bench/studies/studies.hpp"
+
+/// Which integrator should one use? All rows of the table of methods on several sheets, with one setting for all and with the
+/// best of some.
+namespace drape::bench {
+
+std::vector<Job> field_study(const Question& question) {
+  const std::vector<FieldSheet> list = field_sheets(question.quick);
+  const int parts = static_cast<int>(list.size() * all_or(question.methods).size());
+  const auto compute = [list, methods = question.methods](Checkpoint& checkpoint) {
+    std::vector<SheetResult> sheets;
+    for (const FieldSheet& sheet : list) sheets.push_back(run_sheet(sheet, methods, checkpoint));
+    return sheets;
+  };
+  return {job("field", parts, compute, field_tables)};
+}
+
+}  // namespace drape::bench

@@ -1,0 +1,121 @@
+// The ledger of claims: what numbers come to, and that each claim could have come out otherwise.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "bench/studies/claims/claim.hpp"
+
+namespace drape::verify::claims_test {
+namespace {
+
+using bench::Claim;
+using bench::ClaimCase;
+using bench::Holds;
+using bench::judge;
+using bench::unbounded;
+using results::Standing;
+using results::Verdict;
+
+ClaimCase between_1_and_2(double value, double uncertainty, std::string where = "") {
+  return {std::move(where), value, uncertainty, 1, 2};
+}
+
+TEST(ClaimCase, IsConfirmedOnlyWhereAllThatItMayBeIsBetweenTheBounds) {
+  EXPECT_EQ(judge(between_1_and_2(1.5, 0.4)), Holds::confirmed);
+  EXPECT_EQ(judge(between_1_and_2(1.5, 0.6)), Holds::undecided);
+  EXPECT_EQ(judge(between_1_and_2(0.95, 0.1)), Holds::undecided);
+  EXPECT_EQ(judge(between_1_and_2(0.5, 0.4)), Holds::refuted) << "below";
+  EXPECT_EQ(judge(between_1_and_2(2.5, 0.4)), Holds::refuted) << "above";
+}
+
+TEST(ClaimCase, IsUndecidedWhereNothingWasMeasured) {
+  EXPECT_EQ(judge(between_1_and_2(NAN, 0)), Holds::undecided);
+  EXPECT_EQ(judge(between_1_and_2(1.5, NAN)), Holds::undecided);
+}
+
+TEST(ClaimVerdict, SaysWhereAClaimHolds) {
+  const ClaimCase yes = between_1_and_2(1.5, 0, "d = 50"), no = between_1_and_2(3, 0, "d = 5"),
+                  open = between_1_and_2(2, 1, "d = 0");
+  const auto verdict = [](const std::vector<ClaimCase>& cases) { return judge(cases); };
+  EXPECT_EQ(verdict({yes, yes}), (Verdict{Standing::met, "confirmed"}));
+  EXPECT_EQ(verdict({no, no}), (Verdict{Standing::missed, "refuted"}));
+  EXPECT_EQ(verdict({no, yes}), (Verdict{Standing::open, "only if d = 50"}));
+  EXPECT_EQ(verdict({yes, open, yes}), (Verdict{Standing::open, "only if d = 50, d = 50"}));
+  EXPECT_EQ(verdict({no, open}), (Verdict{Standing::open, "undecided"}));
+  EXPECT_EQ(verdict({}), (Verdict{Standing::open, "undecided"}));
+}
+
+TEST(ClaimVerdict, IsDecidedByWhatRefutes) {
+  const std::vector<ClaimCase> cases{between_1_and_2(1.5, 0, "yes"), between_1_and_2(2, 1, "open"),
+                                     between_1_and_2(3, 0, "no")};
+  EXPECT_EQ(bench::deciding(cases).where, "no");
+  EXPECT_EQ(bench::deciding(std::span(cases).first(2)).where, "open");
+  EXPECT_EQ(bench::deciding(std::span(cases).first(1)).where, "yes");
+}
+
+std::vector<const Claim*> ledger() {
+  std::vector<const Claim*> all;
+  for (const auto group : {bench::mode_claims(), bench::system_claims(), bench::order_claims(), bench::sheet_claims()})
+    for (const Claim& claim : group) all.push_back(&claim);
+  return all;
+}
+
+TEST(Ledger, NamesEachClaimOnceWithItsSource) {
+  std::set<std::string_view> ids;
+  for (const Claim* claim : ledger()) {
+    EXPECT_TRUE(ids.insert(claim->id).second) << claim->id << " is there twice";
+    for (const std::string_view text :
+         {claim->source, claim->place, claim->claim, claim->measured, claim->unit, claim->command})
+      EXPECT_FALSE(text.empty()) << claim->id;
+  }
+  EXPECT_GE(ids.size(), 30U);
+}
+
+/// The same measurement with a number beyond its bounds.
+std::vector<ClaimCase> beyond(ClaimCase one) {
+  std::vector<ClaimCase> all;
+  one.uncertainty = std::isnan(one.uncertainty) ? 0 : one.uncertainty;
+  const double far = 1 + 2 * one.uncertainty;
+  for (const double value : {one.lower - far, one.upper + far})
+    if (std::isfinite(value)) all.push_back({one.where, value, one.uncertainty, one.lower, one.upper});
+  return all;
+}
+
+/// Measures the claims of a group: each has a bound, so that another number would have refuted it.
+void expect_refutable(std::span<const Claim> claims) {
+  for (const Claim& claim : claims) {
+    const std::vector<ClaimCase> cases = claim.measure();
+    ASSERT_FALSE(cases.empty()) << claim.id;
+    for (const ClaimCase& one : cases) {
+      EXPECT_TRUE(std::isfinite(one.value)) << claim.id << ", " << one.where;
+      EXPECT_NE(judge(one), Holds::undecided) << claim.id << ", " << one.where << ": " << one.value << " ± " << one.uncertainty;
+      EXPECT_FALSE(beyond(one).empty()) << claim.id << ", " << one.where << " could not be refuted";
+      for (const ClaimCase& other : beyond(one)) EXPECT_EQ(judge(other), Holds::refuted) << claim.id << ", " << one.where;
+    }
+  }
+}
+
+TEST(Ledger, OfModesIsDecidedByNumbersThatCouldHaveRefutedIt) { expect_refutable(bench::mode_claims()); }
+TEST(Ledger, OfSystemsIsDecidedByNumbersThatCouldHaveRefutedIt) { expect_refutable(bench::system_claims()); }
+
+/// What a measured claim comes to.
+std::string verdict_on(std::string_view id) {
+  for (const Claim* claim : ledger())
+    if (claim->id == id) return to_string(judge(claim->measure()));
+  return "no such claim";
+}
+
+TEST(Ledger, TellsMethodsApartByTheirModes) {
+  EXPECT_EQ(verdict_on("C-12"), "only if explicit-euler, explicit-midpoint") << "Verlet and the classical method do not grow";
+  EXPECT_EQ(verdict_on("E-23"), "only if implicit-euler, bdf2, tr-bdf2, esdirk4") << "the midpoint rule does not damp";
+  EXPECT_EQ(verdict_on("C-11"), "met: confirmed");
+  EXPECT_THAT(verdict_on("C-07"), testing::StartsWith("only if ω² = κ (imex-euler)"));
+}
+
+}  // namespace
+}  // namespace drape::verify::claims_test
