@@ -35,6 +35,8 @@ void rk4_substeps(Step& s);
 void bridson(Step& s);
 void rkl2(Step& s);
 void rkc2(Step& s);
+void exponential_euler(Step& s);
+void epirk4s3a(Step& s);
 
 namespace {
 
@@ -220,6 +222,18 @@ constexpr Method method_rows[] = {
      .order = 2,
      .stages = Stages::none,
      .step = rkc2,
+     .meets_obstacles = false},
+    {.name = "exponential-euler",
+     .description = "exponential Rosenbrock-Euler, exact for linear forces, by Krylov spaces",
+     .order = 2,
+     .stages = Stages::exponential,
+     .step = exponential_euler,
+     .meets_obstacles = false},
+    {.name = "epirk4s3a",
+     .description = "exponential method EPIRK4s3A, exact for linear forces, by Krylov spaces",
+     .order = 4,
+     .stages = Stages::exponential,
+     .step = epirk4s3a,
      .meets_obstacles = false},
 };
 
