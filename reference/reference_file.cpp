@@ -1,12 +1,12 @@
 #include "reference/reference_file.hpp"
-#include "solver/base/hash.hpp"
-
 
 #include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <cstring>
 #include <nlohmann/json.hpp>
+
+#include "solver/base/hash.hpp"
 
 namespace drape::reference {
 namespace {

@@ -65,6 +65,7 @@ Integrator::Integrator(const SplitOde& ode, const Method& method, const Options&
             .options = options_,
             .stage = nullptr,
             .linearised = nullptr,
+            .phi = nullptr,
             .history = history_,
             .next = next_,
             .scratch = scratch_,
@@ -90,6 +91,7 @@ Integrator::Integrator(const SplitOde& ode, const Method& method, const Options&
     sub_stepping_.impacts = &impacts_.emplace(ode);
   }
   if (method.stages == Method::Stages::linearised) step_.linearised = &linearised_.emplace(ode);
+  if (method.stages == Method::Stages::exponential) step_.phi = &phi_.emplace(ode);
   ode.work->counter("history_states", "states before the current one that the method keeps") = method.history - 1;
 }
 

@@ -63,6 +63,7 @@ class Integrator {
   std::optional<ImpactResponse> impacts_;    ///< of explicit ones
   std::optional<StageSolver> stage_;
   std::optional<LinearisedSystem> linearised_;
+  std::optional<PhiFunctions> phi_;
   History history_;
   Point next_;
   Scratch scratch_;

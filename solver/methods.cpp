@@ -46,6 +46,8 @@ void baraff_witkin_cg(Step& s);
 void desbrun(Step& s);
 void kang(Step& s);
 void strain_limited(Step& s);
+void exponential_euler(Step& s);
+void epirk4s3a(Step& s);
 
 namespace {
 
@@ -274,14 +276,16 @@ constexpr Method method_rows[] = {
      .stages = Stages::linear,
      .step = xpbd,
      .meets_obstacles = false,
-     .repeats = Repeats::sub_steps_and_sweeps},
+     .repeats = Repeats::sub_steps_and_sweeps,
+     .own_family = "position-based"},
     {.name = "xpbd-jacobi",
      .description = "the same with Jacobi sweeps",
      .order = 1,
      .stages = Stages::linear,
      .step = xpbd_jacobi,
      .meets_obstacles = false,
-     .repeats = Repeats::sub_steps_and_sweeps},
+     .repeats = Repeats::sub_steps_and_sweeps,
+     .own_family = "position-based"},
     {.name = "baraff-witkin-cg",
      .description = "baraff-witkin by conjugate gradients as in the paper, with the symmetric part of the Jacobian",
      .order = 1,
@@ -311,6 +315,18 @@ constexpr Method method_rows[] = {
      .sub_steps = true,
      .repeats = Repeats::sweeps,
      .converges = false},
+    {.name = "exponential-euler",
+     .description = "exponential Rosenbrock-Euler, exact for linear forces, by Krylov spaces",
+     .order = 2,
+     .stages = Stages::exponential,
+     .step = exponential_euler,
+     .meets_obstacles = false},
+    {.name = "epirk4s3a",
+     .description = "exponential method EPIRK4s3A, exact for linear forces, by Krylov spaces",
+     .order = 4,
+     .stages = Stages::exponential,
+     .step = epirk4s3a,
+     .meets_obstacles = false},
 };
 
 constexpr auto thesis_rows =
@@ -323,8 +339,9 @@ static_assert(std::all_of(method_rows, method_rows + thesis_rows, [](const Metho
 std::string_view Method::family() const {
   if (!own_family.empty()) return own_family;
   if (explicit_springs()) return "explicit";
-  if (stages == Stages::linear) return "semi-implicit";
+  if (stages == Stages::linear || stages == Stages::own) return "semi-implicit";
   if (stages == Stages::linearised) return "linearly implicit";
+  if (stages == Stages::exponential) return "exponential";
   return history > 1 ? "implicit multi-step" : "implicit one-step";
 }
 

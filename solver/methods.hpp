@@ -14,9 +14,9 @@ struct Method {
   std::string_view description;  ///< a few words, with the equation
   int order;
   /// linear: one system a stage, with the constant matrix; linearised: one system a stage, with the exact Jacobian and
-  /// without the stage solver; own: systems with the constant matrix that the method itself solves, or does not quite; none: no
-  /// systems that the program knows of.
-  enum class Stages { none, linear, nonlinear, linearised, own } stages;
+  /// without the stage solver; exponential: functions of the exact Jacobian; own: systems with the constant matrix that the
+  /// method itself solves, or does not quite; none: no systems that the program knows of.
+  enum class Stages { none, linear, nonlinear, linearised, exponential, own } stages;
   void (*step)(Step&);
   int history = 1;              ///< points of the history that it reads, the start of the step among them
   int forces = 0;               ///< how many of these with a force or an acceleration

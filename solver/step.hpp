@@ -9,6 +9,7 @@
 #include "solver/history.hpp"
 #include "solver/limit_watch.hpp"
 #include "solver/linear/linearised_system.hpp"
+#include "solver/linear/phi_functions.hpp"
 #include "solver/stage/stage_solver.hpp"
 
 namespace drape::solver {
@@ -47,6 +48,7 @@ struct Step {
   const Options& options;
   StageSolver* stage;            ///< null for methods that do not use it
   LinearisedSystem* linearised;  ///< null unless the method's stages are linearised
+  PhiFunctions* phi;             ///< null unless the method is exponential
   History& history;
   Point& next;  ///< at t + h: the result
   Scratch& scratch;

@@ -70,7 +70,7 @@ void check_options_of_tables(const Study& chosen, const SweepOptions& options) {
 /// Hash of all that determines the tables of a study.
 std::string identity(const StudyArguments& a, const std::optional<model::Scene>& scene) {
   return base::long_hash_text(fmt::format("{}{}{}{}\n{}", a.name, a.quick ? " quick" : "", a.methods.empty() ? "" : " by ",
-                             fmt::join(a.methods, ","), scene ? model::to_toml(*scene) : ""));
+                                          fmt::join(a.methods, ","), scene ? model::to_toml(*scene) : ""));
 }
 
 }  // namespace

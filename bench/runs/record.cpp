@@ -65,6 +65,7 @@ std::string_view stage_solver(const RunSpec& spec) {
     case solver::Method::Stages::linear: return "linear";
     case solver::Method::Stages::linearised: return "linearised";
     case solver::Method::Stages::own: return "own";
+    case solver::Method::Stages::exponential: return "exponential";
     case solver::Method::Stages::nonlinear: break;
   }
   return spec.options.stage->name;

@@ -282,9 +282,10 @@ Job score_job(const model::Scene& scene, const ExternalMotion& external, const S
 }
 
 std::string score_identity(const model::Scene& scene, const ExternalMotion& external, const ScoreOptions& options) {
-  return base::long_hash_text(fmt::format("score\n{}\n{} {} {}\n{} {} {} {}\n{}", model::to_toml(scene), external.name, external.differenced,
-                             fmt::join(external.times, " "), fmt::join(options.methods, " "), options.cost.value_or(0),
-                             options.agreement, options.repetitions, bits(external.states)));
+  return base::long_hash_text(fmt::format("score\n{}\n{} {} {}\n{} {} {} {}\n{}", model::to_toml(scene), external.name,
+                                          external.differenced, fmt::join(external.times, " "), fmt::join(options.methods, " "),
+                                          options.cost.value_or(0), options.agreement, options.repetitions,
+                                          bits(external.states)));
 }
 
 }  // namespace drape::bench

@@ -3,6 +3,7 @@
 #include "reference/sundials/arkode.hpp"
 #include "reference/sundials/cvode.hpp"
 #include "reference/sundials/ida.hpp"
+#include "reference/sundials/multirate.hpp"
 #include "solver/base/registry.hpp"
 
 namespace drape::reference {
@@ -23,6 +24,7 @@ std::span<const PeerSolver> peer_solvers() {
       {"ida-bdf", "IDA: BDF of orders 1 to 5 on the residual form, pins as algebraic equations", ida_trajectory},
       {"cvode-adams", "CVODE: Adams-Moulton formulas with functional iteration", cvode_adams, false},
       {"arkode-erk", "ARKODE: explicit Runge-Kutta method of order 5", arkode_erk, false},
+      {"arkode-multirate", "ARKODE: multirate method of order 4, K x + D v fast", arkode_multirate, false},
   };
   return table;
 }

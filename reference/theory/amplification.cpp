@@ -75,8 +75,8 @@ solver::History history(const Lags& memory, const Eigen::VectorXd& u) {
 
 /// One step on the mode: the point at which it ends.
 solver::Point advance(const solver::Method& method, const solver::SplitOde& ode, const solver::Options& options,
-                      solver::StageSolver* stage, solver::LinearisedSystem* linearised, const Lags& memory,
-                      const Eigen::VectorXd& u) {
+                      solver::StageSolver* stage, solver::LinearisedSystem* linearised, solver::PhiFunctions* phi,
+                      const Lags& memory, const Eigen::VectorXd& u) {
   const solver::Vectors none = solver::Vectors::Zero(1, 3);
   std::int64_t substeps = 0, limits = 0;
   solver::History past = history(memory, u);
@@ -89,6 +89,7 @@ solver::Point advance(const solver::Method& method, const solver::SplitOde& ode,
                     .options = options,
                     .stage = stage,
                     .linearised = linearised,
+                    .phi = phi,
                     .history = past,
                     .next = next,
                     .scratch = scratch,
@@ -145,10 +146,13 @@ Eigen::MatrixXd amplification_matrix(const solver::Method& method, const Mode& m
   const solver::Options options = exact_options();
   std::optional<solver::StageSolver> stage;
   std::optional<solver::LinearisedSystem> linearised;
+  std::optional<solver::PhiFunctions> phi;
   if (method.implicit()) stage.emplace(ode, options);
   if (method.stages == solver::Method::Stages::linearised) linearised.emplace(ode);
+  if (method.stages == solver::Method::Stages::exponential) phi.emplace(ode);
   const auto end = [&](const Lags& memory, const Eigen::VectorXd& u) {
-    return advance(method, ode, options, stage ? &*stage : nullptr, linearised ? &*linearised : nullptr, memory, u);
+    return advance(method, ode, options, stage ? &*stage : nullptr, linearised ? &*linearised : nullptr, phi ? &*phi : nullptr,
+                   memory, u);
   };
 
   Lags memory{method.history, 0};

@@ -1,11 +1,11 @@
 #include "results/file/hdf5_value.hpp"
-#include "solver/base/hash.hpp"
-
 
 #include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <string_view>
+
+#include "solver/base/hash.hpp"
 
 namespace drape::results::hdf5 {
 namespace {

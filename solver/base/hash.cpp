@@ -7,7 +7,9 @@
 
 namespace drape::base {
 
-std::uint64_t hash(std::string_view bytes, std::uint64_t seed) { return XXH3_64bits_withSeed(bytes.data(), bytes.size(), seed); }
+std::uint64_t hash(std::string_view bytes, std::uint64_t seed) {
+  return XXH3_64bits_withSeed(bytes.data(), bytes.size(), seed);
+}
 
 std::string hash_text(std::string_view bytes) { return fmt::format("{:016x}", hash(bytes)); }
 

@@ -16,6 +16,7 @@ struct LinearCounters {
       : updates(work.counter("updates", "linear systems solved, one an update of the fixed-point loop")),
         cg_iterations(work.counter("cg_iterations", "iterations of conjugate gradients")),
         products(work.counter("matrix_products", "products of a matrix with an N x 3 vector field")),
+        jacobian_products(work.counter("jacobian_products", "products of the exact Jacobian with a state, in Krylov spaces")),
         preconditioner(work.counter("preconditioner_applications", "applications of the preconditioner")),
         builds(work.counter("matrix_builds", "assemblies of the constant matrix A")),
         factorisations(work.counter("factorisations", "factorisations of A, complete or incomplete")),
@@ -30,7 +31,7 @@ struct LinearCounters {
     return *std::ranges::find(kinds, solver, &std::pair<std::string_view, std::int64_t*>::first)->second;
   }
 
-  std::int64_t &updates, &cg_iterations, &products, &preconditioner, &builds, &factorisations, &entries, &bytes;
+  std::int64_t &updates, &cg_iterations, &products, &jacobian_products, &preconditioner, &builds, &factorisations, &entries, &bytes;
   std::vector<std::pair<std::string_view, std::int64_t*>> kinds;  ///< which linear solver it was in the end
 };
 

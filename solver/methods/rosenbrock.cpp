@@ -4,7 +4,7 @@
 #include <numeric>
 
 #include "solver/base/registry.hpp"
-#include "solver/step.hpp"
+#include "solver/methods/acceleration.hpp"
 
 namespace drape::solver {
 namespace {
@@ -69,16 +69,6 @@ void add_stages(double scale, const RosenbrockTableau::Row& weights, int count, 
 }
 
 double sum(const RosenbrockTableau::Row& row) { return std::accumulate(row.begin(), row.end(), 0.0); }
-
-/// Sets f̂ to h² ∂/∂t of the accelerations at the start, by a central difference: its error, in h⁴, is beyond all orders here.
-void find_time_derivative(Step& s) {
-  constexpr double part = 1e-2;  // less would be lost in round-off
-  const State& y0 = s.y0();
-  Vectors &later = s.scratch.f_hat, &earlier = s.scratch.av;
-  s.ode.force(s.t + part * s.h, y0.x, y0.v, later);
-  s.ode.force(s.t - part * s.h, y0.x, y0.v, earlier);
-  later = s.h / (2 * part) * (s.ode.mass.cwiseInverse().asDiagonal() * (later - earlier));
-}
 
 // k_i = h F(t0 + α_i h, y0 + Σ a_ij k_j) + h J Σ γ_ij k_j + γ_i h² ∂F/∂t,   y1 = y0 + Σ b_i k_i,   error = Σ (b_i − b̂_i) k_i
 // with F = (v, M⁻¹ f), α_i = Σ a_ij, γ_i = Σ γ_ij   [Hairer, Wanner 1996, IV.7], without products with J:

@@ -121,7 +121,7 @@ TEST(SimilarScenes, HaveEqualRatios) {
     return text.replace(text.find("lift = 0.5"), 10, "lift = 0.6");
   };
   const Moved first = run(cases[0], solver::method("bdf2"), {}, {}),
-            other = run({"other", lifted}, solver::method("bdf2"), {}, {});
+              other = run({"other", lifted}, solver::method("bdf2"), {}, {});
   EXPECT_GT((other.end.x - first.end.x).norm(), 1e-6);
 }
 

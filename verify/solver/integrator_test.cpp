@@ -94,7 +94,8 @@ TEST_P(IntegratorWith, ShowsEveryAcceptedStep) {
 }
 
 TEST_P(IntegratorWith, KeepsTimeAndStateWhenAStepFails) {
-  if (method.name == "explicit-euler") GTEST_SKIP() << "evaluates no force after the start of its step";
+  if (method.name == "explicit-euler" || method.name == "exponential-euler")
+    GTEST_SKIP() << "evaluates no force long after the start of its step";
   const double broken_after = start_time + 0.105;
   const Problem p = breaking(broken_after);
   Integrator integrator(p.ode, method, tight(), p.start, start_time);
@@ -160,7 +161,9 @@ TEST_P(IntegratorWith, BuildsAndKeepsOnlyWhatTheMethodNeeds) {
   EXPECT_EQ(count("history_states"), method.history - 1);
   const bool solves = count("updates") > 0;  // newcomers may have systems of their own
   EXPECT_TRUE(method.stages != Method::Stages::none || !solves);
-  for (const char* kind : {"matrix_builds", "factorisations", "linear_bytes"}) EXPECT_EQ(count(kind) > 0, solves) << kind;
+  for (const char* kind : {"matrix_builds", "factorisations"}) EXPECT_EQ(count(kind) > 0, solves) << kind;
+  EXPECT_EQ(count("jacobian_products") > 0, method.stages == Method::Stages::exponential);
+  EXPECT_EQ(count("linear_bytes") > 0, solves || count("jacobian_products") > 0);
   EXPECT_TRUE(!method.implicit() || count("matrix_products") > 0);
   EXPECT_EQ(count("substeps") > 0, method.sub_steps);
 }

@@ -16,6 +16,8 @@
 #include "reference/sundials/first_order.hpp"
 #include "reference/sundials/ida.hpp"
 #include "reference/sundials/kinsol.hpp"
+#include "reference/sundials/multirate.hpp"
+#include "verify/support/convergence.hpp"
 #include "verify/support/small_problems.hpp"
 
 namespace drape::verify::peer_solvers_test {
@@ -95,6 +97,30 @@ TEST_P(FamilyOn, NamesItselfAndTheReasonWhenItFails) {
     EXPECT_LE(error.time, start_time + 0.6);  // the stage of a Runge-Kutta method may be ahead
   }
   EXPECT_EQ(failures, 1) << "it tried again";
+}
+
+TEST(Multirate, IsOfFourthOrderInItsSlowSteps) {
+  for (const Problem& problem : problems()) {
+    Convergence errors;
+    for (const int n : {12, 18, 27, 40}) {
+      reference::SolveOptions options{.rtol = 1e-12};
+      options.tuning.step = 1.0 / n;
+      errors.steps.push_back(1.0 / n);
+      errors.errors.push_back(worst(
+          problem, reference::arkode_multirate(problem.ode, problem.start, start_time, std::vector{start_time + 1}, options)));
+    }
+    EXPECT_TRUE(has_order(errors, 4)) << problem.name;
+  }
+}
+
+TEST(Multirate, FollowsFastSpringsBetweenItsSlowSteps) {
+  const model::Cloth cloth = model::compile(
+      model::load_scene("hung-edge", std::vector<model::Override>{{"grid.n", "5"}, {"material.damping", "500"}}));
+  reference::SolveOptions options{.rtol = 1e-6};
+  options.tuning.step = 1e-3;
+  reference::arkode_multirate(cloth.ode, cloth.start, 0, std::vector{0.01}, options);
+  EXPECT_EQ(cloth.ode.work->count("multirate/slow_steps"), 10);
+  EXPECT_GE(cloth.ode.work->count("multirate/fast_steps"), 200);
 }
 
 class FirstOrder : public testing::TestWithParam<std::string> {
@@ -202,14 +228,15 @@ TEST_P(HungSheet, IsTheSameForCvodeArkodeAndIda) {
     EXPECT_LE(reference::rms_distance(end(family).x, by_cvode.x), 1e-8 * 0.8) << family;
 }
 
-TEST(HungSheetOfImex, IsThatOfCvode) {
+TEST(HungSheetOfSplitSolvers, IsThatOfCvode) {
   const model::Cloth cloth = compile(hung_sheet("50"));
   const auto end = [&](const char* family) {
     return reference::peer_solver(family)
         .solve(cloth.ode, cloth.start, 0, std::vector{0.05}, {.rtol = 1e-8, .size = 0.8})
         .states[0];
   };
-  EXPECT_LE(reference::rms_distance(end("arkode-imex").x, end("cvode-bdf").x), 1e-6);
+  for (const char* family : {"arkode-imex", "arkode-multirate"})
+    EXPECT_LE(reference::rms_distance(end(family).x, end("cvode-bdf").x), 1e-6) << family;
 }
 
 TEST(Kinsol, FindsTheEquilibriumOfAPulledSheet) {

@@ -26,6 +26,7 @@ constexpr double duration = 1.5;  // [s]
 std::vector<int> refinements(const Method& method) {
   if (method.order == 5) return {78, 156, 234, 312};
   if (method.name == "esdirk4") return {66, 102, 150, 216};
+  if (method.name == "epirk4s3a") return {288, 384, 512, 640};
   if (method.order == 4) return {96, 192, 288, 384};
   return {150, 300, 600, 1200, 2400};
 }
