@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <random>
 
 #include "bench/runs/run.hpp"
 #include "bench/studies/claims/claim.hpp"
 #include "bench/studies/cross_checked_reference.hpp"
 #include "model/scene_file/scene_file.hpp"
+#include "reference/theory/condition.hpp"
 #include "solver/base/decompositions.hpp"
 #include "solver/linear/conjugate_gradients.hpp"
 #include "solver/stability.hpp"
@@ -41,24 +41,6 @@ std::vector<bool> pinned_particles(const solver::SplitOde& ode) {
   return pinned;
 }
 
-/// A = M − γ² K − γ D of the free particles, N × N with the diagonal alone where a particle is pinned.
-SparseMatrix constant_matrix(const solver::SplitOde& ode, double gamma) {
-  const std::vector<bool> pinned = pinned_particles(ode);
-  std::vector<Eigen::Triplet<double>> entries;
-  for (int i = 0; i < ode.particles(); ++i) entries.emplace_back(i, i, ode.mass[i]);
-  const auto subtract = [&](double factor, const SparseMatrix& B) {
-    for (int k = 0; k < B.outerSize(); ++k)
-      for (SparseMatrix::InnerIterator b(B, k); b; ++b)
-        if (b.row() == b.col() || (!pinned[static_cast<std::size_t>(b.row())] && !pinned[static_cast<std::size_t>(b.col())]))
-          entries.emplace_back(b.row(), b.col(), -factor * b.value());
-  };
-  subtract(gamma * gamma, ode.stiffness);
-  subtract(gamma, ode.damping);
-  SparseMatrix A(ode.particles(), ode.particles());
-  A.setFromTriplets(entries.begin(), entries.end());
-  return A;
-}
-
 /// M^−½ A M^−½ of the free particles, dense.
 Eigen::MatrixXd scaled_matrix(const CompiledScene& sheet, double gamma) {
   const solver::SplitOde& ode = sheet.cloth.ode;
@@ -67,20 +49,13 @@ Eigen::MatrixXd scaled_matrix(const CompiledScene& sheet, double gamma) {
   for (int i = 0; i < ode.particles(); ++i)
     if (!pinned[static_cast<std::size_t>(i)]) kept.push_back(i);
   const Eigen::VectorXd root = ode.mass.cwiseSqrt().cwiseInverse();
-  const Eigen::MatrixXd A = root.asDiagonal() * Eigen::MatrixXd(constant_matrix(ode, gamma)) * root.asDiagonal();
+  const Eigen::MatrixXd A = root.asDiagonal() * Eigen::MatrixXd(reference::stage_matrix(ode, gamma)) * root.asDiagonal();
   return A(kept, kept);
 }
 
 double condition(const Eigen::MatrixXd& A) {
   const Eigen::VectorXd values = base::symmetric_eigen(A).values;
   return values[values.size() - 1] / values[0];
-}
-
-/// κ of a sheet of n × n particles with one edge pinned and dual cells: the spectrum is 1 + g μ, g = ν_h + δ_h of implicit
-/// Euler, μ from 4 sin²(π/4(n − 1)) to 4 + 4 cos²(π/4(n − 1)).
-double condition_in_closed_form(int n, double g) {
-  const double angle = std::numbers::pi / (4 * (n - 1));
-  return (1 + g * (4 + 4 * std::pow(std::cos(angle), 2))) / (1 + g * 4 * std::pow(std::sin(angle), 2));
 }
 
 double g_of(const CompiledScene& sheet) {
@@ -106,8 +81,9 @@ std::vector<ClaimCase> condition_is_as_in_closed_form() {
   for (const auto& [n, damping] : {std::pair{20, 0.0}, std::pair{20, 50.0}, std::pair{10, 5.0}}) {
     const CompiledScene sheet = hung_edge(n, damping);
     cases.push_back({fmt::format("n = {}, d = {:g}", n, damping),
-                     condition(scaled_matrix(sheet, usual_step)) / condition_in_closed_form(n, g_of(sheet)), of_eigenvalues,
-                     0.999999, 1.000001});
+                     condition(scaled_matrix(sheet, usual_step)) /
+                         reference::stage_eigenvalues(n, g_of(sheet), reference::PinnedBorder::one_edge).condition(),
+                     of_eigenvalues, 0.999999, 1.000001});
   }
   return cases;
 }
@@ -143,7 +119,7 @@ std::vector<ClaimCase> bound_suffices() {
   std::vector<ClaimCase> cases;
   for (const double damping : {0.0, 50.0}) {
     const Eigen::MatrixXd A = scaled_matrix(hung_edge(20, damping), usual_step);
-    const double bound = 0.5 * std::sqrt(condition(A)) * std::log(2 / reduction);
+    const double bound = reference::sufficient_iterations(condition(A), reduction);
     const Eigen::VectorXd any = random_numbers(A.rows()), fall = Eigen::VectorXd::Ones(A.rows());
     for (const auto& [name, solution] : {std::pair{"random", any}, std::pair{"as gravity", fall}})
       cases.push_back({fmt::format("d = {:g}, {} solution", damping, name), iterations_in_energy_norm(A, solution) / bound,
@@ -151,18 +127,6 @@ std::vector<ClaimCase> bound_suffices() {
   }
   return cases;
 }
-
-class NoPreconditioner : public solver::Preconditioner {
- public:
-  void analyse(const SparseMatrix&) override {}
-  solver::Outcome factor(const SparseMatrix&) override { return solver::Outcome::success; }
-  double apply(const Vectors& r, Vectors& z) override {
-    z = r;
-    return r.squaredNorm();
-  }
-  std::string_view name() const override { return "none"; }
-  std::int64_t bytes() const override { return 0; }
-};
 
 int iterations_with(std::unique_ptr<solver::Preconditioner> preconditioner, const SparseMatrix& A) {
   constexpr int most = 100'000;
@@ -178,8 +142,8 @@ int iterations_with(std::unique_ptr<solver::Preconditioner> preconditioner, cons
 std::vector<ClaimCase> incomplete_cholesky_saves_iterations() {
   std::vector<ClaimCase> cases;
   for (const int n : {10, 20, 40}) {
-    const SparseMatrix A = constant_matrix(hung_edge(n, 0).cloth.ode, usual_step);
-    const double plain = iterations_with(std::make_unique<NoPreconditioner>(), A);
+    const SparseMatrix A = reference::stage_matrix(hung_edge(n, 0).cloth.ode, usual_step);
+    const double plain = iterations_with(solver::make_unpreconditioned(), A);
     cases.push_back(
         {fmt::format("n = {}", n), iterations_with(solver::make_incomplete_cholesky(), A) / plain, 1 / plain, 0, 1});
   }
@@ -192,7 +156,7 @@ std::vector<ClaimCase> iterating_beats_the_inverse() {
   constexpr double passes_over_vectors = 5;
   std::vector<ClaimCase> cases;
   for (const int n : {4, 8, 12, 20, 40}) {
-    const SparseMatrix A = constant_matrix(hung_edge(n, 50).cloth.ode, usual_step);
+    const SparseMatrix A = reference::stage_matrix(hung_edge(n, 50).cloth.ode, usual_step);
     const double N = n * n, entries = static_cast<double>(A.nonZeros());
     const double an_iteration = 3 * (2 * entries + N + passes_over_vectors * N);
     const double ratio = iterations_with(solver::make_incomplete_cholesky(), A) * an_iteration / (3 * N * N);
