@@ -136,7 +136,7 @@ void add_solver_options(CLI::App& command, RunArguments& a) {
       ->capture_default_str();
   command
       .add_option("--verlet-fraction", a.options.verlet_fraction,
-                  "sub-step of verlet, rk4-substeps and bridson over its stability limit")
+                  "sub-step of verlet, rk4-substeps, bridson and strain-limited over its stability limit")
       ->type_name("X")
       ->check(between(1e-3, 1.0))
       ->capture_default_str();

@@ -107,7 +107,10 @@ TEST_P(ToleranceOf, IsThatOfTheError) {
     EXPECT_LE(ratio, 10) << tolerance;
     const bool largest_steps = ours.result.steps <= 20;  // they are accurate enough
     if (!largest_steps && ours.result.message.empty()) {
-      EXPECT_GE(ratio, method.name == "ros34pw2" ? 0.08 : 0.1) << tolerance;  // its estimate is of an order less
+      // The estimate of the one is of an order less; errors of the other's sweeps fall faster than its order where steps are
+      // long.
+      const double least = method.name == "ros34pw2" ? 0.08 : method.name == "xpbd-jacobi" ? 0.04 : 0.1;
+      EXPECT_GE(ratio, least) << tolerance;
     }
   }
 }

@@ -340,7 +340,8 @@ TEST_F(ProgramStudies, ErrorsAreNearTheirTolerances) {
   }
   const Table& summary = *std::ranges::find(all, "tolerance-summary", &Table::name);
   for (const solver::Method& method : small_problems::converging_methods()) {
-    const bool may_fail = (method.explicit_springs() && !method.sub_steps) || method.name == "imex-euler";  // its cost explodes
+    const bool may_fail = (method.explicit_springs() && !method.sub_steps) || method.name == "imex-euler" ||
+                          method.name == "desbrun";  // their cost explodes
     const testing::Matcher<std::string> proportional = testing::Eq("met: proportional"), none = testing::Eq("no run ends");
     EXPECT_THAT(verdicts_of(summary, std::string(method.name)),
                 ElementsAre(may_fail ? testing::Matcher<std::string>(AnyOf(proportional, none)) : proportional))

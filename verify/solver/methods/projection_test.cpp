@@ -8,7 +8,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <numbers>
 #include <set>
 
 #include "model/cloth.hpp"
@@ -201,6 +201,24 @@ TEST(Xpbd, IsNearlyImplicitEulerAfterManySweeps) {
     EXPECT_LE(distance(end, implicit), 1e-3) << method;
     EXPECT_GE(distance(end, implicit), 1e-4) << method;
   }
+}
+
+/// One particle between eight held ones: without shares of its mass, eight times the correction would throw it to and fro.
+TEST(Xpbd, ConvergesWhereManyConstraintsMeet) {
+  constexpr int held = 8;
+  State start{Vectors::Zero(held + 1, 3), Vectors::Zero(held + 1, 3)};
+  start.x.row(held) << 0.1, 0.05, 0;
+  std::vector<CompliantConstraint> spokes;
+  std::vector<Pin> pins;
+  for (int k = 0; k < held; ++k) {
+    start.x.row(k) << std::cos(k * std::numbers::pi / 4), std::sin(k * std::numbers::pi / 4), 0;
+    spokes.push_back({Kind::distance, {k, held, held}, 1, 1e-9});
+    pins.push_back({.particle = k});
+  }
+  SplitOde ode = constrained(Eigen::VectorXd::Ones(held + 1), spokes, 0);
+  ode.pins = pins;
+  for (const char* method : {"xpbd", "xpbd-jacobi"})
+    EXPECT_LE(moved(ode, method, repeated(1, 100), start, 0.01, 0.01).x.row(held).norm(), 1e-5) << method;
 }
 
 TEST(Xpbd, DampsAsImplicitEulerDoes) {
