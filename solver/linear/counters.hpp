@@ -31,7 +31,8 @@ struct LinearCounters {
     return *std::ranges::find(kinds, solver, &std::pair<std::string_view, std::int64_t*>::first)->second;
   }
 
-  std::int64_t &updates, &cg_iterations, &products, &jacobian_products, &preconditioner, &builds, &factorisations, &entries, &bytes;
+  std::int64_t &updates, &cg_iterations, &products, &jacobian_products, &preconditioner, &builds, &factorisations, &entries,
+      &bytes;
   std::vector<std::pair<std::string_view, std::int64_t*>> kinds;  ///< which linear solver it was in the end
 };
 

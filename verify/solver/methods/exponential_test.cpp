@@ -134,7 +134,7 @@ TEST(PhiFunctions, AreZeroWithoutInputs) {
   EXPECT_EQ(largest(flat(w)), 0);
 }
 
-/// A row of springs, too many for one Krylov space where steps are long, with some damping.
+/// More springs in a row than one Krylov space has dimensions for where steps are long.
 struct Row {
   SplitOde ode;
   State start;
@@ -179,7 +179,7 @@ TEST(ExponentialMethods, MultiplyModesByTheirExponential) {
   for (const char* method : exponential_methods)
     for (const double W : {0.01, 1.0, 400.0, 1e6})
       for (const double s : {0.0, 0.3, 100.0}) {
-        const double w = std::sqrt(W);  // balanced, lest the norm be W
+        const double w = std::sqrt(W);  // balanced: else the norm would be W
         Eigen::MatrixXd exact = exponential(Eigen::Matrix2d{{0, w}, {-w, -s}});
         exact(0, 1) /= w;
         exact(1, 0) *= w;
