@@ -47,7 +47,7 @@ struct Policy {
 
 std::vector<Policy> policies(bool quick) {
   std::vector<Policy> all;
-  for (int k = 0; k <= (quick ? 4 : 12); ++k) {
+  for (int k = 0; k <= (quick ? 4 : 14); ++k) {
     const double h = 0.04 * std::pow(2.0, -0.5 * k);
     all.push_back({"constant", fmt::format("h = {:.3g}", h), h});
   }
