@@ -282,7 +282,7 @@ double deviation_from_unscaled(int n, bool interior) {
         deviation = std::max(deviation, std::abs(entry.value() / k - 1));
   for (Eigen::Index i = 0; i < K.rows(); ++i)
     if (!interior || inside(i))
-      deviation = std::max(deviation, std::abs(sheet.cloth.ode.mass[i] / (sheet.scene.sheet.density * area) - 1));
+      deviation = std::max(deviation, std::abs(sheet.cloth.ode.mass[i] / (sheet.scene.sheet.material.density * area) - 1));
   return deviation;
 }
 
@@ -302,7 +302,7 @@ std::vector<ClaimCase> courant_limit() {
   constexpr double safety = 0.011;  // by which the program underestimates the limit
   const auto limit = [](const CompiledScene& sheet) {
     const double l = sheet.scene.sheet.grid.spacing_u();
-    const double c = std::sqrt(sheet.scene.sheet.material.tension.weft / sheet.scene.sheet.density);
+    const double c = std::sqrt(sheet.scene.sheet.material.tension.weft / sheet.scene.sheet.material.density);
     return solver::verlet_limit(solver::spectrum(sheet.cloth.ode, 0, sheet.cloth.start)) * c / l;
   };
   return {
