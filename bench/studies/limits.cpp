@@ -34,11 +34,12 @@ struct ExplicitForce {
   double (*value)(const model::Material& material);
 };
 
-/// In-plane waves along a diagonal have ω²/κ = ½ + G/k: more than G/k, that of shear waves along weft and warp. The plate has
-/// B Λ/k where Λ <= 8/l² is the eigenvalue of the sheet's second difference.
+/// Of a free sheet a homogeneous shear, x along v and y along u, has ω²/κ = 2 G/k: more than plane waves have, G/k along weft
+/// and warp and ½ + G/k along a diagonal. The plate has B Λ/k where Λ <= 8/l² is the eigenvalue of the sheet's second
+/// difference.
 constexpr ExplicitForce explicit_forces[] = {
-    {"shear", "1/2 + G/k", [](model::Material& m, double ratio, double) { m.shear = (ratio - 0.5) * limit_tension; },
-     "material.shear", "N/m", [](const model::Material& m) { return m.shear; }},
+    {"shear", "2 G/k", [](model::Material& m, double ratio, double) { m.shear = ratio * limit_tension / 2; }, "material.shear",
+     "N/m", [](const model::Material& m) { return m.shear; }},
     {"plate", "8 B/(k l²)",
      [](model::Material& m, double ratio, double l) {
        m.bend = {ratio * limit_tension * l * l / 8, ratio * limit_tension * l * l / 8};
@@ -58,7 +59,7 @@ constexpr LimitedMethod limited_methods[] = {{"imex-euler", 2, false},    {"sbdf
 
 RunSpec spec_of(const LimitedMethod& limited, const ExplicitForce& force, double ratio, bool quick) {
   const int steps = limited.loop ? 3 : 400;
-  model::Scene scene = model::load_scene("hung-edge", std::vector<model::Override>{{"grid.n", quick ? "8" : "20"}});
+  model::Scene scene = model::load_scene("hung-edge", std::vector<model::Override>{{"grid.n", quick ? "12" : "20"}});
   scene.pins.clear();
   scene.sheet.gravity.setZero();
   scene.sheet.material = {};
