@@ -288,7 +288,8 @@ std::vector<ClaimCase> rest_does_not_know_damping() {
   const solver::Vectors usual = rest("20");
   std::vector<ClaimCase> cases;
   for (const char* damping : {"200", "2000"})
-    cases.push_back({fmt::format("d = {} against 20", damping), reference::rms_distance(rest(damping), usual), 1e-9, 0, 1e-6});
+    cases.push_back(
+        {fmt::format("d = {} against 20", damping), reference::rms_distance(rest(damping), usual), 1e-9, -unbounded, 1e-6});
   return cases;
 }
 
@@ -305,7 +306,7 @@ constexpr Claim of_sheets[] = {
      bdf2_takes_less_than_euler, "bench/run study figure-3.2"},
     {"C-11c", of_2002, "3.4.1", "the equations of the midpoint rule converge more slowly", "updates over those of BDF(2)", "1",
      midpoint_converges_more_slowly},
-    {"C-16", "Baraff, Witkin 1998", "4", "one Newton step is enough", "error over that of converged Euler", "1",
+    {"C-16", "Baraff, Witkin 1998", "", "one Newton step is enough", "error over that of converged Euler", "1",
      one_newton_step_is_enough},
     {"C-24", of_2002, "2.8", "the rest does not depend on d", "distance of rests", "m", rest_does_not_know_damping},
     {"C-30", of_2002, "table 3.2", "the order of the methods' work on the tablecloth", "Kendall's τ of the order", "1",
@@ -316,11 +317,11 @@ constexpr Claim of_sheets[] = {
     {"C-33b", of_2002, "3.2", "methods of second order do not", "lag, d = 0.5", "s", second_order_is_not},
     {"E-28", of_2002, "3.4.4", "SBDF(2) and BDF(2) reduce the work", "CG iterations over those of the Euler method", "1",
      second_order_takes_less_work, "bench/run study table-3.2"},
-    {"F-05", "Simo, Tarnow 1992", "1", "the midpoint rule does not gain energy", "rise of the energy, no damping", "J",
+    {"F-05", "Simo, Tarnow 1992", "", "the midpoint rule does not gain energy", "rise of the energy, no damping", "J",
      midpoint_does_not_gain_energy},
-    {"F-07", "Bouaziz and others 2014", "5", "ten local/global iterations are enough", "updates a step to 1e-2 of |b|", "1",
+    {"F-07", "Bouaziz and others 2014", "", "ten local/global iterations are enough", "updates a step to 1e-2 of |b|", "1",
      ten_local_global_iterations},
-    {"F-09", "Bridson, Marino, Fedkiw 2003", "4.2", "implicit damping saves sub-steps", "sub-steps over those of Verlet", "1",
+    {"F-09", "Bridson, Marino, Fedkiw 2003", "", "implicit damping saves sub-steps", "sub-steps over those of Verlet", "1",
      implicit_damping_saves_substeps},
 };
 
