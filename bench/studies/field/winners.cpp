@@ -26,7 +26,12 @@ std::string_view damping_class(double to_damping) {
   return std::end(damping_classes)[-1].name;
 }
 
-bool may_win(const FieldRun& run, Settings settings) { return settings == Settings::tuned || run.recommended; }
+/// Whether a method may be advised: an error that does not vanish with the step is small by chance.
+bool may_be_chosen(const FieldRun& run) { return solver::method(run.method).converges; }
+
+bool may_win(const FieldRun& run, Settings settings) {
+  return may_be_chosen(run) && (settings == Settings::tuned || run.recommended);
+}
 
 /// log10 of h k/d; without damping as if that were 10⁶.
 double decade_of(const SheetResult& sheet) {
@@ -59,11 +64,10 @@ const FieldRun* run_with(const SheetResult& sheet, const FieldRun& setting) {
 
 void judge(const SheetResult& sheet, const SheetResult& training, std::vector<Judged>& all) {
   for (const double error : field_levels(sheet)) {
-    const auto was_run = [&](const FieldRun& run) { return run_with(sheet, run) != nullptr; };
+    const auto was_run = [&](const FieldRun& run) { return may_be_chosen(run) && run_with(sheet, run) != nullptr; };
     const FieldRun* chosen = quickest_run(training, error, was_run);
     if (chosen == nullptr) continue;
-    const auto any = [](const FieldRun&) { return true; };
-    all.push_back({&training, &sheet, error, run_with(sheet, *chosen), chosen->setting(), quickest_run(sheet, error, any)});
+    all.push_back({&training, &sheet, error, run_with(sheet, *chosen), chosen->setting(), quickest_run(sheet, error, may_be_chosen)});
   }
 }
 
