@@ -112,7 +112,8 @@ TEST_P(IntegratorWith, KeepsTimeAndStateWhenAStepFails) {
 }
 
 TEST_P(IntegratorWith, GoesOnAfterAFailedStepAsIfItHadNotBeen) {
-  if (method.name == "explicit-euler") GTEST_SKIP() << "evaluates no force after the start of its step";
+  if (method.name == "explicit-euler" || method.name == "exponential-euler")
+    GTEST_SKIP() << "evaluates no force, or none far from the start of its step, after that";
   const Problem p = breaking(start_time + 0.105);
   Integrator failing(p.ode, method, tight(), p.start, start_time), undisturbed(p.ode, method, tight(), p.start, start_time);
   for (const double h : {0.01, 0.02, 0.015}) {

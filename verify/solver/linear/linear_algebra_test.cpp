@@ -116,6 +116,7 @@ TEST_P(PreconditionerOf, DoesNotRememberWhatItWasAppliedTo) {
 }
 
 TEST_P(PreconditionerOf, FollowsNewValuesAlsoAfterABreakdown) {
+  if (GetParam() == "cg") GTEST_SKIP() << "no preconditioner, so no values";
   const SparseMatrix A = sheet(5, 4), indefinite = A - 60 * diagonal(Eigen::VectorXd::Ones(20));
   const auto preconditioner = prepared(kind, A);
   EXPECT_EQ(preconditioner->factor(indefinite), Outcome::breakdown);
