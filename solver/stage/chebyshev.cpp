@@ -38,9 +38,9 @@ ChebyshevLoop::ChebyshevLoop(const SplitOde& ode, const Options& options, StageS
 void ChebyshevLoop::begin(const State& y) { iterates_.restart(y.v); }
 
 LinearResult ChebyshevLoop::advance(const Stage& stage, State& y, double target) {
-  const LinearResult solved = system_.correct(target);
+  const LinearResult solved = system().correct(target);
   last_ = y.v;
-  y.v += system_.correction();
+  y.v += system().correction();
   iterates_.combine(last_, y.v);
   evaluate(stage, y);
   return solved;

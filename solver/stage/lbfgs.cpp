@@ -23,18 +23,18 @@ Lbfgs::Lbfgs(const SplitOde& ode, const Options& options, StageSystem& system) :
 
 void Lbfgs::begin(const State&) { count_ = 0; }
 
-double Lbfgs::slope() const { return dot(system_.residual(), d_); }
+double Lbfgs::slope() const { return dot(system().residual(), d_); }
 
 /// d = H r by the two loops   [Nocedal 1980].
 LinearResult Lbfgs::find_direction() {
-  q_ = system_.residual();
+  q_ = system().residual();
   for (int age = 0; age < kept(); ++age) {
     const Pair& pair = newest(age);
     parts_[age] = dot(pair.step, q_) / pair.curvature;
     q_ -= parts_[age] * pair.fall;
   }
-  const LinearResult solved = system_.respond(q_, inverse_tolerance);
-  d_ = system_.correction();
+  const LinearResult solved = system().respond(q_, inverse_tolerance);
+  d_ = system().correction();
   for (int age = kept(); age-- > 0;) {
     const Pair& pair = newest(age);
     d_ += (parts_[age] - dot(pair.fall, d_) / pair.curvature) * pair.step;
@@ -58,14 +58,14 @@ bool Lbfgs::follow(const Stage& stage, State& y) {
 void Lbfgs::remember(const State& y) {
   Pair& oldest = pairs_[count_ % memory];
   oldest.step = y.v - from_;
-  oldest.fall = r_ - system_.residual();
+  oldest.fall = r_ - system().residual();
   oldest.curvature = dot(oldest.step, oldest.fall);
   if (oldest.curvature > 0) ++count_;
 }
 
 LinearResult Lbfgs::advance(const Stage& stage, State& y, double) {
   from_ = y.v;
-  r_ = system_.residual();
+  r_ = system().residual();
   LinearResult solved = find_direction();
   if (solved.outcome != Outcome::success) return solved;
   if (!follow(stage, y)) solved.outcome = std::isfinite(slope()) ? Outcome::not_converged : Outcome::not_finite;

@@ -28,11 +28,14 @@ class StageIteration {
   /// Evaluates the residual at y, in the free directions.
   void evaluate(const Stage& stage, State& y);
 
+  const SplitOde& ode() const { return ode_; }
+  StageSystem& system() { return system_; }
+  const StageSystem& system() const { return system_; }
+
+ private:
   const SplitOde& ode_;
   const Options& options_;
   StageSystem& system_;
-
- private:
   LinearCounters work_;
 };
 

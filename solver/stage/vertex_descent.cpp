@@ -35,7 +35,7 @@ VertexDescent::VertexDescent(const SplitOde& ode, const Options& options, StageS
 void VertexDescent::begin(const State& y) { iterates_.restart(y.v); }
 
 void VertexDescent::find_blocks() {
-  for (int i = 0; i < ode_.particles(); ++i) {
+  for (int i = 0; i < ode().particles(); ++i) {
     Eigen::Matrix3d block = Eigen::Matrix3d::Zero();
     for (int a = 0; a < 3; ++a)
       for (SparseMatrix::InnerIterator entry(J_, 3 * i + a); entry && entry.col() < 3 * i + 3; ++entry)
@@ -59,12 +59,12 @@ void VertexDescent::find_colours() {
 }
 
 void VertexDescent::move(const std::vector<int>& colour, Vectors& v) const {
-  const Vectors& r = system_.residual();
+  const Vectors& r = system().residual();
   for (const int i : colour) v.row(i) += r.row(i) * blocks_[i];  // symmetric
 }
 
 LinearResult VertexDescent::advance(const Stage& stage, State& y, double) {
-  ode_.newton_matrix(stage.t, y.x, y.v, stage.gamma, Jacobian::whole, J_);
+  ode().newton_matrix(stage.t, y.x, y.v, stage.gamma, Jacobian::whole, J_);
   find_blocks();
   if (colours_.empty()) find_colours();
   last_ = y.v;
