@@ -54,7 +54,7 @@ void DenseInverses::invert(int particles) {
     }
     const Eigen::LLT<Eigen::MatrixXd> factor(dense);
     if (factor.info() != Eigen::Success) outcome = Outcome::breakdown;
-    inverses.push_back(factor.solve(Eigen::MatrixXd::Identity(particles, particles)));
+    inverses.emplace_back(factor.solve(Eigen::MatrixXd::Identity(particles, particles)));
   }
 }
 
