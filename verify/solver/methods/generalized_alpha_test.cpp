@@ -27,7 +27,8 @@ TEST(GeneralizedAlpha, KeepsSlowModes) {
     const double lost = 1 - radius(method, 1e-2), lost_of_half = 1 - radius(method, 1e-2 / 4);
     EXPECT_LE(lost, 1e-3) << method;
     EXPECT_GE(lost, at_infinity == 1 ? -1e-12 : 5e-8) << method;
-    if (at_infinity < 1) EXPECT_NEAR(std::log2(lost / lost_of_half), 4, 0.1) << method;
+    if (at_infinity == 1) continue;
+    EXPECT_NEAR(std::log2(lost / lost_of_half), 4, 0.1) << method;
   }
 }
 
