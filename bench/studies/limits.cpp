@@ -34,7 +34,7 @@ struct ExplicitForce {
   double (*value)(const model::Material& material);
 };
 
-/// Of a free sheet a homogeneous shear, x along v and y along u, has ω²/κ = 2 G/k: more than plane waves have, G/k along weft
+/// A homogeneous shear of a free sheet, x along v and y along u, has ω²/κ = 2 G/k: more than plane waves have, G/k along weft
 /// and warp and ½ + G/k along a diagonal. The plate has B Λ/k where Λ <= 8/l² is the eigenvalue of the sheet's second
 /// difference.
 constexpr ExplicitForce explicit_forces[] = {

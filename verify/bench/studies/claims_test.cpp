@@ -69,8 +69,7 @@ TEST(Ledger, NamesEachClaimOnceWithItsSource) {
   std::set<std::string_view> ids;
   for (const Claim* claim : ledger()) {
     EXPECT_TRUE(ids.insert(claim->id).second) << claim->id << " is there twice";
-    for (const std::string_view text :
-         {claim->source, claim->place, claim->claim, claim->measured, claim->unit, claim->command})
+    for (const std::string_view text : {claim->source, claim->claim, claim->measured, claim->unit, claim->command})
       EXPECT_FALSE(text.empty()) << claim->id;
   }
   EXPECT_GE(ids.size(), 30U);

@@ -42,7 +42,7 @@ class Condition : public testing::TestWithParam<Sheet> {
     return h * h * scene.sheet.material.tension.weft / area + h * d / area;
   }
 
-  /// Of M^-1/2 A M^-1/2 among free particles.
+  /// Eigenvalues of M^-1/2 A M^-1/2 among free particles.
   Eigen::VectorXd dense() const {
     std::vector<int> free;
     std::vector<bool> pinned(n * n, false);
