@@ -50,8 +50,12 @@ INSTANTIATE_TEST_SUITE_P(, MeanForceOf, testing::ValuesIn(sheets_where([](const 
 TEST_P(MeanForceOf, DoesTheWorkThatTheEnergyLoses) { EXPECT_LE(unbalanced(mean), rounding * size()); }
 
 TEST_P(MeanForceOf, KeepsTheMomentaThatTheForceKeeps) {
-  if (force.keeps_momentum) EXPECT_LE(mean.colwise().sum().norm(), rounding * largest(mean));
-  if (force.keeps_angular) EXPECT_LE(torque(middle, mean).norm(), rounding * largest(mean) * largest(middle));
+  if (force.keeps_momentum) {
+    EXPECT_LE(mean.colwise().sum().norm(), rounding * largest(mean));
+  }
+  if (force.keeps_angular) {
+    EXPECT_LE(torque(middle, mean).norm(), rounding * largest(mean) * largest(middle));
+  }
 }
 
 TEST(MeanForce, IsNotTheForceInTheMiddleUnlessTheEnergyIsQuadratic) {
