@@ -199,7 +199,8 @@ ClaimCase lag_case(const std::string& where, const model::Scene& scene, const Fi
   const auto states = states_by(scene, method, thesis_step, times);
   if (states.size() < times.size()) return {where, NAN, NAN, lower, upper};
   const Delay late = delay(times, states, fine.motion);
-  return {where, late.seconds, fine.uncertainty / late.speed, lower, upper};
+  const bool at_end_of_scan = std::abs(late.seconds) >= 0.999 * longest_lag * scene.end;
+  return {where + (at_end_of_scan ? ", at least" : ""), late.seconds, fine.uncertainty / late.speed, lower, upper};
 }
 
 constexpr double visible_lag = 1e-3;  ///< [s]
