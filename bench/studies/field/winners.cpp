@@ -67,7 +67,8 @@ void judge(const SheetResult& sheet, const SheetResult& training, std::vector<Ju
     const auto was_run = [&](const FieldRun& run) { return may_be_chosen(run) && run_with(sheet, run) != nullptr; };
     const FieldRun* chosen = quickest_run(training, error, was_run);
     if (chosen == nullptr) continue;
-    all.push_back({&training, &sheet, error, run_with(sheet, *chosen), chosen->setting(), quickest_run(sheet, error, may_be_chosen)});
+    all.push_back(
+        {&training, &sheet, error, run_with(sheet, *chosen), chosen->setting(), quickest_run(sheet, error, may_be_chosen)});
   }
 }
 
