@@ -9,6 +9,7 @@
 #include "model/scene_file/scene_file.hpp"
 #include "solver/dense_output.hpp"
 #include "verify/support/convergence.hpp"
+#include "verify/support/slow.hpp"
 #include "verify/support/small_problems.hpp"
 
 namespace drape::verify::tolerance_test {
@@ -90,6 +91,7 @@ INSTANTIATE_TEST_SUITE_P(, ToleranceOf,
 
 TEST_P(ToleranceOf, IsThatOfTheError) {
   const Method& method = solver::method(std::get<0>(GetParam()));
+  DRAPE_SLOW_IF(!method.in_thesis);
   const Sheet sheet(setting_named(std::get<1>(GetParam())));
   if (method.needs_energies && !sheet.cloth.ode.without_energy.empty()) GTEST_SKIP() << "not for this sheet";
   const Motion truth = sheet.run("esdirk4", sheet.control(1e-9, false));
