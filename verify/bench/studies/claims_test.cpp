@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bench/studies/claims/claim.hpp"
+#include "verify/support/slow.hpp"
 
 namespace drape::verify::claims_test {
 namespace {
@@ -100,7 +101,10 @@ void expect_refutable(std::span<const Claim> claims) {
 }
 
 TEST(Ledger, OfModesIsDecidedByNumbersThatCouldHaveRefutedIt) { expect_refutable(bench::mode_claims()); }
-TEST(Ledger, OfSystemsIsDecidedByNumbersThatCouldHaveRefutedIt) { expect_refutable(bench::system_claims()); }
+TEST(Ledger, OfSystemsIsDecidedByNumbersThatCouldHaveRefutedIt) {
+  DRAPE_SLOW();
+  expect_refutable(bench::system_claims());
+}
 
 /// What a measured claim comes to.
 std::string verdict_on(std::string_view id) {

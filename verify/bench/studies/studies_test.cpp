@@ -464,6 +464,32 @@ TEST_F(ProgramStudies, StepsByPassesAreComparedWithConstantOnes) {
   EXPECT_LE(largest.front(), largest.back()) << "with more passes allowed";
 }
 
+TEST_F(ProgramStudies, ConditionsAreThoseOfTheClosedForms) {
+  const auto all = tables("conditioning");  // in the order of their names
+  ASSERT_THAT(all, SizeIs(2));
+  const auto found = numbers(all[0], "condition", "linear_solver", "jacobi");
+  const auto known = numbers(all[0], "known", "linear_solver", "jacobi");
+  const auto iterations = numbers(all[0], "iterations", "linear_solver", "jacobi");
+  const auto sufficient = numbers(all[0], "sufficient", "linear_solver", "jacobi");
+  ASSERT_THAT(found, SizeIs(3u * 3 + 3 + 1));
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    EXPECT_NEAR(found[k], known[k], 0.01 * known[k]);
+    EXPECT_LE(iterations[k], sufficient[k]);
+  }
+  EXPECT_GT(found.back(), found.front()) << "they differ";
+  EXPECT_EQ(rows(all[1]), 2u);
+}
+
+TEST_F(ProgramStudies, LimitsAreThoseOfTheTheory) {
+  DRAPE_SLOW();
+  const auto all = tables("limits");
+  ASSERT_THAT(all, SizeIs(1));
+  EXPECT_THAT(verdicts(all[0]), SizeIs(2 * 6));
+  EXPECT_THAT(numbers(all[0], "onset", "method", "imex-euler"), Each(testing::DoubleNear(2, 0.1)));
+  EXPECT_THAT(numbers(all[0], "onset", "method", "sbdf2"), Each(testing::DoubleNear(4.0 / 3, 0.07)));
+  EXPECT_THAT(numbers(all[0], "onset", "method", "imex-midpoint"), Each(testing::DoubleNear(1, 0.05)));
+}
+
 TEST_F(ProgramStudies, ScalingTellsWhatWasChosenAndWhatAnIterationMoves) {
   const auto all = tables("scaling");  // in the order of their names
   ASSERT_THAT(all, SizeIs(3));
