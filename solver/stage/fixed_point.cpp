@@ -1,15 +1,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/stage/loop_tolerance.hpp"
 #include "solver/stage/stage_solver.hpp"
 
 namespace drape::solver {
-namespace {
-
-/// Tolerance of the loop where energies are kept only as far as stages are solved.
-constexpr double exact_loop_tolerance = 1e-13;
-
-}  // namespace
 
 StageResult StageSolver::fixed_point(const Stage& stage, const Vectors* f_explicit, State& y) {
   StageResult result;
@@ -20,12 +15,10 @@ StageResult StageSolver::fixed_point(const Stage& stage, const Vectors* f_explic
 
   const bool linear = f_explicit != nullptr, contacts = system_.touches();
   const int passes = linear ? 0 : options_.accepted_passes();
-  const double asked =
-      stage.start != nullptr ? std::min(options_.loop_tolerance, exact_loop_tolerance) : options_.loop_tolerance;
-  const double loop_tolerance = linear ? options_.cg_tolerance : asked;
+  const double tolerance = linear ? options_.cg_tolerance : loop_tolerance(options_, stage);
   const double cg_tolerance = linear || passes > 0
                                   ? options_.cg_tolerance
-                                  : std::min(options_.cg_tolerance, loop_tolerance / 2);  // else the loop could not end
+                                  : std::min(options_.cg_tolerance, tolerance / 2);  // else the loop could not end
   const int changing_updates = linear ? 10 : 50;
   StageSystem::Scale size{};
   for (;; ++result.updates, ++work_.updates) {
@@ -35,7 +28,7 @@ StageResult StageSolver::fixed_point(const Stage& stage, const Vectors* f_explic
     const bool solved = result.updates > 0;
     const bool changed =
         contacts && solved &&
-        system_.adapt_contacts(stage, f_explicit, y, size.target(loop_tolerance), result.updates >= changing_updates);
+        system_.adapt_contacts(stage, f_explicit, y, size.target(tolerance), result.updates >= changing_updates);
     const double whole = contacts ? system_.residual().norm() : 0;
     system_.filter_residual(stage.gamma);
     if (!solved) size = system_.scale(y, stage.gamma);
@@ -45,7 +38,7 @@ StageResult StageSolver::fixed_point(const Stage& stage, const Vectors* f_explic
     if (!std::isfinite(residual)) return ended(Outcome::not_finite);
     const double solved_to = stage.residual > 0 ? stage.residual / 2 : size.target(cg_tolerance);
     const bool guessed = !linear && !contacts && passes == 0 && residual <= solved_to;
-    const bool enough = passes > 0 ? accepted : residual <= (stage.residual > 0 ? stage.residual : size.target(loop_tolerance));
+    const bool enough = passes > 0 ? accepted : residual <= (stage.residual > 0 ? stage.residual : size.target(tolerance));
     if (solved ? !changed && enough : guessed) return ended(Outcome::success);
     if (result.updates == options_.max_updates) return ended(Outcome::not_converged);
 

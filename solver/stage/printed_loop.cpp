@@ -9,7 +9,7 @@ namespace drape::solver {
 StageResult StageSolver::printed_loop(const Stage& stage, State& y) {
   StageResult result;
   const auto ended = [&](Outcome outcome) { return StageResult{outcome, result.updates, result.cg_iterations}; };
-  const Outcome prepared = system_.prepare(stage.gamma);
+  const Outcome prepared = system_.prepare(stage.gamma, stage.inertia);
   if (prepared != Outcome::success) return ended(prepared);
   prescribe(ode_.pins, y.v);
   const int passes = options_.accepted_passes();

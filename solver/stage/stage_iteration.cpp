@@ -5,6 +5,7 @@
 
 #include "solver/stage/chebyshev.hpp"
 #include "solver/stage/lbfgs.hpp"
+#include "solver/stage/loop_tolerance.hpp"
 #include "solver/stage/vertex_descent.hpp"
 
 namespace drape::solver {
@@ -20,14 +21,14 @@ void StageIteration::evaluate(const Stage& stage, State& y) {
 StageResult StageIteration::solve(const Stage& stage, State& y) {
   StageResult result;
   const auto ended = [&](Outcome outcome) { return StageResult{outcome, result.updates, result.cg_iterations}; };
-  const Outcome prepared = system_.prepare(stage.gamma);
+  const Outcome prepared = system_.prepare(stage.gamma, stage.inertia);
   if (prepared != Outcome::success) return ended(prepared);
   prescribe(ode_.pins, y.v);
   evaluate(stage, y);
   const StageSystem::Scale size = system_.scale(y, stage.gamma);
-  const double end = stage.residual > 0 ? stage.residual : size.target(options_.loop_tolerance);
-  const double linear_target =
-      stage.residual > 0 ? end / 2 : size.target(std::min(options_.cg_tolerance, options_.loop_tolerance / 2));
+  const double tolerance = loop_tolerance(options_, stage);
+  const double end = stage.residual > 0 ? stage.residual : size.target(tolerance);
+  const double linear_target = stage.residual > 0 ? end / 2 : size.target(std::min(options_.cg_tolerance, tolerance / 2));
   const int passes = options_.accepted_passes();
   begin(y);
   for (;; ++result.updates, ++work_.updates) {

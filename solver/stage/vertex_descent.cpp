@@ -34,12 +34,13 @@ VertexDescent::VertexDescent(const SplitOde& ode, const Options& options, StageS
 
 void VertexDescent::begin(const State& y) { iterates_.restart(y.v); }
 
-void VertexDescent::find_blocks() {
+void VertexDescent::find_blocks(double inertia) {
   for (int i = 0; i < ode().particles(); ++i) {
     Eigen::Matrix3d block = Eigen::Matrix3d::Zero();
     for (int a = 0; a < 3; ++a)
       for (SparseMatrix::InnerIterator entry(J_, 3 * i + a); entry && entry.col() < 3 * i + 3; ++entry)
         block(a, entry.col() - 3 * i) = block(entry.col() - 3 * i, a) = entry.value();
+    block.diagonal().array() += (inertia - 1) * ode().mass[i];  // J_ has M, the stage μ M
     blocks_[i] = block.inverse();
   }
 }
@@ -65,7 +66,7 @@ void VertexDescent::move(const std::vector<int>& colour, Vectors& v) const {
 
 LinearResult VertexDescent::advance(const Stage& stage, State& y, double) {
   ode().newton_matrix(stage.t, y.x, y.v, stage.gamma, Jacobian::whole, J_);
-  find_blocks();
+  find_blocks(stage.inertia);
   if (colours_.empty()) find_colours();
   last_ = y.v;
   for (std::size_t k = 0; k < colours_.size(); ++k) {

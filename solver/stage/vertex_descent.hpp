@@ -21,7 +21,7 @@ class VertexDescent : public StageIteration {
  private:
   void begin(const State& y) override;
   LinearResult advance(const Stage& stage, State& y, double target) override;
-  void find_blocks();
+  void find_blocks(double inertia);
   void find_colours();
   void move(const std::vector<int>& colour, Vectors& v) const;
 

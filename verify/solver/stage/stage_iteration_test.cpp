@@ -6,6 +6,7 @@
 
 #include "model/cloth.hpp"
 #include "model/scene_file/scene_file.hpp"
+#include "reference/theory/amplification.hpp"
 #include "solver/stage/chebyshev.hpp"
 #include "verify/support/small_problems.hpp"
 
@@ -160,6 +161,20 @@ TEST_P(IterationsOnCloth, SolveTheSameEquationAsTheFixedPointLoop) {
     const State exact = end(cloth, tight(), "implicit-euler");
     const State ours = end(cloth, with(GetParam(), 1e-10, 1e-11), "implicit-euler");
     EXPECT_LE(distance(ours, exact), 1e-7) << damping;
+  }
+}
+
+/// Stages of generalised α have another inertia in x than in v: with the matrix for that a linear stage takes one correction.
+TEST(StageIteration, KnowsTheInertiaOfAStage) {
+  for (const char* kind : {"fixed-point", "printed-loop", "chebyshev", "lbfgs"}) {
+    const auto ode = reference::mode_ode({10, 10, 0.1});
+    Integrator integrator(ode, solver::method("generalized-alpha"), with(kind, 1e-8, 1e-9),
+                          known_motions::single({1, 0, 0.3}, {0, 0.8, -0.5}));
+    for (int n = 0; n < 3; ++n) {
+      const StageResult step = integrator.step(0.5);
+      EXPECT_EQ(step.outcome, Outcome::success) << kind;
+      EXPECT_EQ(step.updates, 1) << kind;
+    }
   }
 }
 
