@@ -15,6 +15,7 @@
 #include "solver/linear/cholmod_view.hpp"
 #include "solver/linear/conjugate_gradients.hpp"
 #include "solver/linear/kernels.hpp"
+#include "solver/linear/stage_matrix.hpp"
 
 namespace drape::bench {
 namespace {
@@ -30,12 +31,6 @@ model::Scene sheet(int n, std::vector<model::Override> changes) {
 
 /// Off the exact grid, so that no branch or cancellation is special.
 Vectors perturbed(const Vectors& x, double size) { return x + size * Vectors::Random(x.rows(), 3); }
-
-SparseMatrix stage_matrix(const solver::SplitOde& ode, double h) {
-  SparseMatrix A = SparseMatrix(ode.mass.asDiagonal()) - h * h * ode.stiffness - h * ode.damping;
-  A.makeCompressed();
-  return A;
-}
 
 /// Adds the time of an iteration over the number of particles as a column.
 void per_particle(benchmark::State& state, std::int64_t particles) {
@@ -62,7 +57,7 @@ void triad(benchmark::State& state) {
 
 void product(benchmark::State& state) {
   const model::Cloth cloth = compile(sheet(static_cast<int>(state.range(0)), {}));
-  const SparseMatrix A = stage_matrix(cloth.ode, 0.01);
+  const SparseMatrix A = solver::stage_matrix(cloth.ode, 0.01);
   const Vectors x = perturbed(cloth.start.x, 0.01);
   Vectors y = x;
   for (auto _ : state) benchmark::DoNotOptimize(solver::multiply(A, x, y));
@@ -73,7 +68,7 @@ void product(benchmark::State& state) {
 void cg_iteration(benchmark::State& state, const solver::LinearSolver& linear_solver) {
   constexpr int iterations = 10;
   const model::Cloth cloth = compile(sheet(static_cast<int>(state.range(0)), {}));
-  const SparseMatrix A = stage_matrix(cloth.ode, 0.01);
+  const SparseMatrix A = solver::stage_matrix(cloth.ode, 0.01);
   solver::ConjugateGradients cg(linear_solver.make(), iterations, *cloth.ode.work);
   cg.analyse(A);
   if (cg.factor(A) != solver::Outcome::success) return state.SkipWithError("the matrix is not positive definite");
@@ -92,7 +87,7 @@ template <class Preconditioner>
 void eigen_cg_iteration(benchmark::State& state) {
   constexpr int iterations = 10;
   const model::Cloth cloth = compile(sheet(static_cast<int>(state.range(0)), {}));
-  const SparseMatrix A = stage_matrix(cloth.ode, 0.01);
+  const SparseMatrix A = solver::stage_matrix(cloth.ode, 0.01);
   Eigen::ConjugateGradient<SparseMatrix, Eigen::Lower | Eigen::Upper, Preconditioner> cg(A);
   cg.setMaxIterations(iterations);
   cg.setTolerance(0);
@@ -108,7 +103,7 @@ void eigen_cg_iteration(benchmark::State& state) {
 /// CHOLMOD's own solve of three columns, in memory that is kept.
 void cholmod_solve(benchmark::State& state) {
   const model::Cloth cloth = compile(sheet(static_cast<int>(state.range(0)), {}));
-  const SparseMatrix A = stage_matrix(cloth.ode, 0.01);
+  const SparseMatrix A = solver::stage_matrix(cloth.ode, 0.01);
   cholmod_common common;
   cholmod_start(&common);
   cholmod_sparse view = solver::cholmod_view(A);

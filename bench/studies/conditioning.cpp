@@ -13,6 +13,7 @@
 #include "reference/theory/condition.hpp"
 #include "results/columns.hpp"
 #include "results/verdict.hpp"
+#include "solver/base/noise.hpp"
 #include "solver/base/statistics.hpp"
 #include "solver/linear/conjugate_gradients.hpp"
 
@@ -68,12 +69,7 @@ model::Scene scene_of(const StageMatrix& system) {
 
 /// Components along all eigenvectors, none in pinned particles; the same in every process.
 solver::Vectors any_solution(const solver::SplitOde& ode) {
-  solver::Vectors d(ode.particles(), 3);
-  std::uint64_t state = 1;
-  for (double& value : d.reshaped()) {
-    state = state * 6364136223846793005ULL + 1442695040888963407ULL;
-    value = static_cast<double>(state >> 11) / double(1ULL << 53) - 0.5;
-  }
+  solver::Vectors d = 0.5 * base::noise(3 * ode.particles(), 1).reshaped(ode.particles(), 3);
   solver::filter(ode.pins, d);
   return d;
 }

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstdint>
 #include <iterator>
 #include <string>
 #include <vector>
@@ -11,6 +10,7 @@
 #include "model/scene_file/scene_file.hpp"
 #include "results/columns.hpp"
 #include "results/verdict.hpp"
+#include "solver/base/noise.hpp"
 
 namespace drape::bench {
 namespace {
@@ -73,22 +73,13 @@ RunSpec spec_of(const LimitedMethod& limited, const ExplicitForce& force, double
   return {scene, "", &solver::method(limited.name), far_beyond, options};
 }
 
-/// A perturbation of all coordinates, the same in every process.
-void perturb(solver::Vectors& x, double size) {
-  std::uint64_t state = 7;
-  for (double& value : x.reshaped()) {
-    state = state * 6364136223846793005ULL + 1442695040888963407ULL;
-    value += size * (2 * static_cast<double>(state >> 11) / double(1ULL << 53) - 1);
-  }
-}
-
 /// Whether a method is stable with this ratio, or its loop converges.
 bool keeps(const LimitedMethod& limited, const ExplicitForce& force, double ratio, bool quick) {
   const RunSpec spec = spec_of(limited, force, ratio, quick);
   model::Cloth cloth = model::compile(spec.scene);
   const double size = perturbation * spec.scene.sheet.grid.spacing_u();
   const solver::Vectors flat = cloth.start.x;
-  perturb(cloth.start.x, size);
+  cloth.start.x += size * base::noise(flat.size(), 7).reshaped(flat.rows(), 3);
   const RunEnd end = run(spec, cloth);
   if (!end.succeeded()) return false;
   return (end.state.x - flat).cwiseAbs().maxCoeff() <= largest_growth * size;

@@ -154,14 +154,15 @@ model::Scene falling_sheet(double damping, bool quick) {
 }
 
 /// The states at the ends of implicit Euler's steps, the start among them, with stages solved by Newton's method.
-std::vector<solver::State> trajectory(const model::Cloth& cloth, int steps) {
-  solver::Options options;
-  options.stage = &solver::stage_kind("newton");
-  options.stage_accuracy = trajectory_accuracy;
-  solver::Integrator integrator(cloth.ode, solver::method("implicit-euler"), options, cloth.start);
-  std::vector<solver::State> states{integrator.state()};
-  for (int n = 0; n < steps && integrator.step(stage_step).outcome == solver::Outcome::success; ++n)
-    states.push_back(integrator.state());
+std::vector<solver::State> trajectory(const model::Scene& scene, const model::Cloth& cloth, int steps) {
+  RunSpec spec{scene, "", &solver::method("implicit-euler"), stage_step, {}};
+  spec.options.stage = &solver::stage_kind("newton");
+  spec.options.stage_accuracy = trajectory_accuracy;
+  spec.scene.end = steps * stage_step;
+  std::vector<solver::State> states;
+  FunctionObserver keep([&](const solver::StepReport& step) { states.push_back(step.y); });
+  Observer* const observers[] = {&keep};
+  run(spec, cloth, observers);
   return states;
 }
 
@@ -213,7 +214,7 @@ struct StagesOfSheet {
 StagesOfSheet stages_of(double damping, bool quick) {
   StagesOfSheet all{falling_sheet(damping, quick), damping, {}, {}};
   const model::Cloth cloth = model::compile(all.scene);
-  all.states = trajectory(cloth, quick ? 10 : static_cast<int>(std::lround(all.scene.end / stage_step)));
+  all.states = trajectory(all.scene, cloth, quick ? 10 : static_cast<int>(std::lround(all.scene.end / stage_step)));
   all.sizes = sizes_of(cloth, all.scene.sheet.gravity, all.states);
   return all;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "solver/base/decompositions.hpp"
+#include "solver/linear/stage_matrix.hpp"
 
 namespace drape::reference {
 namespace {
@@ -38,8 +39,7 @@ double sufficient_iterations(double condition, double reduction) {
 SparseMatrix stage_matrix(const solver::SplitOde& ode, double gamma) {
   std::vector<char> gone(static_cast<std::size_t>(ode.particles()), 0);
   for (const solver::Pin& pin : ode.pins) gone[pin.particle] = pin.all();
-  SparseMatrix A = SparseMatrix(ode.mass.asDiagonal()) - gamma * gamma * ode.stiffness;
-  if (ode.damping.nonZeros() > 0) A -= gamma * ode.damping;
+  SparseMatrix A = solver::stage_matrix(ode, gamma);
   A.prune([&](int i, int j, double) { return i == j || (!gone[i] && !gone[j]); });
   A.makeCompressed();
   return A;
@@ -49,7 +49,7 @@ KrylovRun krylov_run(const SparseMatrix& A, solver::Preconditioner& precondition
   constexpr double round_off = 1e-13;
   constexpr int most = 20'000;
   Vectors e = solution, r = A * e, z = r, p = Vectors::Zero(r.rows(), 3), q = p;
-  const double r0 = r.norm(), error0 = e.cwiseProduct(r).sum();  // <e, A e>
+  const double r0 = r.norm(), error0 = e.cwiseProduct(r).sum();  // <e, A e>, since A e = r
   std::vector<double> alpha, beta;
   KrylovRun run;
   double rz = 0;
@@ -62,7 +62,7 @@ KrylovRun krylov_run(const SparseMatrix& A, solver::Preconditioner& precondition
     alpha.push_back(rz / p.cwiseProduct(q).sum());
     e -= alpha.back() * p;
     r -= alpha.back() * q;
-    const double error = e.cwiseProduct(A * e).sum();
+    const double error = e.cwiseProduct(r).sum();
     if (run.iterations == 0 && error <= square(reduction) * error0) run.iterations = static_cast<int>(alpha.size());
   }
   run.eigenvalues = ritz_values(alpha, beta);

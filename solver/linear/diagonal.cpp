@@ -15,12 +15,8 @@ Outcome check_diagonal(const Eigen::VectorXd& diagonal) {
 /// No preconditioner: z = r.
 class Identity : public Preconditioner {
  public:
-  void analyse(const SparseMatrix& A) override { diagonal_.resize(A.rows()); }
-
-  Outcome factor(const SparseMatrix& A) override {
-    diagonal_ = A.diagonal();
-    return check_diagonal(diagonal_);
-  }
+  void analyse(const SparseMatrix& A) override { particles_ = A.rows(); }
+  Outcome factor(const SparseMatrix& A) override { return check_diagonal(A.diagonal()); }
 
   double apply(const Vectors& r, Vectors& z) override {
     z = r;
@@ -28,10 +24,10 @@ class Identity : public Preconditioner {
   }
 
   std::string_view name() const override { return "cg"; }
-  std::int64_t bytes() const override { return vector_bytes(diagonal_.size(), 2); }
+  std::int64_t bytes() const override { return vector_bytes(particles_, 2); }
 
  private:
-  Eigen::VectorXd diagonal_;
+  Eigen::Index particles_ = 0;
 };
 
 /// z = r over the diagonal of A.

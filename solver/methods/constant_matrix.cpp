@@ -1,16 +1,14 @@
 #include "solver/methods/constant_matrix.hpp"
 
 #include "solver/linear/kernels.hpp"
+#include "solver/linear/stage_matrix.hpp"
 
 namespace drape::solver {
 
 bool ConstantMatrix::make(double h) {
   if (h == h_) return false;
   h_ = h;
-  A_ = -h * h * ode_.stiffness;
-  if (ode_.damping.nonZeros() > 0) A_ -= h * ode_.damping;
-  for (int i = 0; i < A_.rows(); ++i) A_.coeffRef(i, i) += ode_.mass[i];
-  A_.makeCompressed();
+  A_ = stage_matrix(ode_, h);
   ++work_.builds;
   ++work_.factorisations;
   work_.entries = A_.nonZeros();
