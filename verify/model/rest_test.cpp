@@ -36,11 +36,16 @@ class Rest : public testing::TestWithParam<std::string> {
   const Method& method = solver::method(GetParam());
   const PulledSheet sheet;
 };
-INSTANTIATE_TEST_SUITE_P(, Rest, testing::ValuesIn(names(implicit_methods())),
+/// Methods that solve their equations; sweeps settle over many steps, and do not look for a rest.
+std::vector<Method> solving_methods() {
+  std::vector<Method> all = implicit_methods();
+  std::erase_if(all, [](const Method& method) { return method.repeats != Method::Repeats::none; });
+  return all;
+}
+INSTANTIATE_TEST_SUITE_P(, Rest, testing::ValuesIn(names(solving_methods())),
                          [](const auto& test) { return identifier(test.param); });
 
 TEST_P(Rest, IsTheClosedFormSolution) {
-  if (method.repeats != Method::Repeats::none) GTEST_SKIP() << "sweeps settle over many steps";
   Integrator integrator(sheet.cloth.ode, method, tolerances(1e-9, 1e-10), sheet.cloth.start);
   EXPECT_GE(sheet.distance(integrator.state()), 1e-4);
   ASSERT_EQ(integrate(integrator, 2, step).outcome, Outcome::success);
@@ -49,7 +54,6 @@ TEST_P(Rest, IsTheClosedFormSolution) {
 }
 
 TEST_P(Rest, NeedsNoWork) {
-  if (method.repeats != Method::Repeats::none) GTEST_SKIP() << "sweeps do not look for a rest";
   for (const double tolerance : {1e-6, 1e-12, 0.0}) {
     SCOPED_TRACE(tolerance);
     Integrator integrator(sheet.cloth.ode, method, tolerances(tolerance, tolerance), {sheet.rest, 0 * sheet.rest});

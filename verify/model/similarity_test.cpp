@@ -25,6 +25,9 @@ using solver::Outcome;
 /// Factors of lengths, times and densities.
 struct Units {
   double a = 1, b = 1, c = 1;
+
+  double moduli() const { return c * a * a / (b * b); }  ///< of [N/m]
+  double viscosities() const { return c * a * a / b; }   ///< of [N s/m]
 };
 constexpr Units other_units[] = {{4, 1, 1}, {1, 4, 1}, {1, 1, 4}, {0.25, 2, 16}};
 
@@ -37,7 +40,7 @@ struct Case {
 /// A sheet with forces of every kind, hung by two corners.
 std::string sheet(const Units& u) {
   const auto [a, b, c] = u;
-  const double moduli = c * a * a / (b * b), viscosities = c * a * a / b;
+  const double moduli = u.moduli(), viscosities = u.viscosities();
   return fmt::format(
       "grid = {{ n = [6, 5], size = [{}, {}] }}\n"
       "material = {{ density = {}, tension = [{}, {}], damping = {}, shear = {}, shear_damping = {}, contraction = {}, bend = "
@@ -53,7 +56,7 @@ std::string sheet(const Units& u) {
 /// A sheet with membrane bending and projected damping falls on a ball; `response`: to contact.
 std::string fall(const Units& u, const char* response) {
   const auto [a, b, c] = u;
-  const double moduli = c * a * a / (b * b), viscosities = c * a * a / b;
+  const double moduli = u.moduli(), viscosities = u.viscosities();
   return fmt::format(
       "grid = {{ n = 6, size = {} }}\n"
       "material = {{ density = {}, tension = {}, damping = {}, damping_form = 'projected', shear = {}, bend = {}, "
