@@ -46,17 +46,21 @@ install_packages() {
 }
 
 # show_progress <log>: keeps what ninja says in a log, and shows how far it is: in one line on a terminal, else only that it builds.
+# Not by awk: Debian's mawk waits for 4 KB of input.
 show_progress() {
-  awk -v log_file="$1" -v terminal="$([[ -t 2 ]] && echo 1 || true)" '
-    { print >> log_file; fflush(log_file) }
-    /^\[[0-9]+\/[0-9]+\] (Building|Linking)/ {
-      if (terminal) printf "\r\033[Kbuilding %s; log: %s", $1, log_file
-      else if (!said) print "building; log: " log_file
-      said = 1
-      fflush()
-    }
-    END { if (terminal && said) printf "\r\033[K" }' >&2
-}
+  local line said=
+  while IFS= read -r line || [[ -n $line ]]; do
+    echo "$line" >>"$1"
+    [[ $line =~ ^(\[[0-9]+/[0-9]+\])\ (Building|Linking) ]] || continue
+    if [[ -t 2 ]]; then
+      printf '\r\033[Kbuilding %s; log: %s' "${BASH_REMATCH[1]}" "$1"
+    elif [[ -z $said ]]; then
+      echo "building; log: $1"
+    fi
+    said=yes
+  done
+  if [[ -t 2 && -n $said ]]; then printf '\r\033[K'; fi
+} >&2
 
 # build <preset> [cmake --build option]...: configures if that was never done or the presets changed, and builds. Silent if there
 # is nothing to do.

@@ -16,21 +16,21 @@
 /// Tables from rows: a study computes rows, plain structs, and a list of columns says what a table shows of them.
 namespace drape::results {
 
-inline Cell to_cell(std::string text) { return text; }
-inline Cell to_cell(std::string_view text) { return std::string(text); }
-inline Cell to_cell(const char* text) { return std::string(text); }
-inline Cell to_cell(Verdict verdict) { return verdict; }
-inline Cell to_cell(double value) { return value; }
-inline Cell to_cell(std::integral auto value) { return static_cast<std::int64_t>(value); }
-inline Cell to_cell(solver::Outcome outcome) { return std::string(to_string(outcome)); }
+inline Datum to_datum(std::string text) { return text; }
+inline Datum to_datum(std::string_view text) { return std::string(text); }
+inline Datum to_datum(const char* text) { return std::string(text); }
+inline Datum to_datum(Verdict verdict) { return verdict; }
+inline Datum to_datum(double value) { return value; }
+inline Datum to_datum(std::integral auto value) { return static_cast<std::int64_t>(value); }
+inline Datum to_datum(solver::Outcome outcome) { return std::string(to_string(outcome)); }
 template <class Value>
-Cell to_cell(const std::optional<Value>& value) {
-  return value ? to_cell(*value) : Cell();
+Datum to_datum(const std::optional<Value>& value) {
+  return value ? to_datum(*value) : Datum();
 }
 
 /// A member of a row as its cell: field<&Row::step>.
 template <auto member>
-constexpr auto field = [](const auto& row) -> Cell { return to_cell(row.*member); };
+constexpr auto field = [](const auto& row) -> Datum { return to_datum(row.*member); };
 
 /// A column of a table with rows of this type.
 template <class Row>
@@ -40,7 +40,7 @@ struct ColumnOf {
   const char* unit;         ///< "1" for numbers without dimension, empty for text
   const char* description;  ///< what the numbers are
   Role role;
-  Cell (*value)(const Row& row);
+  Datum (*value)(const Row& row);
   std::string (*shown)(const Row& row) = nullptr;  ///< if users see something else
   std::span<const std::string_view> classes = {};  ///< the texts that classify, the best first
 };
@@ -82,7 +82,7 @@ void add_columns(Table& table, const ColumnOf<Part> (&columns)[count], const Row
     Column filled = detail::column_of(column, group);
     for (const auto& row : rows) {
       const auto& found = part(row);
-      filled.cells.push_back(found ? column.value(*found) : Cell());
+      filled.cells.push_back(found ? column.value(*found) : Datum());
       if (column.shown) filled.shown.push_back(found ? column.shown(*found) : std::string());
     }
     table.columns.push_back(std::move(filled));

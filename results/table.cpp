@@ -45,7 +45,7 @@ template <class... Functions>
 Overload(Functions...) -> Overload<Functions...>;
 
 /// `number` is a format for doubles: "{}" gives the shortest text that reads back as the same number.
-std::string to_text(const Cell& cell, std::string_view number) {
+std::string to_text(const Datum& cell, std::string_view number) {
   return std::visit(Overload{[](std::monostate) { return std::string(); }, [](const std::string& text) { return text; },
                              [&](double value) { return fmt::format(fmt::runtime(number), value); },
                              [](std::int64_t value) { return std::to_string(value); },
@@ -53,7 +53,7 @@ std::string to_text(const Cell& cell, std::string_view number) {
                     cell);
 }
 
-nlohmann::ordered_json to_value(const Cell& cell) {
+nlohmann::ordered_json to_value(const Datum& cell) {
   return std::visit(Overload{[](std::monostate) { return nlohmann::ordered_json(); },
                              [](const Verdict& verdict) { return nlohmann::ordered_json(to_string(verdict)); },
                              [](const auto& value) { return nlohmann::ordered_json(value); }},
@@ -75,7 +75,7 @@ std::string dump(const nlohmann::ordered_json& value) {
 }
 
 /// A text or number of CSV. Programs that calculate would take some texts for formulas, unless an apostrophe is before them.
-std::string csv_cell(const Cell& cell) {
+std::string csv_cell(const Datum& cell) {
   std::string text = to_text(cell, "{}");
   if (std::holds_alternative<double>(cell) || std::holds_alternative<std::int64_t>(cell)) return text;
   if (text.find_first_of("=+-@") == 0) text.insert(0, 1, '\'');
@@ -99,7 +99,7 @@ void append_column(std::vector<std::string>& lines, const std::vector<std::strin
 std::vector<std::string> shown(const Column& column) {
   if (!column.shown.empty()) return column.shown;
   std::vector<std::string> texts;
-  for (const Cell& cell : column.cells) texts.push_back(to_text(cell, "{:.4g}"));
+  for (const Datum& cell : column.cells) texts.push_back(to_text(cell, "{:.4g}"));
   return texts;
 }
 
@@ -149,19 +149,19 @@ bool is_good(const Column& outcomes, std::string_view text) {
 
 std::string text_in(const Column* column, std::size_t row) {
   if (column == nullptr) return "";
-  const Cell& cell = column->cells[row];
+  const Datum& cell = column->cells[row];
   if (const auto* verdict = std::get_if<Verdict>(&cell)) return to_string(*verdict);
   const auto* text = std::get_if<std::string>(&cell);
   return text == nullptr ? "" : *text;
 }
 
-Verdict verdict_of(const Cell& cell) {
+Verdict verdict_of(const Datum& cell) {
   if (const auto* verdict = std::get_if<Verdict>(&cell)) return *verdict;
   const auto* text = std::get_if<std::string>(&cell);
   return {Standing::open, text == nullptr ? "" : *text};
 }
 
-Standing standing(const Cell& cell) { return verdict_of(cell).standing; }
+Standing standing(const Datum& cell) { return verdict_of(cell).standing; }
 
 double number_in(const Column* column, std::size_t row) {
   if (column == nullptr) return std::numeric_limits<double>::quiet_NaN();

@@ -13,7 +13,7 @@
 namespace drape::results {
 
 /// A value in a table; monostate if there is none.
-using Cell = std::variant<std::monostate, std::string, double, std::int64_t, Verdict>;
+using Datum = std::variant<std::monostate, std::string, double, std::int64_t, Verdict>;
 
 /// What a column says: compare, the overview and the report go by this, never by names.
 enum class Role {
@@ -64,7 +64,7 @@ struct Column {
   std::string unit;         ///< "1" for numbers without dimension, empty for text
   std::string description;  ///< what the numbers are
   Role role;
-  std::vector<Cell> cells;
+  std::vector<Datum> cells;
   std::vector<std::string> shown;         ///< what users see in place of the cells; empty: the cells, numbers with four digits
   std::vector<std::string> classes = {};  ///< the texts that classify, the best first; empty: any text
   std::string group = {};                 ///< which of several groups of like columns it is in, for example a method
@@ -119,8 +119,8 @@ std::string text_in(const Column* column, std::size_t row);
 double number_in(const Column* column, std::size_t row);
 
 /// The verdict in a cell. A text that classifies is open, and so is a cell without any.
-Verdict verdict_of(const Cell& cell);
-Standing standing(const Cell& cell);
+Verdict verdict_of(const Datum& cell);
+Standing standing(const Datum& cell);
 
 /// One line per row, aligned for users; "no rows" without any. Columns without any value are left out, and those without a
 /// title unless the table is for the file.

@@ -18,9 +18,9 @@ struct CompareArguments {
   results::CompareOptions options;
 };
 
-void print(const char* kind, const results::Judged& judged) {
-  fmt::print("{}: {} ({})\n", kind, to_string(judged.judgement), base::printable(judged.reason));
-  if (rows(judged.worst) > 0) fmt::print("\n{}\n", to_text(judged.worst));
+void print(const char* kind, const results::Aspect& aspect) {
+  fmt::print("{}: {} ({})\n", kind, to_string(aspect.change), base::printable(aspect.reason));
+  if (rows(aspect.worst) > 0) fmt::print("\n{}\n", to_text(aspect.worst));
 }
 
 int compare_files(const CompareArguments& a) {

@@ -54,7 +54,7 @@ Json page_missed(const results::Column& verdicts) {
 
 Json page_column(const results::Column& column) {
   Json cells = Json::array();
-  for (const results::Cell& cell : column.cells)
+  for (const results::Datum& cell : column.cells)
     cells.push_back(std::visit([](const auto& value) { return json_value(value); }, cell));
   Json object{{"name", column.name},
               {"title", column.title},

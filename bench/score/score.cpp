@@ -18,16 +18,16 @@
 namespace drape::bench {
 namespace {
 
-using results::Cell;
 using results::ColumnGroup;
 using results::ColumnOf;
+using results::Datum;
 using results::field;
 using results::make_table;
 using results::Measured;
 using results::quartiles;
 using results::Role;
 using results::Table;
-using results::to_cell;
+using results::to_datum;
 
 /// A frame in units of the scene's size.
 struct Frame {
@@ -36,17 +36,17 @@ struct Frame {
 };
 
 constexpr ColumnOf<Frame> frame_columns[] = {
-    {"t", "t", "s", "time of the frame", Role::key, [](const Frame& f) -> Cell { return f.score->t; }},
+    {"t", "t", "s", "time of the frame", Role::key, [](const Frame& f) -> Datum { return f.score->t; }},
     {"rms", "rms error", "1", "distance from the reference, over the size", Role::error,
-     [](const Frame& f) -> Cell { return f.score->rms / f.size; }},
+     [](const Frame& f) -> Datum { return f.score->rms / f.size; }},
     {"maximum", "largest", "1", "largest distance of a particle, over the size", Role::error,
-     [](const Frame& f) -> Cell { return f.score->maximum / f.size; }},
+     [](const Frame& f) -> Datum { return f.score->maximum / f.size; }},
     {"reference_error", "reference error", "1", "uncertainty of the reference, as rms", Role::uncertainty,
-     [](const Frame& f) -> Cell { return f.score->uncertainty / f.size; }},
+     [](const Frame& f) -> Datum { return f.score->uncertainty / f.size; }},
     {"centre", "", "1", "distance of the centres of mass, over the size", Role::error,
-     [](const Frame& f) -> Cell { return f.score->centre / f.size; }},
+     [](const Frame& f) -> Datum { return f.score->centre / f.size; }},
     {"centre_uncertainty", "", "1", "of the reference", Role::note,
-     [](const Frame& f) -> Cell { return f.score->truth.centre_distance / f.size; }},
+     [](const Frame& f) -> Datum { return f.score->truth.centre_distance / f.size; }},
 };
 
 /// An energy of a frame and of the reference [J].
@@ -89,18 +89,18 @@ Table frames_table(const Scoring& s) {
 constexpr const char* by_reference = "by what the reference is uncertain";
 
 constexpr ColumnOf<Summary> summary_columns[] = {
-    {"scene", "", "", "its name", Role::key, [](const Summary& s) -> Cell { return s.scoring->scene.name; }},
-    {"file", "", "", "what was measured", Role::key, [](const Summary& s) -> Cell { return s.scoring->external.name; }},
+    {"scene", "", "", "its name", Role::key, [](const Summary& s) -> Datum { return s.scoring->scene.name; }},
+    {"file", "", "", "what was measured", Role::key, [](const Summary& s) -> Datum { return s.scoring->external.name; }},
     {"velocities", "", "", "where they are from", Role::key,
-     [](const Summary& s) { return to_cell(source_of_velocities(s.scoring->external)); }},
+     [](const Summary& s) { return to_datum(source_of_velocities(s.scoring->external)); }},
     {"reference", "", "", "the families that agree", Role::note,
-     [](const Summary& s) -> Cell { return s.scoring->truth.families; }},
-    {"frames", "", "1", "how many", Role::quantity, [](const Summary& s) -> Cell { return std::ssize(s.scoring->frames); }},
-    {"end", "", "s", "time of the last frame", Role::quantity, [](const Summary& s) -> Cell { return s.last->t; }},
+     [](const Summary& s) -> Datum { return s.scoring->truth.families; }},
+    {"frames", "", "1", "how many", Role::quantity, [](const Summary& s) -> Datum { return std::ssize(s.scoring->frames); }},
+    {"end", "", "s", "time of the last frame", Role::quantity, [](const Summary& s) -> Datum { return s.last->t; }},
     {"growth", "", "1", "largest growth of a small perturbation of the start", Role::quantity,
-     [](const Summary& s) -> Cell { return s.scoring->truth.growth; }},
+     [](const Summary& s) -> Datum { return s.scoring->truth.growth; }},
     {"error", "rms error", "1", "largest of the frames' rms distances, over the size", Role::error, field<&Summary::error>},
-    {"error_time", "at", "s", "when that is", Role::quantity, [](const Summary& s) -> Cell { return s.worst->t; }},
+    {"error_time", "at", "s", "when that is", Role::quantity, [](const Summary& s) -> Datum { return s.worst->t; }},
     {"maximum", "largest", "1", "largest distance of any particle in any frame, over the size", Role::error,
      field<&Summary::maximum>},
     {"mean_error", "", "1", "root mean square over all frames and particles, over the size", Role::error,
@@ -109,27 +109,27 @@ constexpr ColumnOf<Summary> summary_columns[] = {
     {"reference_error", "reference error", "1", "largest uncertainty of the reference at the frames, as rms", Role::uncertainty,
      field<&Summary::reference_error>},
     {"lag", "lag", "s", "delay against the reference", Role::quantity,
-     [](const Summary& s) -> Cell { return s.late.seconds.value; }},
+     [](const Summary& s) -> Datum { return s.late.seconds.value; }},
     {"lag_uncertainty", "±", "s", by_reference, Role::note,
-     [](const Summary& s) -> Cell { return s.late.seconds.uncertainty; }},
+     [](const Summary& s) -> Datum { return s.late.seconds.uncertainty; }},
     {"left", "left", "1", "as mean_error, the delay taken out", Role::error,
-     [](const Summary& s) -> Cell { return s.late.left.value; }},
-    {"left_uncertainty", "±", "1", by_reference, Role::note, [](const Summary& s) -> Cell { return s.late.left.uncertainty; }},
+     [](const Summary& s) -> Datum { return s.late.left.value; }},
+    {"left_uncertainty", "±", "1", by_reference, Role::note, [](const Summary& s) -> Datum { return s.late.left.uncertainty; }},
     {"damping", "damping", "1/s", "rate at which the kinetic energy falls behind the reference's, the delay taken out",
-     Role::quantity, [](const Summary& s) -> Cell { return s.damping.value; }},
+     Role::quantity, [](const Summary& s) -> Datum { return s.damping.value; }},
     {"damping_uncertainty", "±", "1/s", by_reference, Role::note,
-     [](const Summary& s) -> Cell { return s.damping.uncertainty; }},
-    {"energy", "", "J", "total at the last frame", Role::quantity, [](const Summary& s) -> Cell { return s.last->own.total; }},
+     [](const Summary& s) -> Datum { return s.damping.uncertainty; }},
+    {"energy", "", "J", "total at the last frame", Role::quantity, [](const Summary& s) -> Datum { return s.last->own.total; }},
     {"energy_uncertainty", "", "J", by_reference, Role::note,
-     [](const Summary& s) -> Cell { return s.last->truth.uncertainty.total; }},
+     [](const Summary& s) -> Datum { return s.last->truth.uncertainty.total; }},
     {"reference_energy", "", "J", "the same of the reference", Role::quantity,
-     [](const Summary& s) -> Cell { return s.last->truth.value.total; }},
+     [](const Summary& s) -> Datum { return s.last->truth.value.total; }},
 };
 
 constexpr ColumnOf<Summary> penetration_columns[] = {
     {"penetration", "depth", "m", "greatest depth of a particle in an obstacle", Role::quantity,
-     [](const Summary& s) -> Cell { return s.deepest->depth; }},
-    {"penetration_time", "at", "s", "when that is", Role::quantity, [](const Summary& s) -> Cell { return s.deepest->t; }},
+     [](const Summary& s) -> Datum { return s.deepest->depth; }},
+    {"penetration_time", "at", "s", "when that is", Role::quantity, [](const Summary& s) -> Datum { return s.deepest->t; }},
     {"reference_penetration", "", "m", "the same of the reference", Role::quantity, field<&Summary::reference_depth>},
 };
 
@@ -172,20 +172,20 @@ constexpr const char* of_time = "median wall time to the last frame";
 
 constexpr ColumnOf<ComparedRun> run_columns[] = {
     {"method", "", "", "time integrator, with what controls it", Role::key,
-     [](const ComparedRun& run) -> Cell { return run.configuration->name; }},
-    {"value", "", "1", of_value, Role::key, [](const ComparedRun& run) -> Cell { return run.variant().value; }},
+     [](const ComparedRun& run) -> Datum { return run.configuration->name; }},
+    {"value", "", "1", of_value, Role::key, [](const ComparedRun& run) -> Datum { return run.variant().value; }},
     {"outcome", "", "", "success, or why there is none", Role::outcome,
-     [](const ComparedRun& run) -> Cell { return run.counts() ? "success" : run.reason; }},
+     [](const ComparedRun& run) -> Datum { return run.counts() ? "success" : run.reason; }},
     {"steps", "", "1", "steps", Role::counter, field<&ComparedRun::steps>},
 };
 
 constexpr ColumnOf<Measured> measured_columns[] = {
     {"error", "", "1", of_error, Role::error, field<&Measured::error>},
-    {"time", "", "ms", of_time, Role::time, [](const Measured& m) -> Cell { return quartiles(m.times).median; }},
-    {"lower", "", "ms", "lower quartile", Role::time, [](const Measured& m) -> Cell { return quartiles(m.times).lower; }},
-    {"upper", "", "ms", "upper quartile", Role::time, [](const Measured& m) -> Cell { return quartiles(m.times).upper; }},
+    {"time", "", "ms", of_time, Role::time, [](const Measured& m) -> Datum { return quartiles(m.times).median; }},
+    {"lower", "", "ms", "lower quartile", Role::time, [](const Measured& m) -> Datum { return quartiles(m.times).lower; }},
+    {"upper", "", "ms", "upper quartile", Role::time, [](const Measured& m) -> Datum { return quartiles(m.times).upper; }},
     {"repetitions", "", "1", "times it was run for this", Role::time,
-     [](const Measured& m) -> Cell { return std::ssize(m.times); }},
+     [](const Measured& m) -> Datum { return std::ssize(m.times); }},
 };
 
 /// All that was tried, for files.
@@ -215,11 +215,12 @@ constexpr ColumnOf<OfConfiguration> configuration_columns[] = {
 
 /// Which run it is depends on times.
 constexpr ColumnOf<Answer> answer_columns[] = {
-    {"{}value", "{}", "1", of_value, Role::time, [](const Answer& a) -> Cell { return a.run->variant().value; }},
-    {"{}error", "rms error", "1", of_error, Role::time, [](const Answer& a) -> Cell { return a.run->measured.error; }},
+    {"{}value", "{}", "1", of_value, Role::time, [](const Answer& a) -> Datum { return a.run->variant().value; }},
+    {"{}error", "rms error", "1", of_error, Role::time, [](const Answer& a) -> Datum { return a.run->measured.error; }},
     {"{}time", "time", "ms", of_time, Role::time,
-     [](const Answer& a) -> Cell { return quartiles(a.run->measured.times).median; }},
-    {"{}best", "best", "", "which method it is", Role::note, [](const Answer& a) { return a.best ? to_cell("best") : Cell(); }},
+     [](const Answer& a) -> Datum { return quartiles(a.run->measured.times).median; }},
+    {"{}best", "best", "", "which method it is", Role::note,
+     [](const Answer& a) { return a.best ? to_datum("best") : Datum(); }},
 };
 
 std::optional<Answer> answer(const ComparedRun* run, const ComparedRun* best) {

@@ -14,7 +14,7 @@
 namespace drape::bench {
 namespace {
 
-using results::Cell;
+using results::Datum;
 using results::field;
 using results::Role;
 
@@ -100,26 +100,26 @@ Choice choose(const SheetRuns& runs, double error) {
 using ChoiceRow = const Choice&;
 
 constexpr results::ColumnOf<Choice> choice_columns[] = {
-    {"damping", "d", "N s/m", "linear damping", Role::key, [](ChoiceRow row) -> Cell { return row.sheet.damping; }},
-    {"n", "n", "1", "particles a side", Role::key, [](ChoiceRow row) { return results::to_cell(row.sheet.n); }},
+    {"damping", "d", "N s/m", "linear damping", Role::key, [](ChoiceRow row) -> Datum { return row.sheet.damping; }},
+    {"n", "n", "1", "particles a side", Role::key, [](ChoiceRow row) { return results::to_datum(row.sheet.n); }},
     {"error", "error <=", "1", "the largest at all tenths of the end, over the size of the scene", Role::key,
      field<&Choice::error>},
     {"best", "quickest", "", "a method, what controls its accuracy, and the value of that; none if no method is so accurate",
-     Role::note, [](ChoiceRow row) -> Cell { return row.best.name(); }},
+     Role::note, [](ChoiceRow row) -> Datum { return row.best.name(); }},
     {"ms", "time", "ms", "its median CPU time", Role::time,
-     [](ChoiceRow row) { return row.best ? Cell(row.best.time) : Cell(); }},
+     [](ChoiceRow row) { return row.best ? Datum(row.best.time) : Datum(); }},
     {"lower", "from", "ms", "lower quartile of its times", Role::time,
-     [](ChoiceRow row) { return row.best ? Cell(row.times()->lower) : Cell(); }},
+     [](ChoiceRow row) { return row.best ? Datum(row.times()->lower) : Datum(); }},
     {"upper", "to", "ms", "upper quartile of its times", Role::time,
-     [](ChoiceRow row) { return row.best ? Cell(row.times()->upper) : Cell(); }},
+     [](ChoiceRow row) { return row.best ? Datum(row.times()->upper) : Datum(); }},
     {"runner_up", "runner-up", "", "the quickest of the other methods", Role::note,
-     [](ChoiceRow row) { return row.runner_up ? Cell(row.runner_up.name()) : Cell(); }},
+     [](ChoiceRow row) { return row.runner_up ? Datum(row.runner_up.name()) : Datum(); }},
     {"ratio", "slower by", "1", "time of the runner-up over that of the quickest", Role::time,
-     [](ChoiceRow row) { return row.runner_up ? Cell(row.runner_up.time / row.best.time) : Cell(); }},
+     [](ChoiceRow row) { return row.runner_up ? Datum(row.runner_up.time / row.best.time) : Datum(); }},
     {"ratio_lower", "", "1", "its 95 % interval, by bootstrap", Role::time,
-     [](ChoiceRow row) { return row.runner_up ? Cell(row.ratio_interval()->lower) : Cell(); }},
+     [](ChoiceRow row) { return row.runner_up ? Datum(row.ratio_interval()->lower) : Datum(); }},
     {"ratio_upper", "", "1", "its 95 % interval, by bootstrap", Role::time,
-     [](ChoiceRow row) { return row.runner_up ? Cell(row.ratio_interval()->upper) : Cell(); }},
+     [](ChoiceRow row) { return row.runner_up ? Datum(row.ratio_interval()->upper) : Datum(); }},
 };
 
 results::Table choice_table(const std::vector<SheetRuns>& all) {

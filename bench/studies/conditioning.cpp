@@ -21,8 +21,8 @@ namespace drape::bench {
 namespace {
 
 using reference::PinnedBorder;
-using results::Cell;
 using results::ColumnOf;
+using results::Datum;
 using results::field;
 using results::Role;
 
@@ -132,12 +132,12 @@ constexpr ColumnOf<Conditioned> conditioned_columns[] = {
     {"known", "closed form", "1", "the same in closed form, where the diagonal scales the matrix by its masses", Role::quantity,
      field<&Conditioned::known>},
     {"as_known", "closed form", "", "whether both agree within 1 %", Role::verdict,
-     [](const Conditioned& row) { return results::to_cell(row.as_known()); }},
+     [](const Conditioned& row) { return results::to_datum(row.as_known()); }},
     {"iterations", "iterations", "1", "until the error in the norm of A has fallen by 2e-4", Role::counter,
      field<&Conditioned::iterations>},
     {"sufficient", "sufficient", "1", "iterations by (3.7): ½ √κ ln(2/ε)", Role::quantity, field<&Conditioned::sufficient>},
     {"within", "bound", "", "whether the iterations are within the bound", Role::verdict,
-     [](const Conditioned& row) { return results::to_cell(row.within()); }},
+     [](const Conditioned& row) { return results::to_datum(row.within()); }},
 };
 
 constexpr const char* compared_solvers[] = {"jacobi", "cg", "ic0", "mic0", "multigrid"};
@@ -230,7 +230,7 @@ Inverse time_inverse(int n, bool quick) {
 }
 
 template <int way>
-constexpr auto inverse_median = [](const Inverse& row) -> Cell { return row.medians[way]; };
+constexpr auto inverse_median = [](const Inverse& row) -> Datum { return row.medians[way]; };
 
 constexpr ColumnOf<Inverse> inverse_columns[] = {
     {"particles", "N", "1", "particles of a sheet hung by one edge, implicit Euler, h = 0.01 s", Role::key,
@@ -239,7 +239,7 @@ constexpr ColumnOf<Inverse> inverse_columns[] = {
     {"ic0", "CG, IC(0)", "µs", "conjugate gradients to 2e-4 from no guess", Role::time, inverse_median<1>},
     {"cholesky", "factor", "µs", "substitution with the complete factor", Role::time, inverse_median<2>},
     {"verdict", "CG", "", "whether conjugate gradients are cheaper than the inverse, as the thesis says (3.3.4)", Role::verdict,
-     [](const Inverse& row) { return results::to_cell(row.cheaper()); }},
+     [](const Inverse& row) { return results::to_datum(row.cheaper()); }},
 };
 
 const std::vector<int>& inverse_sizes(bool quick) {

@@ -222,7 +222,7 @@ struct Equilibrium {
 };
 
 template <auto member>
-constexpr auto of_errors = [](const Equilibrium& row) { return results::to_cell(row.errors.*member); };
+constexpr auto of_errors = [](const Equilibrium& row) { return results::to_datum(row.errors.*member); };
 
 using results::Role;
 constexpr results::ColumnOf<Equilibrium> equilibrium_columns[] = {

@@ -40,11 +40,13 @@ inline constexpr results::ColumnOf<Draping> draping_columns[] = {
     {"contacts", "in contact", "1", "particles that touched something in the last step", results::Role::quantity,
      results::field<&Draping::contacts>},
     {"outcome", "outcome", "", "how the run ended", results::Role::outcome,
-     [](const Draping& run) { return results::to_cell(run.ending()); }},
+     [](const Draping& run) { return results::to_datum(run.ending()); }},
     {"thesis_updates", "thesis: updates", "1", "printed in the thesis", results::Role::note,
-     [](const Draping& run) { return run.as_published ? results::to_cell(run.as_published->updates) : results::Cell(); }},
+     [](const Draping& run) { return run.as_published ? results::to_datum(run.as_published->updates) : results::Datum(); }},
     {"thesis_cg_iterations", "thesis: CG", "1", "printed in the thesis", results::Role::note,
-     [](const Draping& run) { return run.as_published ? results::to_cell(run.as_published->cg_iterations) : results::Cell(); }},
+     [](const Draping& run) {
+       return run.as_published ? results::to_datum(run.as_published->cg_iterations) : results::Datum();
+     }},
 };
 
 }  // namespace drape::bench

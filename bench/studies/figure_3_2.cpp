@@ -16,7 +16,7 @@
 namespace drape::bench {
 namespace {
 
-using results::Cell;
+using results::Datum;
 using results::field;
 using results::Role;
 using results::Standing;
@@ -152,17 +152,17 @@ constexpr results::ColumnOf<Swing> swing_columns[] = {
     {"damping", "d", "N s/m", "linear damping; 0.2 is the scene's", Role::key, field<&Swing::damping>},
     {"method", "method", "", "time integrator", Role::key, field<&Swing::method>},
     {"peak_to_peak", "swing", "m", "of the free edge's mean, from peak to peak", Role::quantity,
-     [](const Swing& row) -> Cell { return row.seen->peak_to_peak(); }},
-    {"rms", "rms", "m", "of the same", Role::quantity, [](const Swing& row) -> Cell { return row.seen->rms(); }},
+     [](const Swing& row) -> Datum { return row.seen->peak_to_peak(); }},
+    {"rms", "rms", "m", "of the same", Role::quantity, [](const Swing& row) -> Datum { return row.seen->rms(); }},
     {"wrinkles", "wrinkles", "m", "root mean square distance of the free edge from its mean", Role::quantity,
-     [](const Swing& row) -> Cell { return row.seen->wrinkles; }},
+     [](const Swing& row) -> Datum { return row.seen->wrinkles; }},
     {"bending", "bending", "J", "energy of the bending along u, mean over time", Role::quantity,
-     [](const Swing& row) -> Cell { return row.seen->bending.sum(); }},
+     [](const Swing& row) -> Datum { return row.seen->bending.sum(); }},
     {"kinetic", "kinetic", "J", "energy of all waves along u, mean over time", Role::quantity,
-     [](const Swing& row) -> Cell { return row.seen->kinetic.sum(); }},
+     [](const Swing& row) -> Datum { return row.seen->kinetic.sum(); }},
     {"verdict", "verdict", "", "whether Euler swings less than the truth", Role::verdict, field<&Swing::verdict>},
     {"outcome", "outcome", "", "how the run ended", Role::outcome,
-     [](const Swing& row) { return results::to_cell(row.seen->run.outcome); }},
+     [](const Swing& row) { return results::to_datum(row.seen->run.outcome); }},
 };
 
 results::Table swings(const Runs& runs) {
@@ -197,10 +197,10 @@ constexpr results::ColumnOf<Spectrum> waves_columns[] = {
 };
 constexpr results::ColumnOf<double> energy_column[] = {
     {"{}", "{}", "J", "energy of these waves, mean over the last second", Role::quantity,
-     [](const double& energy) -> Cell { return energy; }},
+     [](const double& energy) -> Datum { return energy; }},
 };
 constexpr results::ColumnOf<double> ratio_column[] = {
-    {"{}", "{}", "1", "ratio of these energies", Role::quantity, [](const double& ratio) -> Cell { return ratio; }},
+    {"{}", "{}", "1", "ratio of these energies", Role::quantity, [](const double& ratio) -> Datum { return ratio; }},
 };
 constexpr results::ColumnOf<Spectrum> waves_verdict[] = {
     {"verdict", "motion", "", "what Euler does to the kinetic energy", Role::verdict, field<&Spectrum::verdict>},

@@ -169,7 +169,7 @@ constexpr results::ColumnOf<Lag> lag_columns[] = {
 constexpr results::ColumnOf<Lags> lags_verdict[] = {
     {"verdict", "verdict", "", "whether both lags, and what they leave of t, are within a tenth of what is predicted",
      Role::verdict,
-     [](const Lags& row) -> results::Cell {
+     [](const Lags& row) -> results::Datum {
        return results::check(row.sbdf2.is_as_predicted(row.t) && row.imex_euler.is_as_predicted(row.t), "as predicted",
                              "not as predicted");
      }},

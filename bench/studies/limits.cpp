@@ -119,9 +119,9 @@ constexpr results::ColumnOf<Onset> onset_columns[] = {
     {"bound", "in theory", "1", "largest ratio for which it is so with every h", Role::quantity, field<&Onset::bound>},
     {"onset", "measured", "1", "the same on the sheet, by bisection", Role::quantity, field<&Onset::onset>},
     {"value", "modulus", "", "of the force, at the measured limit", Role::note,
-     [](const Onset& row) { return results::to_cell(fmt::format("{} = {:.4g} {}", row.key, row.value, row.unit)); }},
+     [](const Onset& row) { return results::to_datum(fmt::format("{} = {:.4g} {}", row.key, row.value, row.unit)); }},
     {"verdict", "verdict", "", "whether both agree within 5 %", Role::verdict,
-     [](const Onset& row) { return results::to_cell(row.verdict()); }},
+     [](const Onset& row) { return results::to_datum(row.verdict()); }},
 };
 
 std::vector<Onset> onsets(bool quick, Checkpoint& checkpoint) {

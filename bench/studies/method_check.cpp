@@ -50,7 +50,7 @@ constexpr results::ColumnOf<Usable> damping_columns[] = {
 constexpr results::ColumnOf<Usable> usable_columns[] = {
     {"theory", "in theory", "", "linear theory of the largest of all steps", Role::note, results::field<&Usable::theory>},
     {"verdict", "verdict", "", "up to what steps it is stable", Role::verdict,
-     [](const Usable& row) -> results::Cell { return row.verdict(); }},
+     [](const Usable& row) -> results::Datum { return row.verdict(); }},
 };
 
 constexpr double stiffness = 1e4;  ///< [N/m]
@@ -97,7 +97,7 @@ constexpr results::ColumnOf<EnergyChange> energy_columns[] = {
      results::field<&EnergyChange::change>},
     {"gain", "gain", "1", "the most that it was above that of the start", Role::quantity, results::field<&EnergyChange::gain>},
     {"verdict", "verdict", "", "what becomes of the energy", Role::verdict,
-     [](const EnergyChange& row) { return results::to_cell(row.verdict()); }},
+     [](const EnergyChange& row) { return results::to_datum(row.verdict()); }},
 };
 
 constexpr double energy_end = 1;  ///< [s]
@@ -171,9 +171,9 @@ constexpr results::ColumnOf<Quickest> best_columns[] = {
      results::field<&Quickest::value>},
     {"error", "", "1", "its error", Role::time, results::field<&Quickest::error>},
     {"time", "time", "ms", "median wall time", Role::time,
-     [](const Quickest& best) -> results::Cell { return best.times.median; }},
-    {"lower", "", "ms", "lower quartile", Role::time, [](const Quickest& best) -> results::Cell { return best.times.lower; }},
-    {"upper", "", "ms", "upper quartile", Role::time, [](const Quickest& best) -> results::Cell { return best.times.upper; }},
+     [](const Quickest& best) -> results::Datum { return best.times.median; }},
+    {"lower", "", "ms", "lower quartile", Role::time, [](const Quickest& best) -> results::Datum { return best.times.lower; }},
+    {"upper", "", "ms", "upper quartile", Role::time, [](const Quickest& best) -> results::Datum { return best.times.upper; }},
     {"forces", "forces", "1", "evaluations", Role::time, results::field<&Quickest::forces>},
 };
 

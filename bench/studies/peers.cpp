@@ -117,25 +117,25 @@ struct Reproduced {
   results::Quartiles times() const { return results::quartiles(ours.times); }
 };
 
-using results::Cell;
+using results::Datum;
 using results::Role;
 
 constexpr results::ColumnOf<Reproduced> reproduced_columns[] = {
     {"damping", "d", "", "linear damping [N s/m] of hung-corners", Role::key,
-     [](const Reproduced& r) -> Cell { return r.row.damping; }},
-    {"setup", "setup", "", "of SUNDIALS", Role::key, [](const Reproduced& r) -> Cell { return r.row.setup.name(); }},
-    {"value", "value", "1", "step [s] or tolerance", Role::key, [](const Reproduced& r) -> Cell { return r.row.value; }},
+     [](const Reproduced& r) -> Datum { return r.row.damping; }},
+    {"setup", "setup", "", "of SUNDIALS", Role::key, [](const Reproduced& r) -> Datum { return r.row.setup.name(); }},
+    {"value", "value", "1", "step [s] or tolerance", Role::key, [](const Reproduced& r) -> Datum { return r.row.value; }},
     {"error", "error", "1", "largest at 0.7, 0.9 and 1 of the end, over the scene's size", Role::error,
-     [](const Reproduced& r) -> Cell { return r.ours.error; }},
+     [](const Reproduced& r) -> Datum { return r.ours.error; }},
     {"theirs", "driver's", "1", "the same by an independent driver", Role::quantity,
-     [](const Reproduced& r) -> Cell { return r.row.their_error; }},
+     [](const Reproduced& r) -> Datum { return r.row.their_error; }},
     {"over_motion", "over motion", "1", "largest error at all tenths", Role::error,
-     [](const Reproduced& r) -> Cell { return r.ours.over_motion; }},
-    {"time", "CPU", "ms", "median CPU time", Role::time, [](const Reproduced& r) -> Cell { return r.times().median; }},
-    {"lower", "", "ms", "lower quartile", Role::time, [](const Reproduced& r) -> Cell { return r.times().lower; }},
-    {"upper", "", "ms", "upper quartile", Role::time, [](const Reproduced& r) -> Cell { return r.times().upper; }},
+     [](const Reproduced& r) -> Datum { return r.ours.over_motion; }},
+    {"time", "CPU", "ms", "median CPU time", Role::time, [](const Reproduced& r) -> Datum { return r.times().median; }},
+    {"lower", "", "ms", "lower quartile", Role::time, [](const Reproduced& r) -> Datum { return r.times().lower; }},
+    {"upper", "", "ms", "upper quartile", Role::time, [](const Reproduced& r) -> Datum { return r.times().upper; }},
     {"their_time", "driver's", "ms", "the driver's, the minimum of three, with SUNDIALS built with our flags", Role::time,
-     [](const Reproduced& r) -> Cell { return r.row.their_ms; }},
+     [](const Reproduced& r) -> Datum { return r.row.their_ms; }},
 };
 
 std::vector<Reproduced> reproduce(bool quick, Checkpoint& checkpoint) {

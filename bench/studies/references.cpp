@@ -66,34 +66,34 @@ struct Grown {
   double factor() const { return growths.largest / growths.found.back(); }
 };
 
-using results::Cell;
 using results::ColumnOf;
+using results::Datum;
 using results::field;
 using results::Role;
 using results::Standing;
 
 constexpr ColumnOf<Grown> sheet_columns[] = {
-    {"scene", "scene", "", "its name", Role::key, [](const Grown& row) -> Cell { return row.scene.name; }},
-    {"n", "n", "1", "particles a side", Role::key, [](const Grown& row) { return results::to_cell(row.scene.sheet.grid.nu); }},
+    {"scene", "scene", "", "its name", Role::key, [](const Grown& row) -> Datum { return row.scene.name; }},
+    {"n", "n", "1", "particles a side", Role::key, [](const Grown& row) { return results::to_datum(row.scene.sheet.grid.nu); }},
     {"damping", "d", "N s/m", "linear damping", Role::key,
-     [](const Grown& row) -> Cell { return row.scene.sheet.material.damping.weft; }},
-    {"end", "end", "s", "when it is measured", Role::key, [](const Grown& row) -> Cell { return row.scene.end; }},
+     [](const Grown& row) -> Datum { return row.scene.sheet.material.damping.weft; }},
+    {"end", "end", "s", "when it is measured", Role::key, [](const Grown& row) -> Datum { return row.scene.end; }},
     {"largest", "largest", "1", "largest singular value of the motion, by differences", Role::quantity,
-     [](const Grown& row) -> Cell { return row.growths.largest; }},
+     [](const Grown& row) -> Datum { return row.growths.largest; }},
 };
 
 constexpr ColumnOf<double> round_columns[] = {
     {"rounds_{}", "{} rounds", "1", "growth of the perturbation found in this number of rounds", Role::quantity,
-     [](const double& growth) -> Cell { return growth; }},
+     [](const double& growth) -> Datum { return growth; }},
 };
 
 results::Verdict judge(double factor) { return results::check(factor <= bar, "as wanted", "not as wanted"); }
 
 constexpr ColumnOf<Grown> factor_columns[] = {
     {"factor", "factor", "1", "the largest over the last", Role::quantity,
-     [](const Grown& row) -> Cell { return row.factor(); }},
+     [](const Grown& row) -> Datum { return row.factor(); }},
     {"verdict", "verdict", "", "whether the factor is at most 2", Role::verdict,
-     [](const Grown& row) -> Cell { return judge(row.factor()); }},
+     [](const Grown& row) -> Datum { return judge(row.factor()); }},
 };
 
 results::Table to_table(const std::vector<Grown>& rows) {
@@ -180,14 +180,14 @@ constexpr ColumnOf<PeerSolution> compared_columns[] = {
     {"damping", "d", "N s/m", "linear damping", Role::key, field<&PeerSolution::damping>},
     {"family", "family", "", "the solver and its methods", Role::key, field<&PeerSolution::peer>},
     {"steps", "steps", "1", "steps of the solver", Role::counter,
-     [](const PeerSolution& row) -> Cell { return row.solution.steps; }},
+     [](const PeerSolution& row) -> Datum { return row.solution.steps; }},
     {"factorisations", "LU", "1", "factorisations of the sparse Newton matrix", Role::counter,
-     [](const PeerSolution& row) -> Cell { return row.solution.factorisations; }},
-    {"wall", "wall", "s", "wall time, once", Role::time, [](const PeerSolution& row) -> Cell { return row.solution.seconds; }},
+     [](const PeerSolution& row) -> Datum { return row.solution.factorisations; }},
+    {"wall", "wall", "s", "wall time, once", Role::time, [](const PeerSolution& row) -> Datum { return row.solution.seconds; }},
     {"distance", "from CVODE", "1", "largest distance of positions at ten times, over the size of the scene", Role::error,
      field<&PeerSolution::distance>},
     {"verdict", "verdict", "", "whether it agrees with CVODE to 1e-8", Role::verdict,
-     [](const PeerSolution& row) { return row.distance ? Cell(agreement(*row.distance)) : Cell(); }},
+     [](const PeerSolution& row) { return row.distance ? Datum(agreement(*row.distance)) : Datum(); }},
 };
 
 /// The solutions of all peer solvers on a scene.

@@ -103,7 +103,7 @@ constexpr results::ColumnOf<RefinedRun> refined_columns[] = {
     {"order", "order", "1", "between this step and the one before", results::Role::note, results::field<&RefinedRun::order>},
     {"outcome", "outcome", "", "how the run failed", results::Role::note,
      [](const RefinedRun& run) {
-       return run.outcome == solver::Outcome::success ? results::Cell() : results::to_cell(run.outcome);
+       return run.outcome == solver::Outcome::success ? results::Datum() : results::to_datum(run.outcome);
      }},
     {"reason", "reason", "", "what was thrown", results::Role::note, results::field<&RefinedRun::reason>},
 };

@@ -19,8 +19,8 @@
 namespace drape::bench {
 namespace {
 
-using results::Cell;
 using results::ColumnOf;
+using results::Datum;
 using results::field;
 using results::Role;
 using results::Standing;
@@ -144,7 +144,7 @@ constexpr ColumnOf<StageWork> stage_columns[] = {
     {"ms", "time", "ms", "wall time of a stage, mean", Role::time, field<&StageWork::ms>},
     {"known", "table 1c", "1", "updates of another implementation, from another guess", Role::note, field<&StageWork::known>},
     {"verdict", "verdict", "", "whether the updates are within a fifth of table 1c; unless all stages are solved, missed",
-     Role::verdict, [](const StageWork& work) { return results::to_cell(verdict(work)); }},
+     Role::verdict, [](const StageWork& work) { return results::to_datum(verdict(work)); }},
 };
 
 model::Scene falling_sheet(double damping, bool quick) {
@@ -179,7 +179,7 @@ struct Size {
 std::vector<Size> sizes_of(const model::Cloth& cloth, const Eigen::Vector3d& gravity,
                            const std::vector<solver::State>& states) {
   solver::StageSystem system(cloth.ode, {}, nullptr);
-  system.prepare(stage_step);
+  system.prepare(stage_step, 1);
   std::vector<Size> sizes;
   for (std::size_t n = 0; n + 1 < states.size(); ++n) {
     solver::State y = states[n];

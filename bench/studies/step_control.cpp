@@ -25,8 +25,8 @@
 namespace drape::bench {
 namespace {
 
-using results::Cell;
 using results::ColumnOf;
+using results::Datum;
 using results::field;
 using results::Role;
 using results::Standing;
@@ -164,7 +164,7 @@ constexpr ColumnOf<PolicyRun> policy_columns[] = {
     {"setting", "setting", "", "the step [s]; least and most passes and the factor of a change; the tolerance", Role::key,
      field<&PolicyRun::setting>},
     {"error", "error", "1", "largest RMS distance from the reference at ten times, over the size", Role::error,
-     [](const PolicyRun& run) { return run.succeeded() ? Cell(run.error) : Cell(); }},
+     [](const PolicyRun& run) { return run.succeeded() ? Datum(run.error) : Datum(); }},
     {"uncertainty", "±", "1", "of the reference, in the measure of the error", Role::uncertainty,
      field<&PolicyRun::uncertainty>},
     {"steps", "steps", "1", "accepted steps", Role::counter, field<&PolicyRun::steps>},

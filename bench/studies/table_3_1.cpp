@@ -14,7 +14,7 @@
 namespace drape::bench {
 namespace {
 
-using results::Cell;
+using results::Datum;
 using results::field;
 using results::Role;
 
@@ -87,7 +87,7 @@ constexpr results::ColumnOf<BlockRun> block_columns[] = {
     {"tension", "k", "N/m", "tension modulus", Role::key, field<&BlockRun::k>},
     {"damping", "d", "N s/m", "linear damping", Role::key, field<&BlockRun::d>},
     {"stiffness_to_damping", "h k/d", "1", "what the fixed-point loop's contraction depends on", Role::quantity,
-     [](const BlockRun& row) -> Cell { return draping_step * row.k / row.d; }},
+     [](const BlockRun& row) -> Datum { return draping_step * row.k / row.d; }},
     {"verdict", "work", "", "of the four runs: whether updates and CG iterations do as the thesis says", Role::verdict,
      field<&BlockRun::verdict>},
 };

@@ -17,8 +17,8 @@
 namespace drape::bench {
 namespace {
 
-using results::Cell;
 using results::ColumnOf;
+using results::Datum;
 using results::field;
 using results::Role;
 using results::Standing;
@@ -172,9 +172,9 @@ constexpr ColumnOf<ControlledRun> controlled_columns[] = {
     {"method", "method", "", "time integrator", Role::key, field<&ControlledRun::method>},
     {"tolerance", "tolerance", "1", "of the error over the size of the scene", Role::key, field<&ControlledRun::tolerance>},
     {"error", "error", "1", "largest RMS distance from the reference at ten times, over the size", Role::error,
-     [](const ControlledRun& run) { return std::isfinite(run.error) ? Cell(run.error) : Cell(); }},
+     [](const ControlledRun& run) { return std::isfinite(run.error) ? Datum(run.error) : Datum(); }},
     {"ratio", "error/tolerance", "1", "error over tolerance", Role::note,
-     [](const ControlledRun& run) { return std::isfinite(run.error) ? Cell(run.ratio()) : Cell(); }},
+     [](const ControlledRun& run) { return std::isfinite(run.error) ? Datum(run.ratio()) : Datum(); }},
     {"uncertainty", "±", "1", "of the reference, in the measure of the error", Role::uncertainty,
      field<&ControlledRun::uncertainty>},
     {"steps", "steps", "1", "accepted steps", Role::counter, field<&ControlledRun::steps>},
@@ -183,7 +183,7 @@ constexpr ColumnOf<ControlledRun> controlled_columns[] = {
      field<&ControlledRun::pilots>},
     {"forces", "forces", "1", "evaluations, those of pilot runs among them", Role::counter, field<&ControlledRun::forces>},
     {"verdict", "verdict", "", "whether the error is within ten times of the tolerance, to both sides", Role::verdict,
-     [](const ControlledRun& run) { return results::to_cell(verdict_on(run)); }},
+     [](const ControlledRun& run) { return results::to_datum(verdict_on(run)); }},
     {"outcome", "outcome", "", "how the run ended", Role::outcome, field<&ControlledRun::outcome>},
     {"note", "", "", "what the run says of itself", Role::note, field<&ControlledRun::note>},
 };
@@ -247,7 +247,7 @@ constexpr ColumnOf<MethodSummary> method_summary_columns[] = {
     {"lowest", "lowest ratio", "1", "of error to tolerance", Role::quantity, field<&MethodSummary::lowest>},
     {"highest", "highest", "1", "of error to tolerance", Role::quantity, field<&MethodSummary::highest>},
     {"verdict", "verdict", "", "whether no error is larger than ten tolerances and no run fails", Role::verdict,
-     [](const MethodSummary& summary) -> Cell { return summary.verdict(); }},
+     [](const MethodSummary& summary) -> Datum { return summary.verdict(); }},
 };
 
 /// The summary of all scenes and tolerances.

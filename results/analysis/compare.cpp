@@ -7,7 +7,7 @@
 #include <map>
 #include <set>
 
-#include "results/analysis/findings.hpp"
+#include "results/analysis/differences.hpp"
 #include "solver/base/statistics.hpp"
 #include "solver/outcome.hpp"
 
@@ -91,50 +91,50 @@ Matching match(const std::vector<RunRecord>& a, const std::vector<RunRecord>& b)
 // --- Accuracy ------------------------------------------------------------------------------------------------------------
 
 void compare_error(const Pair& pair, const std::string& quantity, double ErrorRecord::*error, double ErrorRecord::*uncertainty,
-                   const CompareOptions& options, Findings& findings) {
+                   const CompareOptions& options, Differences& differences) {
   const double a = (*pair.a->error).*error, b = (*pair.b->error).*error;
   const double noise = (*pair.a->error).*uncertainty + (*pair.b->error).*uncertainty;
-  const Judgement judgement = judge_error(a, b, options.error_factor, noise);
-  if (judgement == Judgement::same) return;
-  findings.add({title(*pair.a), quantity, fmt::format("{} ± {:.1g}", shown(a), (*pair.a->error).*uncertainty),
-                fmt::format("{} ± {:.1g}", shown(b), (*pair.b->error).*uncertainty), std::isnan(b) ? INFINITY : std::log(b / a),
-                judgement});
+  const Change change = judge_error(a, b, options.error_factor, noise);
+  if (change == Change::same) return;
+  differences.add({title(*pair.a), quantity, fmt::format("{} ± {:.1g}", shown(a), (*pair.a->error).*uncertainty),
+                   fmt::format("{} ± {:.1g}", shown(b), (*pair.b->error).*uncertainty),
+                   std::isnan(b) ? INFINITY : std::log(b / a), change});
 }
 
 /// How far runs came of which at least one failed.
-void compare_outcomes(const Pair& pair, const CompareOptions& options, Findings& findings) {
+void compare_outcomes(const Pair& pair, const CompareOptions& options, Differences& differences) {
   const double a = pair.a->succeeded() ? INFINITY : pair.a->last_good_time,
                b = pair.b->succeeded() ? INFINITY : pair.b->last_good_time;
-  const Judgement judgement = b * options.error_factor < a   ? Judgement::regression
-                              : a * options.error_factor < b ? Judgement::better
-                                                             : Judgement::same;
-  if (judgement == Judgement::same) return;
+  const Change change = b * options.error_factor < a   ? Change::regression
+                        : a * options.error_factor < b ? Change::better
+                                                       : Change::same;
+  if (change == Change::same) return;
   const auto text = [](const RunRecord& run) {
     const std::string_view outcome = to_string(run.outcome);
     return run.succeeded() ? std::string(outcome) : fmt::format("{} at {} s", outcome, shown(run.last_good_time));
   };
-  findings.add({title(*pair.a), "outcome", text(*pair.a), text(*pair.b), judgement == Judgement::better ? -INFINITY : INFINITY,
-                judgement});
+  differences.add(
+      {title(*pair.a), "outcome", text(*pair.a), text(*pair.b), change == Change::better ? -INFINITY : INFINITY, change});
 }
 
-void compare_accuracy(const Pair& pair, const CompareOptions& options, Findings& findings) {
-  ++findings.cells;
-  if (!pair.a->succeeded() || !pair.b->succeeded()) return compare_outcomes(pair, options, findings);
+void compare_accuracy(const Pair& pair, const CompareOptions& options, Differences& differences) {
+  ++differences.cells;
+  if (!pair.a->succeeded() || !pair.b->succeeded()) return compare_outcomes(pair, options, differences);
   if (pair.a->error.has_value() != pair.b->error.has_value()) {
     const auto text = [](const RunRecord& run) { return run.error ? "measured" : "not measured"; };
-    return findings.add({title(*pair.a), "error", text(*pair.a), text(*pair.b), 0, Judgement::not_comparable});
+    return differences.add({title(*pair.a), "error", text(*pair.a), text(*pair.b), 0, Change::not_comparable});
   }
   if (!pair.a->error) return;
   if (comparable(*pair.a->error) && comparable(*pair.b->error))
-    return compare_error(pair, "rms error", &ErrorRecord::rms, &ErrorRecord::reference_error, options, findings);
-  compare_error(pair, "energy error", &ErrorRecord::energy, &ErrorRecord::energy_spread, options, findings);
-  compare_error(pair, "centre error", &ErrorRecord::centre, &ErrorRecord::centre_spread, options, findings);
+    return compare_error(pair, "rms error", &ErrorRecord::rms, &ErrorRecord::reference_error, options, differences);
+  compare_error(pair, "energy error", &ErrorRecord::energy, &ErrorRecord::energy_spread, options, differences);
+  compare_error(pair, "centre error", &ErrorRecord::centre, &ErrorRecord::centre_spread, options, differences);
 }
 
 // --- Work ----------------------------------------------------------------------------------------------------------------
 
-void compare_work(const Pair& pair, Findings& findings) {
-  ++findings.cells;
+void compare_work(const Pair& pair, Differences& differences) {
+  ++differences.cells;
   std::set<std::string> names;
   for (const WorkCount& work : pair.a->work)
     if (std::ranges::count(pair.b->work, work.name, &WorkCount::name) > 0)
@@ -142,9 +142,9 @@ void compare_work(const Pair& pair, Findings& findings) {
   for (const std::string& name : names) {
     const std::int64_t a = work_count(*pair.a, name), b = work_count(*pair.b, name);
     if (a == b) continue;
-    const double change = std::log((static_cast<double>(b) + 0.5) / (static_cast<double>(a) + 0.5));
-    findings.add({title(*pair.a), name, std::to_string(a), std::to_string(b), change,
-                  b > a ? Judgement::regression : Judgement::better});
+    const double severity = std::log((static_cast<double>(b) + 0.5) / (static_cast<double>(a) + 0.5));
+    differences.add(
+        {title(*pair.a), name, std::to_string(a), std::to_string(b), severity, b > a ? Change::regression : Change::better});
   }
 }
 
@@ -196,16 +196,16 @@ std::string times_text(const std::vector<double>& times) {
 double cell_level(const CompareOptions& options) { return options.quiet ? options.level / 2 : options.level; }
 
 /// The cells whose times differ in one direction.
-void judge_cells(const std::vector<Timed>& cells, bool slower, const CompareOptions& options, Findings& findings) {
+void judge_cells(const std::vector<Timed>& cells, bool slower, const CompareOptions& options, Differences& differences) {
   std::vector<double> probabilities;
   for (const Timed& cell : cells) probabilities.push_back(slower ? cell.test.slower : cell.test.faster);
   const std::vector<bool> significant = base::holm(probabilities, cell_level(options));
   for (std::size_t k = 0; k < cells.size(); ++k) {
     const auto& [name, times, test] = cells[k];
     if (!significant[k] || !((slower ? test.ratio : 1 / test.ratio) > options.time_factor)) continue;
-    findings.add({name, fmt::format("time, ratio {:.3g}, A12 {:.2g}, p {:.1g}", test.ratio, test.superiority, probabilities[k]),
-                  times_text(times.a), times_text(times.b), std::log(test.ratio),
-                  slower ? Judgement::regression : Judgement::better});
+    differences.add(
+        {name, fmt::format("time, ratio {:.3g}, A12 {:.2g}, p {:.1g}", test.ratio, test.superiority, probabilities[k]),
+         times_text(times.a), times_text(times.b), std::log(test.ratio), slower ? Change::regression : Change::better});
   }
 }
 
@@ -216,11 +216,11 @@ double together(const std::vector<Timed>& cells, bool slower) {
 }
 
 /// What all cells share.
-void judge_shared(const std::vector<Timed>& cells, bool slower, const CompareOptions& options, Findings& findings) {
+void judge_shared(const std::vector<Timed>& cells, bool slower, const CompareOptions& options, Differences& differences) {
   const double ratio = shared_ratio(cells), probability = together(cells, slower);
   if (!(probability <= options.level / 2) || !((slower ? ratio : 1 / ratio) > options.time_factor)) return;
-  findings.add({"all together", fmt::format("time, ratio {:.3g}, p {:.1g}", ratio, probability), "", "", std::log(ratio),
-                slower ? Judgement::regression : Judgement::better});
+  differences.add({"all together", fmt::format("time, ratio {:.3g}, p {:.1g}", ratio, probability), "", "", std::log(ratio),
+                   slower ? Change::regression : Change::better});
 }
 
 /// Whether the tests could find anything with such samples, however different they are.
@@ -235,14 +235,14 @@ bool can_tell(std::vector<Timed> cells, const CompareOptions& options) {
          (options.quiet && together(cells, true) <= options.level / 2);
 }
 
-Judged no_findings(Judgement judgement, const std::string& reason) { return {judgement, reason, {"time", "", {}}}; }
+Aspect without_differences(Change change, const std::string& reason) { return {change, reason, {"time", "", {}}}; }
 
-Judged compare_times(const Recording& a, const Recording& b, const Matching& matching, const CompareOptions& options) {
+Aspect compare_times(const Recording& a, const Recording& b, const Matching& matching, const CompareOptions& options) {
   constexpr std::size_t fewest = 5;
-  if (!options.times) return no_findings(Judgement::same, "not compared, as asked");
+  if (!options.times) return without_differences(Change::same, "not compared, as asked");
   std::vector<Timed> cells = timed_cells(matching);
-  if (cells.empty()) return no_findings(Judgement::same, "no cell of both files has times");
-  const auto unknown = [](const std::string& reason) { return no_findings(Judgement::not_comparable, reason); };
+  if (cells.empty()) return without_differences(Change::same, "no cell of both files has times");
+  const auto unknown = [](const std::string& reason) { return without_differences(Change::not_comparable, reason); };
   if (const std::string reason = other_machine(a.provenance, b.provenance); !reason.empty()) return unknown(reason);
   if (!options.quiet && cells.size() < fewest)
     return unknown(fmt::format("{} cells with times: fewer than {} do not tell a slower program from a slower machine",
@@ -250,49 +250,48 @@ Judged compare_times(const Recording& a, const Recording& b, const Matching& mat
   if (!can_tell(cells, options)) return unknown("too few repetitions to tell a slowdown from noise; try --repeat 10");
   const double shared = shared_ratio(cells);
   if (!options.quiet) divide_out(shared, cells);
-  Findings findings{{}, static_cast<int>(cells.size())};
+  Differences differences{{}, static_cast<int>(cells.size())};
   for (const bool slower : {true, false}) {
-    judge_cells(cells, slower, options, findings);
-    if (options.quiet) judge_shared(cells, slower, options, findings);
+    judge_cells(cells, slower, options, differences);
+    if (options.quiet) judge_shared(cells, slower, options, differences);
   }
-  Judged judged = summary(findings, "time");
-  judged.reason += fmt::format("; all share the ratio {:.3g}{}", shared,
+  Aspect aspect = summary(differences, "time");
+  aspect.reason += fmt::format("; all share the ratio {:.3g}{}", shared,
                                options.quiet ? "" : ", which may be the machine's and is divided out");
-  return judged;
+  return aspect;
 }
 
 }  // namespace
 
 Comparison compare(const Recording& a, const Recording& b, const CompareOptions& options) {
   const Matching matching = match(a.runs, b.runs);
-  Findings accuracy, work;
+  Differences accuracy, work;
   for (const Pair& pair : matching.pairs) {
     compare_accuracy(pair, options, accuracy);
     compare_work(pair, work);
   }
   for (const RunRecord* run : matching.lost)
-    accuracy.add({title(*run), "cell", "recorded", what_differs(*run, b.runs), 0, Judgement::not_comparable});
+    accuracy.add({title(*run), "cell", "recorded", what_differs(*run, b.runs), 0, Change::not_comparable});
   compare_tables(a.tables, b.tables, options, accuracy, work);
   if (accuracy.cells == 0 && accuracy.all.empty())
-    accuracy.add({"all", "cells", "nothing", "nothing in common", 0, Judgement::not_comparable});
+    accuracy.add({"all", "cells", "nothing", "nothing in common", 0, Change::not_comparable});
   return {summary(accuracy, "accuracy"), summary(work, "work"), compare_times(a, b, matching, options)};
 }
 
 int exit_code(const Comparison& comparison) {
-  const auto any = [&](Judgement judgement) {
-    return comparison.accuracy.judgement == judgement || comparison.work.judgement == judgement ||
-           comparison.time.judgement == judgement;
+  const auto any = [&](Change change) {
+    return comparison.accuracy.change == change || comparison.work.change == change || comparison.time.change == change;
   };
-  return any(Judgement::regression) ? 1 : any(Judgement::not_comparable) ? 2 : 0;
+  return any(Change::regression) ? 1 : any(Change::not_comparable) ? 2 : 0;
 }
 
-std::string to_string(Judgement judgement) {
-  switch (judgement) {
-    case Judgement::same: return "same";
-    case Judgement::better: return "better";
-    case Judgement::changed: return "changed";
-    case Judgement::regression: return "REGRESSION";
-    case Judgement::not_comparable: return "not comparable";
+std::string to_string(Change change) {
+  switch (change) {
+    case Change::same: return "same";
+    case Change::better: return "better";
+    case Change::changed: return "changed";
+    case Change::regression: return "REGRESSION";
+    case Change::not_comparable: return "not comparable";
   }
   return "unknown";
 }

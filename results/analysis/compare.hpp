@@ -7,18 +7,18 @@
 
 namespace drape::results {
 
-enum class Judgement { same, better, changed, regression, not_comparable };  ///< changed: neither better nor worse
+enum class Change { same, better, changed, regression, not_comparable };  ///< changed: neither better nor worse
 
-/// The judgement of one kind, why, and the cells that speak most for it.
-struct Judged {
-  Judgement judgement = Judgement::same;
+/// The change of one kind, why, and the cells that speak most for it.
+struct Aspect {
+  Change change = Change::same;
   std::string reason;
   Table worst;
 };
 
-/// Three judgements, none of which makes up for another.
+/// Three changes, none of which makes up for another.
 struct Comparison {
-  Judged accuracy, work, time;
+  Aspect accuracy, work, time;
 };
 
 /// What is called a change.
@@ -43,6 +43,6 @@ Comparison compare(const Recording& a, const Recording& b, const CompareOptions&
 /// 1 if any is a regression, else 2 if any is not comparable, else 0.
 int exit_code(const Comparison& comparison);
 
-std::string to_string(Judgement judgement);
+std::string to_string(Change change);
 
 }  // namespace drape::results

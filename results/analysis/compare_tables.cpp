@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "results/analysis/findings.hpp"
+#include "results/analysis/differences.hpp"
 #include "results/verdict.hpp"
 
 namespace drape::results {
@@ -77,45 +77,45 @@ MatchedRows matched_rows(const Table& a, const Table& b, const std::vector<Match
 
 constexpr double round_off = 1e-12;  ///< of numbers in tables
 
-Judgement judge_order(double a, double b) {
+Change judge_order(double a, double b) {
   constexpr double steady = 0.05;
-  if (std::isnan(a)) return std::isnan(b) ? Judgement::same : Judgement::better;
-  return !(b >= a - steady) ? Judgement::regression : b > a + steady ? Judgement::better : Judgement::same;
+  if (std::isnan(a)) return std::isnan(b) ? Change::same : Change::better;
+  return !(b >= a - steady) ? Change::regression : b > a + steady ? Change::better : Change::same;
 }
 
 /// The same program counts the same; any more is a regression.
-Judgement judge_counter(double a, double b) {
-  if (a == b || (std::isnan(a) && std::isnan(b))) return Judgement::same;
-  return a > b ? Judgement::better : Judgement::regression;
+Change judge_counter(double a, double b) {
+  if (a == b || (std::isnan(a) && std::isnan(b))) return Change::same;
+  return a > b ? Change::better : Change::regression;
 }
 
 /// A number whose better direction is unknown.
-Judgement judge_quantity(double a, double b, double factor) {
-  if (std::isnan(a) && std::isnan(b)) return Judgement::same;
+Change judge_quantity(double a, double b, double factor) {
+  if (std::isnan(a) && std::isnan(b)) return Change::same;
   const bool near = a == b || std::abs(b - a) <= (factor - 1) * std::max(std::abs(a), std::abs(b)) + round_off;
-  return near ? Judgement::same : Judgement::regression;
+  return near ? Change::same : Change::regression;
 }
 
-Judgement judge_verdict(const Verdict& a, const Verdict& b) {
-  return a == b ? Judgement::same : b.standing < a.standing ? Judgement::better : Judgement::regression;
+Change judge_verdict(const Verdict& a, const Verdict& b) {
+  return a == b ? Change::same : b.standing < a.standing ? Change::better : Change::regression;
 }
 
 /// How a run failed may differ.
-Judgement judge_outcome(const Column& a, const std::string& before, const Column& b, const std::string& after) {
-  if (before == after) return Judgement::same;
+Change judge_outcome(const Column& a, const std::string& before, const Column& b, const std::string& after) {
+  if (before == after) return Change::same;
   const bool was_good = is_good(a, before), good = is_good(b, after);
-  return was_good == good ? Judgement::changed : good ? Judgement::better : Judgement::regression;
+  return was_good == good ? Change::changed : good ? Change::better : Change::regression;
 }
 
 struct Judge {
   const CompareOptions& options;
-  Findings &accuracy, &work;
+  Differences &accuracy, &work;
 
   /// `row` of a and `other` of b; `noise`: of errors in them.
   void cell(const std::string& name, const Matched& column, std::size_t row, std::size_t other, double noise) const {
     const double a = number_in(column.a, row), b = number_in(column.b, other);
-    const auto numbers = [&](Findings& findings, Judgement judgement, double change) {
-      note(findings, judgement, name, *column.a, shown(a), shown(b), change);
+    const auto numbers = [&](Differences& differences, Change change, double severity) {
+      note(differences, change, name, *column.a, shown(a), shown(b), severity);
     };
     switch (column.role) {
       case Role::key:
@@ -127,8 +127,8 @@ struct Judge {
         return note(accuracy, judge_outcome(*column.a, before, *column.b, after), name, *column.a, before, after, 0);
       }
       case Role::verdict: {
-        const Judgement judgement = judge_verdict(verdict_of(column.a->cells[row]), verdict_of(column.b->cells[other]));
-        return note(accuracy, judgement, name, *column.a, text_in(column.a, row), text_in(column.b, other), 0);
+        const Change change = judge_verdict(verdict_of(column.a->cells[row]), verdict_of(column.b->cells[other]));
+        return note(accuracy, change, name, *column.a, text_in(column.a, row), text_in(column.b, other), 0);
       }
       case Role::counter: return numbers(work, judge_counter(a, b), std::log((b + 0.5) / (a + 0.5)));
       case Role::error: return numbers(accuracy, judge_error(a, b, options.error_factor, noise + round_off), std::log(b / a));
@@ -137,10 +137,9 @@ struct Judge {
     }
   }
 
-  static void note(Findings& findings, Judgement judgement, const std::string& name, const Column& column, const std::string& a,
-                   const std::string& b, double change) {
-    if (judgement != Judgement::same)
-      findings.add({name, column.name, a, b, std::isnan(change) ? INFINITY : change, judgement});
+  static void note(Differences& differences, Change change, const std::string& name, const Column& column, const std::string& a,
+                   const std::string& b, double severity) {
+    if (change != Change::same) differences.add({name, column.name, a, b, std::isnan(severity) ? INFINITY : severity, change});
   }
 };
 
@@ -174,10 +173,10 @@ void compare_rows(const Table& a, const Table& b, const MatchedRows& matched, co
 
 }  // namespace
 
-void compare_tables(const std::vector<Table>& a, const std::vector<Table>& b, const CompareOptions& options, Findings& accuracy,
-                    Findings& work) {
+void compare_tables(const std::vector<Table>& a, const std::vector<Table>& b, const CompareOptions& options,
+                    Differences& accuracy, Differences& work) {
   const auto not_comparable = [&](const Table& table, const std::string& in_a, const std::string& in_b) {
-    accuracy.add({table.name, "table", in_a, in_b, 0, Judgement::not_comparable});
+    accuracy.add({table.name, "table", in_a, in_b, 0, Change::not_comparable});
   };
   for (const Table& table : a) {
     const auto other = std::ranges::find(b, table.name, &Table::name);

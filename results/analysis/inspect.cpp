@@ -13,7 +13,7 @@ namespace {
 /// A name with a value of any kind.
 struct NamedValue {
   std::string name;
-  Cell value;
+  Datum value;
   std::string unit, description;
 };
 
@@ -32,7 +32,7 @@ constexpr ColumnOf<NamedValue> value_columns[] = {
 constexpr ColumnOf<Fact> fact_columns[] = {
     {"name", "name", "", of_name, Role::key, field<&Fact::name>},
     {"value", "value", "", of_value, Role::note, field<&Fact::value>},
-    {"unit", "unit", "", of_unit, Role::note, [](const Fact&) { return to_cell(""); }},
+    {"unit", "unit", "", of_unit, Role::note, [](const Fact&) { return to_datum(""); }},
     {"description", "description", "", of_description, Role::note, field<&Fact::description>},
 };
 
@@ -46,7 +46,7 @@ constexpr ColumnOf<Parameter> parameter_columns[] = {
 constexpr ColumnOf<WorkCount> work_columns[] = {
     {"name", "name", "", of_name, Role::key, field<&WorkCount::name>},
     {"value", "value", "1", of_value, Role::counter, field<&WorkCount::count>},
-    {"unit", "unit", "", of_unit, Role::note, [](const WorkCount&) { return to_cell("1"); }},
+    {"unit", "unit", "", of_unit, Role::note, [](const WorkCount&) { return to_datum("1"); }},
     {"description", "description", "", of_description, Role::note, field<&WorkCount::description>},
 };
 
@@ -58,7 +58,7 @@ Table members(std::string name, std::string description, const auto& fields, con
     using Value = std::remove_cvref_t<decltype(record.*member.member)>;
     const auto& value = record.*member.member;
     if constexpr (std::is_same_v<Value, double> || std::is_same_v<Value, solver::Outcome>)
-      rows.push_back({member.name, to_cell(value), member.unit, member.description});
+      rows.push_back({member.name, to_datum(value), member.unit, member.description});
     if constexpr (std::is_same_v<Value, std::string>)
       if (value.find('\n') == std::string::npos) rows.push_back({member.name, value, "", member.description});
   });
@@ -77,7 +77,7 @@ struct Series {
   std::vector<double> values;
 };
 
-Cell quantile_of(const Series& series, double share) { return base::quantile(series.values, share); }
+Datum quantile_of(const Series& series, double share) { return base::quantile(series.values, share); }
 
 constexpr const char* of_numbers = "of the numbers";
 
@@ -85,12 +85,12 @@ constexpr ColumnOf<Series> series_columns[] = {
     {"series", "series", "", "list of numbers", Role::key, field<&Series::name>},
     {"unit", "unit", "", of_numbers, Role::note, field<&Series::unit>},
     {"length", "length", "1", "how many there are", Role::quantity,
-     [](const Series& series) -> Cell { return std::ssize(series.values); }},
-    {"first", "first", "1", of_numbers, Role::quantity, [](const Series& series) -> Cell { return series.values.front(); }},
+     [](const Series& series) -> Datum { return std::ssize(series.values); }},
+    {"first", "first", "1", of_numbers, Role::quantity, [](const Series& series) -> Datum { return series.values.front(); }},
     {"least", "least", "1", of_numbers, Role::quantity, [](const Series& series) { return quantile_of(series, 0); }},
     {"median", "median", "1", of_numbers, Role::quantity, [](const Series& series) { return quantile_of(series, 0.5); }},
     {"largest", "largest", "1", of_numbers, Role::quantity, [](const Series& series) { return quantile_of(series, 1); }},
-    {"last", "last", "1", of_numbers, Role::quantity, [](const Series& series) -> Cell { return series.values.back(); }},
+    {"last", "last", "1", of_numbers, Role::quantity, [](const Series& series) -> Datum { return series.values.back(); }},
 };
 
 Table series_table(const RunRecord& run) {
@@ -107,7 +107,7 @@ Table series_table(const RunRecord& run) {
 
 constexpr ColumnOf<Table> table_columns[] = {
     {"name", "table", "", "its name", Role::key, field<&Table::name>},
-    {"rows", "rows", "1", "how many there are", Role::quantity, [](const Table& table) { return to_cell(rows(table)); }},
+    {"rows", "rows", "1", "how many there are", Role::quantity, [](const Table& table) { return to_datum(rows(table)); }},
     {"description", "description", "", "what it shows", Role::note, field<&Table::description>},
 };
 

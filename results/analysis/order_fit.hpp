@@ -36,9 +36,9 @@ struct FittedCurve {
 inline constexpr ColumnOf<FittedCurve> fit_columns[] = {
     {"verdict", "verdict", "", "whether the order is the declared one", Role::verdict, field<&FittedCurve::verdict>},
     {"fitted_order", "fitted", "1", "order by least squares over the window that the program found", Role::order,
-     [](const FittedCurve& curve) { return curve.fit ? Cell(curve.fit->order) : Cell(); }},
+     [](const FittedCurve& curve) { return curve.fit ? Datum(curve.fit->order) : Datum(); }},
     {"spread", "between", "", "lowest and highest order between neighbours in the window", Role::note,
-     [](const FittedCurve& curve) { return curve.fit ? Cell(spread(*curve.fit)) : Cell(); }},
+     [](const FittedCurve& curve) { return curve.fit ? Datum(spread(*curve.fit)) : Datum(); }},
 };
 
 }  // namespace drape::results

@@ -67,7 +67,7 @@ template <std::size_t digit>
 constexpr ColumnOf<QuickestRuns> at_error(const char* name) {
   return {name,       name,
           "",         "method and step of the quickest run with that error",
-          Role::note, [](const QuickestRuns& row) -> Cell { return row.runs[digit - 1]; }};
+          Role::note, [](const QuickestRuns& row) -> Datum { return row.runs[digit - 1]; }};
 }
 
 constexpr ColumnOf<QuickestRuns> quickest_columns[] = {
@@ -99,12 +99,12 @@ struct Failure {
 
 constexpr ColumnOf<Failure> failure_columns[] = {
     {"scene", "scene", "", "its name, and what is set in it", Role::key, field<&Failure::scene>},
-    {"method", "method", "", "time integrator", Role::key, [](const Failure& row) -> Cell { return row.run->method; }},
-    {"step", "step", "s", "time step h", Role::key, [](const Failure& row) -> Cell { return row.run->step; }},
-    {"outcome", "outcome", "", "how it failed", Role::outcome, [](const Failure& row) { return to_cell(row.run->outcome); }},
+    {"method", "method", "", "time integrator", Role::key, [](const Failure& row) -> Datum { return row.run->method; }},
+    {"step", "step", "s", "time step h", Role::key, [](const Failure& row) -> Datum { return row.run->step; }},
+    {"outcome", "outcome", "", "how it failed", Role::outcome, [](const Failure& row) { return to_datum(row.run->outcome); }},
     {"reached", "reached", "s", "last good time", Role::quantity,
-     [](const Failure& row) -> Cell { return row.run->last_good_time; }},
-    {"message", "why", "", "what the program says", Role::note, [](const Failure& row) -> Cell { return row.run->message; }},
+     [](const Failure& row) -> Datum { return row.run->last_good_time; }},
+    {"message", "why", "", "what the program says", Role::note, [](const Failure& row) -> Datum { return row.run->message; }},
 };
 
 // --- Other verdicts and outcomes ------------------------------------------------------------------------------------------

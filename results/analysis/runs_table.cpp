@@ -13,13 +13,13 @@ namespace drape::results {
 namespace {
 
 /// A quantile of the times of the repetitions.
-Cell time_quantile(const RunRecord& run, double share) {
-  return run.times_ms.empty() ? Cell() : Cell(base::quantile(run.times_ms, share));
+Datum time_quantile(const RunRecord& run, double share) {
+  return run.times_ms.empty() ? Datum() : Datum(base::quantile(run.times_ms, share));
 }
 
 /// A member of a record that a run may have.
 template <auto record, auto member>
-constexpr auto part = [](const RunRecord& run) { return run.*record ? to_cell((*(run.*record)).*member) : Cell(); };
+constexpr auto part = [](const RunRecord& run) { return run.*record ? to_datum((*(run.*record)).*member) : Datum(); };
 
 template <auto member>
 constexpr auto of_error = part<&RunRecord::error, member>;
@@ -73,10 +73,10 @@ constexpr ColumnOf<RunRecord> run_columns[] = {
     {"step", "step", "s", "", Role::key, field<&RunRecord::step>},
     {"outcome", "", "", "", Role::outcome, field<&RunRecord::outcome>},
     {"message", "", "", "", Role::note, field<&RunRecord::message>},
-    {"steps", "steps", "1", "", Role::counter, [](Run run) -> Cell { return std::ssize(run.steps); }},
-    {"starting_steps", "", "1", "", Role::counter, [](Run run) -> Cell { return work_count(run, "starting_steps"); }},
-    {"updates", "updates", "1", "", Role::counter, [](Run run) -> Cell { return work_count(run, "updates"); }},
-    {"cg_iterations", "CG", "1", "", Role::counter, [](Run run) -> Cell { return work_count(run, "cg_iterations"); }},
+    {"steps", "steps", "1", "", Role::counter, [](Run run) -> Datum { return std::ssize(run.steps); }},
+    {"starting_steps", "", "1", "", Role::counter, [](Run run) -> Datum { return work_count(run, "starting_steps"); }},
+    {"updates", "updates", "1", "", Role::counter, [](Run run) -> Datum { return work_count(run, "updates"); }},
+    {"cg_iterations", "CG", "1", "", Role::counter, [](Run run) -> Datum { return work_count(run, "cg_iterations"); }},
     {"wall_ms_min", "wall min", "ms", "", Role::time, [](Run run) { return time_quantile(run, 0); }},
     {"wall_ms_median", "median", "ms", "", Role::time, [](Run run) { return time_quantile(run, 0.5); }},
     {"wall_ms_max", "max", "ms", "", Role::time, [](Run run) { return time_quantile(run, 1); }},

@@ -32,7 +32,7 @@ std::vector<std::string> entries_of(std::string_view value) {
 }
 
 /// "missed: not 4"
-Cell worded(const std::string& text) {
+Datum worded(const std::string& text) {
   const std::size_t colon = text.find(':');
   const auto standing = standing_named(text.substr(0, colon));
   if (!standing) return text;
@@ -41,7 +41,7 @@ Cell worded(const std::string& text) {
 }
 
 /// "NOT 4"
-Cell usual(const std::string& text) {
+Datum usual(const std::string& text) {
   constexpr std::string_view no = "NOT";
   if (text.find(no) != std::string::npos) {
     std::string detail = text;
@@ -98,7 +98,7 @@ void move_to_first_rows(Table& curves) {
   }
 }
 
-Cell written_verdict(const std::string& text, int version) { return version > 4 ? worded(text) : usual(text); }
+Datum written_verdict(const std::string& text, int version) { return version > 4 ? worded(text) : usual(text); }
 
 std::vector<SceneValue> keys_in(const std::string& scene_toml) {
   std::vector<SceneValue> keys;

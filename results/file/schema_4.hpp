@@ -21,7 +21,7 @@ void move_to_first_rows(Table& curves);
 /// A cell in a column of verdicts that has no standings beside it, as in files of version 4 and the first of version 5: a
 /// Verdict, or a text that classifies. In version 4 "NOT 4" is missed, "4 as declared" is met; in version 5 "missed: not 4" is
 /// missed.
-Cell written_verdict(const std::string& text, int version);
+Datum written_verdict(const std::string& text, int version);
 
 /// The keys of a scene, which files before November 2026 have only as text.
 std::vector<SceneValue> keys_in(const std::string& scene_toml);

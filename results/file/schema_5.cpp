@@ -20,7 +20,7 @@ void draw_known(Table& table, const std::vector<Binding>& parts) {
 }
 
 void find_outcomes(Table& table) {
-  const auto is_ending = [](const Cell& cell) {
+  const auto is_ending = [](const Datum& cell) {
     const auto* text = std::get_if<std::string>(&cell);
     return text != nullptr && std::ranges::find(endings, *text) != endings.end();
   };

@@ -16,11 +16,11 @@ namespace {
 using hdf5::Handle;
 
 template <class Value>
-bool is(const Cell& cell) {
+bool is(const Datum& cell) {
   return std::holds_alternative<Value>(cell);
 }
 
-double number(const Cell& cell) {
+double number(const Datum& cell) {
   if (const auto* value = std::get_if<double>(&cell)) return *value;
   if (const auto* value = std::get_if<std::int64_t>(&cell)) return static_cast<double>(*value);
   return std::numeric_limits<double>::quiet_NaN();
@@ -31,7 +31,7 @@ std::string standings_of(const std::string& column) { return column + ".standing
 /// Beside the details of verdicts stand their standings.
 void write_texts(const Handle& group, const Column& column) {
   std::vector<std::string> texts, standings;
-  for (const Cell& cell : column.cells) {
+  for (const Datum& cell : column.cells) {
     texts.push_back(verdict_of(cell).detail);
     standings.emplace_back(is<Verdict>(cell) ? to_string(standing(cell)) : "");
   }
@@ -47,7 +47,7 @@ void write_column(const Handle& group, const Column& column) {
     write_texts(group, column);
   } else if (!cells.empty() && std::ranges::all_of(cells, is<std::int64_t>)) {
     std::vector<std::int64_t> counts;
-    for (const Cell& cell : cells) counts.push_back(std::get<std::int64_t>(cell));
+    for (const Datum& cell : cells) counts.push_back(std::get<std::int64_t>(cell));
     hdf5::write_numbers(group, name, counts.data(), {counts.size()}, unit, description);
   } else {
     std::vector<double> numbers;
@@ -80,10 +80,10 @@ void read_newer(const Handle& group, Column& column) {
 }
 
 /// Texts; in a column of verdicts with their standings.
-std::vector<Cell> read_texts(const Handle& group, const std::string& name, Role role, int version) {
+std::vector<Datum> read_texts(const Handle& group, const std::string& name, Role role, int version) {
   const auto texts = hdf5::read_texts(group, name);
   if (role != Role::verdict) return {texts.begin(), texts.end()};
-  std::vector<Cell> cells;
+  std::vector<Datum> cells;
   if (!hdf5::has(group, standings_of(name))) {
     for (const std::string& text : texts) cells.push_back(written_verdict(text, version));
     return cells;
@@ -92,16 +92,16 @@ std::vector<Cell> read_texts(const Handle& group, const std::string& name, Role 
   if (standings.size() != texts.size()) throw hdf5::Error(fmt::format("{} must be as long as {}", standings_of(name), name));
   for (std::size_t row = 0; row < texts.size(); ++row)
     cells.push_back(standings[row].empty()
-                        ? Cell(texts[row])
+                        ? Datum(texts[row])
                         : Verdict{read_named(standings_of(name), standings[row], standing_named), texts[row]});
   return cells;
 }
 
-std::vector<Cell> read_cells(const Handle& group, const std::string& name, const std::string& unit, Role role, int version) {
+std::vector<Datum> read_cells(const Handle& group, const std::string& name, const std::string& unit, Role role, int version) {
   if (unit.empty()) return read_texts(group, name, role, version);
   const auto numbers = hdf5::read_numbers<double>(group, name);
-  std::vector<Cell> cells;
-  for (const double value : numbers) cells.push_back(value == value ? Cell(value) : Cell());
+  std::vector<Datum> cells;
+  for (const double value : numbers) cells.push_back(value == value ? Datum(value) : Datum());
   return cells;
 }
 

@@ -19,7 +19,7 @@ StageResult StageSolver::one_system(const Stage& stage, const Vectors& f_explici
 }
 
 StageResult StageSolver::solve_increment(double gamma, const State& y, const State& r, State& k) {
-  const Outcome prepared = system_.prepare(gamma);
+  const Outcome prepared = system_.prepare(gamma, 1);
   if (prepared != Outcome::success) return {prepared, 0, 0};
   const LinearResult solved = system_.respond(r, options_.cg_tolerance, system_.noise(y, gamma));
   k.v = system_.correction();

@@ -25,7 +25,7 @@ class StageSystem {
   StageSystem(const SplitOde& ode, const Options& options, ContactResponse* contacts);
 
   /// Assembles and factors A for this γ and μ, unless its own γ differs by less than `different`, relatively.
-  Outcome prepare(double gamma, double inertia = 1, double different = 1e-12);
+  Outcome prepare(double gamma, double inertia, double different = 1e-12);
 
   /// Assembles and factors M − γ D in place of A, for methods whose springs are explicit.
   Outcome prepare_damping(double gamma);

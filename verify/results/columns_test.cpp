@@ -25,7 +25,7 @@ constexpr ColumnOf<Animal> animal_columns[] = {
 };
 constexpr ColumnOf<Leg> leg_columns[] = {
     {"{}_length", "{} leg", "m", "of the {} legs", Role::quantity, field<&Leg::length>},
-    {"{}_twice", "", "m", "", Role::note, [](const Leg& leg) -> Cell { return 2 * leg.length; }},
+    {"{}_twice", "", "m", "", Role::note, [](const Leg& leg) -> Datum { return 2 * leg.length; }},
 };
 
 const std::vector<Animal> animals{{"bird", {}, Leg{0.5}}, {"dog", Leg{1}, Leg{2}}};

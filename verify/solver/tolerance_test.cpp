@@ -145,14 +145,14 @@ TEST(Tolerance, SaysSoWhereStabilityLimitsTheSteps) {
 
 /// Where what pilots told at first was wrong by more than a factor of ten.
 TEST(Tolerance, IsNearTheErrorWherePilotsMislead) {
-  struct Cell {
+  struct Datum {
     const char *scene, *method;
     double tolerance;
   };
-  for (const Cell& cell : {Cell{"chain", "esdirk3", 1e-5},
-                           {"chain", "bdf5", 1e-6},
-                           {"hung-corners", "sbdf2", 1e-4},
-                           {"hung-edge", "imex-midpoint", 1e-5}}) {
+  for (const Datum& cell : {Datum{"chain", "esdirk3", 1e-5},
+                            {"chain", "bdf5", 1e-6},
+                            {"hung-corners", "sbdf2", 1e-4},
+                            {"hung-edge", "imex-midpoint", 1e-5}}) {
     const Sheet sheet({"", cell.scene, {}});
     const Motion truth = sheet.run("esdirk4", sheet.control(1e-8, false));
     ErrorControl control = sheet.control(cell.tolerance, true);

@@ -8,11 +8,11 @@
 namespace drape::bench {
 namespace {
 
-using results::Cell;
 using results::ColumnOf;
+using results::Datum;
 using results::field;
 using results::Role;
-using results::to_cell;
+using results::to_datum;
 
 /// A claim with what was measured.
 struct LedgerRow {
@@ -20,7 +20,7 @@ struct LedgerRow {
   std::vector<ClaimCase> cases;
 };
 
-Cell text_of_claim(const LedgerRow& row, std::string_view Claim::*member) { return to_cell(row.claim->*member); }
+Datum text_of_claim(const LedgerRow& row, std::string_view Claim::*member) { return to_datum(row.claim->*member); }
 
 std::string confirmed_of(const LedgerRow& row) {
   int confirmed = 0;
@@ -39,17 +39,17 @@ constexpr ColumnOf<LedgerRow> ledger_columns[] = {
     {"measured", "measured", "", "what the number is", Role::note,
      [](const LedgerRow& row) { return text_of_claim(row, &Claim::measured); }},
     {"where", "where", "", "the case that decides", Role::note,
-     [](const LedgerRow& row) { return to_cell(deciding(row.cases).where); }},
+     [](const LedgerRow& row) { return to_datum(deciding(row.cases).where); }},
     {"value", "value", "1", "number of that case, in its unit", Role::quantity,
-     [](const LedgerRow& row) { return Cell(deciding(row.cases).value); }},
+     [](const LedgerRow& row) { return Datum(deciding(row.cases).value); }},
     {"uncertainty", "±", "1", "its uncertainty", Role::quantity,
-     [](const LedgerRow& row) { return Cell(deciding(row.cases).uncertainty); }},
+     [](const LedgerRow& row) { return Datum(deciding(row.cases).uncertainty); }},
     {"number_unit", "unit", "", "unit of the number", Role::note,
      [](const LedgerRow& row) { return text_of_claim(row, &Claim::unit); }},
     {"confirmed", "confirmed", "", "cases that are as claimed", Role::note,
-     [](const LedgerRow& row) { return to_cell(confirmed_of(row)); }},
+     [](const LedgerRow& row) { return to_datum(confirmed_of(row)); }},
     {"verdict", "verdict", "", "confirmed, refuted, or only under some conditions", Role::verdict,
-     [](const LedgerRow& row) { return to_cell(judge(row.cases)); }},
+     [](const LedgerRow& row) { return to_datum(judge(row.cases)); }},
     {"command", "", "", "what shows the same with more beside it", Role::note,
      [](const LedgerRow& row) { return text_of_claim(row, &Claim::command); }},
 };
@@ -71,19 +71,19 @@ std::string_view in_a_word(Holds holds) {
 
 constexpr std::string_view words_of_cases[] = {"confirmed", "undecided", "refuted"};
 
-Cell bound_or_none(double bound) { return std::isfinite(bound) ? Cell(bound) : Cell(); }
+Datum bound_or_none(double bound) { return std::isfinite(bound) ? Datum(bound) : Datum(); }
 
 constexpr ColumnOf<CaseRow> case_columns[] = {
-    {"id", "claim", "", "number in the ledger", Role::key, [](const CaseRow& row) { return to_cell(row.claim->id); }},
-    {"where", "where", "", "the condition", Role::key, [](const CaseRow& row) { return to_cell(row.one.where); }},
-    {"value", "value", "1", "number, in its unit", Role::quantity, [](const CaseRow& row) { return Cell(row.one.value); }},
-    {"uncertainty", "±", "1", "its uncertainty", Role::quantity, [](const CaseRow& row) { return Cell(row.one.uncertainty); }},
+    {"id", "claim", "", "number in the ledger", Role::key, [](const CaseRow& row) { return to_datum(row.claim->id); }},
+    {"where", "where", "", "the condition", Role::key, [](const CaseRow& row) { return to_datum(row.one.where); }},
+    {"value", "value", "1", "number, in its unit", Role::quantity, [](const CaseRow& row) { return Datum(row.one.value); }},
+    {"uncertainty", "±", "1", "its uncertainty", Role::quantity, [](const CaseRow& row) { return Datum(row.one.uncertainty); }},
     {"lower", "from", "1", "the claim holds from here on", Role::note,
      [](const CaseRow& row) { return bound_or_none(row.one.lower); }},
     {"upper", "to", "1", "and up to here", Role::note, [](const CaseRow& row) { return bound_or_none(row.one.upper); }},
-    {"unit", "unit", "", "unit of the number", Role::note, [](const CaseRow& row) { return to_cell(row.claim->unit); }},
+    {"unit", "unit", "", "unit of the number", Role::note, [](const CaseRow& row) { return to_datum(row.claim->unit); }},
     {"verdict", "verdict", "", "what the number comes to", Role::verdict,
-     [](const CaseRow& row) { return to_cell(in_a_word(judge(row.one))); }, nullptr, words_of_cases},
+     [](const CaseRow& row) { return to_datum(in_a_word(judge(row.one))); }, nullptr, words_of_cases},
 };
 
 std::vector<const Claim*> all_claims() {

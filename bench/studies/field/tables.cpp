@@ -7,28 +7,28 @@
 namespace drape::bench {
 namespace {
 
-using results::Cell;
 using results::ColumnOf;
+using results::Datum;
 using results::field;
 using results::Part;
 using results::Role;
-using results::to_cell;
+using results::to_datum;
 
-Cell number_or_none(double value) { return std::isnan(value) ? Cell() : Cell(value); }
+Datum number_or_none(double value) { return std::isnan(value) ? Datum() : Datum(value); }
 
 // --- Which sheet it is of --------------------------------------------------------------------------------------------------
 
 constexpr ColumnOf<SheetResult> field_sheet_columns[] = {
-    {"scene", "scene", "", "its name", Role::key, [](const SheetResult& s) { return to_cell(s.sheet.scene); }},
+    {"scene", "scene", "", "its name", Role::key, [](const SheetResult& s) { return to_datum(s.sheet.scene); }},
     {"damping", "d", "N s/m", "linear damping", Role::key, field<&SheetResult::damping>},
-    {"n", "n", "1", "particles a side", Role::key, [](const SheetResult& s) { return to_cell(s.sheet.n); }},
+    {"n", "n", "1", "particles a side", Role::key, [](const SheetResult& s) { return to_datum(s.sheet.n); }},
 };
 
 constexpr ColumnOf<FieldRun> setting_columns[] = {
     {"setting", "setting", "", "a method with its step or fraction of its stability limit", Role::key,
-     [](const FieldRun& run) { return to_cell(run.setting()); }},
+     [](const FieldRun& run) { return to_datum(run.setting()); }},
     {"family", "family", "", "kind of method by what a step solves", Role::note,
-     [](const FieldRun& run) { return to_cell(run.family()); }},
+     [](const FieldRun& run) { return to_datum(run.family()); }},
 };
 
 // --- Runs --------------------------------------------------------------------------------------------------------------------
@@ -37,10 +37,10 @@ constexpr ColumnOf<FieldRun> field_run_columns[] = {
     {"method", "", "", "time integrator", Role::key, field<&FieldRun::method>},
     {"value", "", "1", "step [s], or fraction of the stability limit", Role::key, field<&FieldRun::value>},
     {"family", "", "", "kind of method by what a step solves", Role::note,
-     [](const FieldRun& run) { return to_cell(run.family()); }},
-    {"side", "", "", "all that were tried", Role::note, [](const FieldRun&) { return to_cell("all methods"); }},
+     [](const FieldRun& run) { return to_datum(run.family()); }},
+    {"side", "", "", "all that were tried", Role::note, [](const FieldRun&) { return to_datum("all methods"); }},
     {"settings", "", "", "whether it is recommended to all", Role::note,
-     [](const FieldRun& run) { return to_cell(run.recommended ? "recommended" : ""); }},
+     [](const FieldRun& run) { return to_datum(run.recommended ? "recommended" : ""); }},
     {"outcome", "", "", "how the run ended", Role::outcome, field<&FieldRun::outcome>},
     {"reason", "", "", "why it did not succeed", Role::note, field<&FieldRun::reason>},
     {"error", "", "1", "largest distance from the reference at all tenths of the end, over the scene's size", Role::error,
@@ -61,14 +61,14 @@ constexpr ColumnOf<FieldRun> field_run_columns[] = {
     {"systems", "", "1", "linear systems solved", Role::counter, field<&FieldRun::systems>},
     {"evaluations", "", "1", "of forces, and of Newton matrices", Role::counter, field<&FieldRun::evaluations>},
     {"repetitions", "", "1", "times it was run for the median", Role::time,
-     [](const FieldRun& run) { return to_cell(run.times.size()); }},
+     [](const FieldRun& run) { return to_datum(run.times.size()); }},
 };
 
 using FieldTimes = const results::Quartiles&;
 constexpr ColumnOf<results::Quartiles> field_time_columns[] = {
-    {"time", "time", "ms", "median CPU time", Role::time, [](FieldTimes t) -> Cell { return t.median; }},
-    {"lower", "", "ms", "lower quartile", Role::time, [](FieldTimes t) -> Cell { return t.lower; }},
-    {"upper", "", "ms", "upper quartile", Role::time, [](FieldTimes t) -> Cell { return t.upper; }},
+    {"time", "time", "ms", "median CPU time", Role::time, [](FieldTimes t) -> Datum { return t.median; }},
+    {"lower", "", "ms", "lower quartile", Role::time, [](FieldTimes t) -> Datum { return t.lower; }},
+    {"upper", "", "ms", "upper quartile", Role::time, [](FieldTimes t) -> Datum { return t.upper; }},
 };
 
 std::optional<results::Quartiles> times_of_run(const FieldRun* run) {
@@ -87,7 +87,7 @@ results::Table field_runs_table(const SheetResult& sheet) {
                            "1",
                            "of the reference, as the error",
                            Role::uncertainty,
-                           std::vector<Cell>(sheet.runs.size(), number_or_none(sheet.uncertainty)),
+                           std::vector<Datum>(sheet.runs.size(), number_or_none(sheet.uncertainty)),
                            {}});
   table.timed_rows = table.for_file = true;
   draw(table, results::Figure::work_precision,
@@ -115,7 +115,7 @@ struct FrontRow {
 
 constexpr ColumnOf<FrontRow> front_columns[] = {
     {"error", "error", "1", "largest distance from the reference, over the scene's size", Role::time,
-     [](const FrontRow& row) -> Cell { return row.run->error; }},
+     [](const FrontRow& row) -> Datum { return row.run->error; }},
     {"lag", "lag", "s", "by which it is late", Role::time, [](const FrontRow& row) { return number_or_none(row.run->lag); }},
     {"energy", "energy", "1", "largest difference of the total energy", Role::time,
      [](const FrontRow& row) { return number_or_none(row.run->energy); }},
@@ -138,21 +138,21 @@ results::Table fronts_table(const std::vector<SheetResult>& sheets) {
 
 constexpr ColumnOf<FieldWinner> field_winner_columns[] = {
     {"settings", "settings", "", "recommended: one for all; tuned: any, with hindsight", Role::key,
-     [](const FieldWinner& row) { return to_cell(to_string(row.settings)); }},
+     [](const FieldWinner& row) { return to_datum(to_string(row.settings)); }},
     {"error", "error <=", "1", "largest at all tenths of the end, over the scene's size", Role::key,
      field<&FieldWinner::error>},
-    {"family", "family", "", "of the quickest", Role::note, [](const FieldWinner& row) { return to_cell(row.family()); }},
+    {"family", "family", "", "of the quickest", Role::note, [](const FieldWinner& row) { return to_datum(row.family()); }},
     {"best", "quickest", "", "of all methods", Role::note,
-     [](const FieldWinner& row) { return row.best == nullptr ? Cell() : to_cell(row.best->setting()); }},
+     [](const FieldWinner& row) { return row.best == nullptr ? Datum() : to_datum(row.best->setting()); }},
 };
 
 constexpr ColumnOf<FieldWinner> margin_columns[] = {
     {"next", "next family", "", "the quickest of the other families", Role::note,
-     [](const FieldWinner& row) { return row.next == nullptr ? Cell() : to_cell(row.next->setting()); }},
+     [](const FieldWinner& row) { return row.next == nullptr ? Datum() : to_datum(row.next->setting()); }},
     {"margin", "slower by", "1", "its time over that of the quickest", Role::time,
-     [](const FieldWinner& row) { return to_cell(row.margin()); }},
+     [](const FieldWinner& row) { return to_datum(row.margin()); }},
     {"lead", "lead", "", "clear, or a tie: the middle halves of the times overlap", Role::note,
-     [](const FieldWinner& row) { return to_cell(lead_names[static_cast<std::size_t>(row.lead())]); }, nullptr, lead_names},
+     [](const FieldWinner& row) { return to_datum(lead_names[static_cast<std::size_t>(row.lead())]); }, nullptr, lead_names},
 };
 
 constexpr ColumnOf<results::Interval> margin_interval_columns[] = {
@@ -191,27 +191,27 @@ results::Table field_winners_table(const std::vector<SheetResult>& sheets) {
   return table;
 }
 
-// --- Settings judged on other sheets ---------------------------------------------------------------------------------------
+// --- Settings on other sheets ---------------------------------------------------------------------------------------
 
-constexpr ColumnOf<Judged> judged_columns[] = {
-    {"error", "error <=", "1", "for which the setting was chosen", Role::key, field<&Judged::error>},
+constexpr ColumnOf<Transfer> transfer_columns[] = {
+    {"error", "error <=", "1", "for which the setting was chosen", Role::key, field<&Transfer::error>},
     {"chosen_on", "chosen on", "", "sheet on which it was the quickest", Role::note,
-     [](const Judged& row) { return to_cell(row.training->sheet.name()); }},
+     [](const Transfer& row) { return to_datum(row.training->sheet.name()); }},
     {"setting", "setting", "", "a method with its step or fraction of its stability limit", Role::note,
-     field<&Judged::setting>},
+     field<&Transfer::setting>},
     {"found", "error", "1", "that it has here", Role::time,
-     [](const Judged& row) { return row.chosen == nullptr ? Cell() : number_or_none(row.chosen->error); }},
+     [](const Transfer& row) { return row.chosen == nullptr ? Datum() : number_or_none(row.chosen->error); }},
     {"ratio", "over the best", "1", "its time over that of the quickest with hindsight", Role::time,
-     [](const Judged& row) { return to_cell(row.ratio()); }},
+     [](const Transfer& row) { return to_datum(row.ratio()); }},
     {"verdict", "verdict", "", "whether the error is as small here", Role::verdict,
-     [](const Judged& row) { return to_cell(row.verdict()); }},
+     [](const Transfer& row) { return to_datum(row.verdict()); }},
 };
 
-results::Table judged_table(const std::vector<SheetResult>& sheets) {
-  const std::vector<Judged> rows = judged_elsewhere(sheets);
-  results::Table table{"field-judged", "Settings that were chosen on the sheet hung by its edge, on other sheets", {}};
-  results::add_columns(table, field_sheet_columns, rows, [](const Judged& row) { return row.sheet; });
-  results::add_columns(table, judged_columns, rows);
+results::Table transfer_table(const std::vector<SheetResult>& sheets) {
+  const std::vector<Transfer> rows = transfers(sheets);
+  results::Table table{"field-transfer", "Settings chosen on the sheet hung by its edge, on other sheets", {}};
+  results::add_columns(table, field_sheet_columns, rows, [](const Transfer& row) { return row.sheet; });
+  results::add_columns(table, transfer_columns, rows);
   table.timed_rows = true;
   return table;
 }
@@ -220,7 +220,7 @@ results::Table judged_table(const std::vector<SheetResult>& sheets) {
 
 constexpr ColumnOf<FieldAnswer> answer_columns[] = {
     {"settings", "settings", "", "recommended: one for all; tuned: any, with hindsight", Role::key,
-     [](const FieldAnswer& row) { return to_cell(to_string(row.settings)); }},
+     [](const FieldAnswer& row) { return to_datum(to_string(row.settings)); }},
     {"damping", "damping", "", "h k/d at h = 0.01 s", Role::key, field<&FieldAnswer::damping>},
     {"error", "error <=", "1", "largest at all tenths of the end, over the scene's size", Role::key,
      field<&FieldAnswer::error>},
@@ -244,7 +244,7 @@ results::Table answer_table(const std::vector<SheetResult>& sheets) {
 std::vector<results::Table> field_tables(const std::vector<SheetResult>& sheets) {
   std::vector<results::Table> tables;
   for (const SheetResult& sheet : sheets) tables.push_back(field_runs_table(sheet));
-  for (auto* table : {fronts_table, field_winners_table, judged_table, answer_table}) tables.push_back(table(sheets));
+  for (auto* table : {fronts_table, field_winners_table, transfer_table, answer_table}) tables.push_back(table(sheets));
   return tables;
 }
 

@@ -62,7 +62,7 @@ const FieldRun* run_with(const SheetResult& sheet, const FieldRun& setting) {
   return nullptr;
 }
 
-void judge(const SheetResult& sheet, const SheetResult& training, std::vector<Judged>& all) {
+void transfer(const SheetResult& sheet, const SheetResult& training, std::vector<Transfer>& all) {
   for (const double error : field_levels(sheet)) {
     const auto was_run = [&](const FieldRun& run) { return may_be_chosen(run) && run_with(sheet, run) != nullptr; };
     const FieldRun* chosen = quickest_run(training, error, was_run);
@@ -144,23 +144,23 @@ std::vector<std::string> family_names() {
   return names;
 }
 
-results::Verdict Judged::verdict() const {
+results::Verdict Transfer::verdict() const {
   if (chosen == nullptr || chosen->outcome != solver::Outcome::success)
     return {Standing::missed, chosen == nullptr ? "not run" : std::string(to_string(chosen->outcome))};
   if (!(chosen->error <= error)) return {Standing::missed, fmt::format("error {:.2g}", chosen->error)};
   return {Standing::met, "holds"};
 }
 
-std::optional<double> Judged::ratio() const {
+std::optional<double> Transfer::ratio() const {
   if (best == nullptr || chosen == nullptr || chosen->times.empty()) return std::nullopt;
   return median_time(*chosen) / median_time(*best);
 }
 
-std::vector<Judged> judged_elsewhere(const std::vector<SheetResult>& sheets) {
-  std::vector<Judged> all;
+std::vector<Transfer> transfers(const std::vector<SheetResult>& sheets) {
+  std::vector<Transfer> all;
   for (const SheetResult& sheet : sheets) {
     if (sheet.sheet.scene == training_scene) continue;
-    if (const SheetResult* training = training_of(sheet, sheets)) judge(sheet, *training, all);
+    if (const SheetResult* training = training_of(sheet, sheets)) transfer(sheet, *training, all);
   }
   return all;
 }

@@ -56,7 +56,7 @@ std::vector<FieldWinner> field_winners(const std::vector<SheetResult>& sheets, S
 std::vector<std::string> family_names();
 
 /// A setting that won on one sheet, judged on another: without hindsight.
-struct Judged {
+struct Transfer {
   const SheetResult *training, *sheet;
   double error;
   const FieldRun* chosen;  ///< on the sheet; null: it was not run there to its end
@@ -68,7 +68,7 @@ struct Judged {
 };
 
 /// Chosen on the sheet hung by its edge whose h k/d is nearest, of the same number of particles if there is one.
-std::vector<Judged> judged_elsewhere(const std::vector<SheetResult>& sheets);
+std::vector<Transfer> transfers(const std::vector<SheetResult>& sheets);
 
 /// What the winners of sheets with like damping have in common.
 struct FieldAnswer {

@@ -56,21 +56,21 @@ struct Asked {
   double value() const { return base::quantile(values, 0.5); }
 };
 
-using results::Cell;
 using results::ColumnOf;
+using results::Datum;
 using results::Role;
 
 constexpr ColumnOf<Asked> bar_columns[] = {
     {"what", "target", "", "what is compared", Role::key, results::field<&Asked::what>},
     {"bar", "target value", "", "bound of the value", Role::key,
-     [](const Asked& asked) -> Cell { return to_string(asked.target); }},
-    {"value", "value", "1", "median of turns", Role::time, [](const Asked& asked) -> Cell { return asked.value(); }},
+     [](const Asked& asked) -> Datum { return to_string(asked.target); }},
+    {"value", "value", "1", "median of turns", Role::time, [](const Asked& asked) -> Datum { return asked.value(); }},
     {"lowest", "from", "1", "lowest of turns", Role::time,
-     [](const Asked& asked) -> Cell { return std::ranges::min(asked.values); }},
+     [](const Asked& asked) -> Datum { return std::ranges::min(asked.values); }},
     {"highest", "to", "1", "highest of turns", Role::time,
-     [](const Asked& asked) -> Cell { return std::ranges::max(asked.values); }},
+     [](const Asked& asked) -> Datum { return std::ranges::max(asked.values); }},
     {"verdict", "verdict", "", "whether the target is met", Role::verdict,
-     [](const Asked& asked) -> Cell { return check(asked.target, asked.value()); }},
+     [](const Asked& asked) -> Datum { return check(asked.target, asked.value()); }},
 };
 
 std::vector<Asked> asked(bool quick, Checkpoint& checkpoint) {

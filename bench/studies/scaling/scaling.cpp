@@ -111,8 +111,8 @@ struct StepRow {
 
 double nanoseconds_per_particle(const StepCost& cost) { return 1e9 * cost.seconds / cost.particles; }
 
-using results::Cell;
 using results::ColumnOf;
+using results::Datum;
 using results::field;
 using results::Role;
 
@@ -125,12 +125,12 @@ constexpr ColumnOf<StepRow> run_columns[] = {
 constexpr ColumnOf<StepCost> cost_columns[] = {
     {"linear_solver", "chosen", "", "the linear solver that auto chose", Role::note, field<&StepCost::linear_solver>},
     {"step", "step", "ms", "mean wall time of a step", Role::time,
-     [](const StepCost& cost) -> Cell { return 1e3 * cost.seconds; }},
+     [](const StepCost& cost) -> Datum { return 1e3 * cost.seconds; }},
     {"per_particle", "/particle", "ns", "the same, over the number of particles", Role::time,
-     [](const StepCost& cost) -> Cell { return nanoseconds_per_particle(cost); }},
+     [](const StepCost& cost) -> Datum { return nanoseconds_per_particle(cost); }},
     {"updates", "updates", "1", "linear systems a step", Role::counter, field<&StepCost::updates>},
     {"per_update", "/update", "ns", "time over the number of particles and updates", Role::time,
-     [](const StepCost& cost) -> Cell { return nanoseconds_per_particle(cost) / cost.updates; }},
+     [](const StepCost& cost) -> Datum { return nanoseconds_per_particle(cost) / cost.updates; }},
     {"cg_iterations", "CG", "1", "iterations of conjugate gradients a step", Role::counter, field<&StepCost::iterations>},
     {"escalations", "to Newton", "1", "stages that auto gave to Newton's matrix", Role::counter, field<&StepCost::escalations>},
     {"memory", "memory", "MB", "most memory that the process had until then", Role::time, field<&StepCost::memory>},

@@ -136,17 +136,17 @@ std::string_view describe(const std::optional<Expected>& expected) {
 
 using results::Part;
 using results::Role;
-using results::to_cell;
+using results::to_datum;
 
 constexpr results::ColumnOf<AtlasCell> cell_columns[] = {
-    {"n", "n", "1", "particles a side", Role::key, [](const AtlasCell& cell) { return to_cell(cell.sheet->n); }},
-    {"step", "h", "s", "time step", Role::key, [](const AtlasCell& cell) { return to_cell(cell.sheet->step); }},
+    {"n", "n", "1", "particles a side", Role::key, [](const AtlasCell& cell) { return to_datum(cell.sheet->n); }},
+    {"step", "h", "s", "time step", Role::key, [](const AtlasCell& cell) { return to_datum(cell.sheet->step); }},
     {"method", "method", "", "time integrator, with its stage solver if that is not auto", Role::key,
-     [](const AtlasCell& cell) { return to_cell(cell.row->name); }},
+     [](const AtlasCell& cell) { return to_datum(cell.row->name); }},
     {"nu", "ν_h", "1", "numerical stiffness h² k/(ρ l²)", Role::key, results::field<&AtlasCell::stiffness>},
     {"to_damping", "h k/d", "1", "infinite without damping", Role::key, results::field<&AtlasCell::ratio>},
     {"predicted", "predicted", "", "by the amplification of linear modes and the contraction of the thesis' loop", Role::note,
-     [](const AtlasCell& cell) { return to_cell(describe(cell.expected)); }, nullptr, expectations},
+     [](const AtlasCell& cell) { return to_datum(describe(cell.expected)); }, nullptr, expectations},
 };
 
 constexpr results::ColumnOf<Expected> expected_columns[] = {
@@ -228,15 +228,15 @@ struct Endings {
 template <Classification classification>
 constexpr results::ColumnOf<Endings> count_column(const char* name) {
   return {name, to_string(classification).data(), "1", "runs", Role::quantity, [](const Endings& row) {
-            return to_cell(row.counts[static_cast<std::size_t>(classification)]);
+            return to_datum(row.counts[static_cast<std::size_t>(classification)]);
           }};
 }
 
 constexpr results::ColumnOf<Endings> endings_columns[] = {
-    {"n", "n", "1", "particles a side", Role::key, [](const Endings& row) { return to_cell(row.sheet->n); }},
-    {"step", "h", "s", "time step", Role::key, [](const Endings& row) { return to_cell(row.sheet->step); }},
+    {"n", "n", "1", "particles a side", Role::key, [](const Endings& row) { return to_datum(row.sheet->n); }},
+    {"step", "h", "s", "time step", Role::key, [](const Endings& row) { return to_datum(row.sheet->step); }},
     {"method", "method", "", "time integrator, with its stage solver if that is not auto", Role::key,
-     [](const Endings& row) { return to_cell(row.row->name); }},
+     [](const Endings& row) { return to_datum(row.row->name); }},
     count_column<Classification::accurate>("accurate"),
     count_column<Classification::wrong>("wrong"),
     count_column<Classification::bounded>("bounded"),
@@ -280,7 +280,7 @@ constexpr results::ColumnOf<Converging> converging_columns[] = {
     {"rise", "energy rises", "1", "of these: the solution of the method's equations gains energy", Role::quantity,
      results::field<&Converging::rise>},
     {"verdict", "verdict", "", "whether all of them do", Role::verdict,
-     [](const Converging& row) -> results::Cell {
+     [](const Converging& row) -> results::Datum {
        return results::check(row.converge == row.stable, "all converge", "not all converge");
      }},
 };

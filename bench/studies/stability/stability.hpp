@@ -69,24 +69,24 @@ CompiledScene hung_by_corners(int n, double k, double d);
 /// What became of a run.
 inline constexpr results::ColumnOf<ClassifiedRun> classified_columns[] = {
     {"verdict", "verdict", "", "what became of the run", results::Role::outcome,
-     [](const ClassifiedRun& run) -> results::Cell { return std::string(to_string(run.classification)); }, nullptr,
+     [](const ClassifiedRun& run) -> results::Datum { return std::string(to_string(run.classification)); }, nullptr,
      classification_names},
     {"error", "error", "1", "of the end over the size, positions or centre of mass; none: not known", results::Role::error,
-     [](const ClassifiedRun& run) { return std::isnan(run.error.error) ? results::Cell() : run.error.error; }},
+     [](const ClassifiedRun& run) { return std::isnan(run.error.error) ? results::Datum() : run.error.error; }},
     {"uncertainty", "±", "1", "of the error: how far two reference methods differ", results::Role::uncertainty,
-     [](const ClassifiedRun& run) { return std::isnan(run.error.error) ? results::Cell() : run.error.uncertainty; }},
+     [](const ClassifiedRun& run) { return std::isnan(run.error.error) ? results::Datum() : run.error.uncertainty; }},
     {"steps", "steps", "1", "accepted ones", results::Role::counter,
-     [](const ClassifiedRun& run) { return results::to_cell(run.end.result.steps); }},
+     [](const ClassifiedRun& run) { return results::to_datum(run.end.result.steps); }},
     {"rejected", "rejected", "1", "steps that were cut", results::Role::counter,
-     [](const ClassifiedRun& run) { return results::to_cell(run.end.result.rejected_steps); }},
+     [](const ClassifiedRun& run) { return results::to_datum(run.end.result.rejected_steps); }},
     {"evaluations", "evaluations", "1", "of forces, and of Newton matrices", results::Role::counter,
-     [](const ClassifiedRun& run) { return results::to_cell(run.end.evaluations); }},
+     [](const ClassifiedRun& run) { return results::to_datum(run.end.evaluations); }},
     {"newton_matrices", "Newton", "1", "matrices made", results::Role::counter,
-     [](const ClassifiedRun& run) { return results::to_cell(run.end.newton_matrices); }},
+     [](const ClassifiedRun& run) { return results::to_datum(run.end.newton_matrices); }},
     {"cpu_ms", "", "ms", "processor time", results::Role::time,
-     [](const ClassifiedRun& run) { return results::to_cell(run.end.cpu_ms); }},
+     [](const ClassifiedRun& run) { return results::to_datum(run.end.cpu_ms); }},
     {"reason", "reason", "", "why it did not succeed", results::Role::note,
-     [](const ClassifiedRun& run) -> results::Cell { return reason(run.end); }},
+     [](const ClassifiedRun& run) -> results::Datum { return reason(run.end); }},
 };
 
 /// What a run may cost. A sub-step of an explicit method is far cheaper than an update of an implicit one.
@@ -103,9 +103,9 @@ LargestSteps largest_steps(const CompiledScene& sheet, const CrossCheckedReferen
 
 inline constexpr results::ColumnOf<LargestSteps> largest_columns[] = {
     {"accurate", "accurate", "s", "largest step that is accurate", results::Role::quantity,
-     [](const LargestSteps& row) { return row.accurate > 0 ? results::Cell(row.accurate) : results::Cell(); }},
+     [](const LargestSteps& row) { return row.accurate > 0 ? results::Datum(row.accurate) : results::Datum(); }},
     {"stable", "stable", "s", "largest step that is stable, right or wrong", results::Role::quantity,
-     [](const LargestSteps& row) { return row.stable > 0 ? results::Cell(row.stable) : results::Cell(); }},
+     [](const LargestSteps& row) { return row.stable > 0 ? results::Datum(row.stable) : results::Datum(); }},
 };
 
 Job stability_atlas(bool quick, const Methods& methods);

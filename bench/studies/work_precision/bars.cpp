@@ -10,7 +10,7 @@
 namespace drape::bench {
 namespace {
 
-using results::Cell;
+using results::Datum;
 using results::field;
 using results::Role;
 using results::Standing;
@@ -34,11 +34,11 @@ constexpr results::ColumnOf<BarRow> bar_row_columns[] = {
     {"bar", "target", "", "what is compared", Role::key, field<&BarRow::name>},
     {"error", "error", "1", "at most", Role::key, field<&BarRow::error>},
     {"wanted", "target value", "", "bound of the value", Role::key,
-     [](const BarRow& row) -> Cell { return to_string(row.target); }},
+     [](const BarRow& row) -> Datum { return to_string(row.target); }},
     {"detail", "", "", "what was compared", Role::note, field<&BarRow::detail>},
     {"value", "value", "1", "measured value", Role::time, field<&BarRow::value>},
     {"verdict", "verdict", "", "whether the target is met", Role::verdict,
-     [](const BarRow& row) -> Cell { return row.verdict(); }},
+     [](const BarRow& row) -> Datum { return row.verdict(); }},
 };
 
 using BarRows = std::vector<BarRow>;

@@ -8,8 +8,8 @@
 namespace drape::bench {
 namespace {
 
-using results::Cell;
 using results::ColumnOf;
+using results::Datum;
 using results::field;
 using results::Role;
 
@@ -33,12 +33,12 @@ std::vector<Quickest> quickest_on(const SceneRuns& scene) {
 constexpr ColumnOf<Quickest> quickest_columns[] = {
     {"scene", "scene", "", "its name", Role::key, field<&Quickest::scene>},
     {"error", "error <=", "1", "over the size of the scene", Role::key, field<&Quickest::error>},
-    {"ours", "our quickest", "", "with that error", Role::note, [](const Quickest& row) -> Cell { return row.ours.name(); }},
-    {"ours_ms", "time", "ms", "its median CPU time", Role::time, [](const Quickest& row) -> Cell { return row.ours.time; }},
+    {"ours", "our quickest", "", "with that error", Role::note, [](const Quickest& row) -> Datum { return row.ours.name(); }},
+    {"ours_ms", "time", "ms", "its median CPU time", Role::time, [](const Quickest& row) -> Datum { return row.ours.time; }},
     {"peer", "SUNDIALS, tuned", "", "its quickest with that error", Role::note,
-     [](const Quickest& row) { return row.sundials ? Cell(row.sundials.name()) : Cell(); }},
+     [](const Quickest& row) { return row.sundials ? Datum(row.sundials.name()) : Datum(); }},
     {"ratio", "slower by", "1", "time of SUNDIALS over that of our quickest", Role::time,
-     [](const Quickest& row) { return row.sundials ? Cell(row.ratio()) : Cell(); }},
+     [](const Quickest& row) { return row.sundials ? Datum(row.ratio()) : Datum(); }},
 };
 
 /// Quartiles of the ratios on a scene.

@@ -8,8 +8,8 @@
 namespace drape::bench {
 namespace {
 
-using results::Cell;
 using results::ColumnOf;
+using results::Datum;
 using results::field;
 using results::Role;
 
@@ -44,16 +44,16 @@ struct OtherCodeRow {
 constexpr ColumnOf<OtherCodeRow> other_code_columns[] = {
     {"n", "n", "1", "particles a side", Role::key, field<&OtherCodeRow::n>},
     {"code", "other code, 100 x 100", "", "measured elsewhere", Role::key,
-     [](const OtherCodeRow& row) -> Cell { return row.other.code; }},
-    {"their_error", "error", "m", "RMS at 0.5 s", Role::key, [](const OtherCodeRow& row) -> Cell { return row.other.error; }},
+     [](const OtherCodeRow& row) -> Datum { return row.other.code; }},
+    {"their_error", "error", "m", "RMS at 0.5 s", Role::key, [](const OtherCodeRow& row) -> Datum { return row.other.error; }},
     {"their_seconds", "time", "s/s", "CPU seconds per simulated second", Role::time,
-     [](const OtherCodeRow& row) { return row.n == 100 ? Cell(row.other.seconds) : Cell(); }},
+     [](const OtherCodeRow& row) { return row.n == 100 ? Datum(row.other.seconds) : Datum(); }},
 };
 
 constexpr ColumnOf<Match> match_columns[] = {
-    {"{}", "{}", "", "{}", Role::note, [](const Match& match) -> Cell { return match.winner.name(); }},
+    {"{}", "{}", "", "{}", Role::note, [](const Match& match) -> Datum { return match.winner.name(); }},
     {"{}_error", "error", "m", "RMS, the largest at all tenths of the end", Role::note,
-     [](const Match& match) -> Cell { return match.winner.run->measured.error; }},
+     [](const Match& match) -> Datum { return match.winner.run->measured.error; }},
     {"{}_seconds", "time", "s/s", "CPU seconds per simulated second", Role::time, field<&Match::seconds>},
 };
 

@@ -14,11 +14,11 @@
 namespace drape::bench {
 namespace {
 
-using results::Cell;
 using results::ColumnOf;
+using results::Datum;
 using results::field;
 using results::Role;
-using results::to_cell;
+using results::to_datum;
 
 // --- Runs ----------------------------------------------------------------------------------------------------------------
 
@@ -29,34 +29,34 @@ struct RunRow {
 
 constexpr ColumnOf<RunRow> run_columns[] = {
     {"code", "", "", "whose it is", Role::key,
-     [](const RunRow& row) -> Cell { return std::string(to_string(row.run.configuration->code)); }},
+     [](const RunRow& row) -> Datum { return std::string(to_string(row.run.configuration->code)); }},
     {"family", "", "", "ways that differ in one number", Role::key,
-     [](const RunRow& row) -> Cell { return row.run.configuration->name; }},
+     [](const RunRow& row) -> Datum { return row.run.configuration->name; }},
     {"method", "", "", "ours with the program's defaults: the method", Role::key,
      [](const RunRow& row) {
-       return to_cell(row.run.configuration->is_default() ? row.run.configuration->by_default->name : "");
+       return to_datum(row.run.configuration->is_default() ? row.run.configuration->by_default->name : "");
      }},
     {"build", "", "", "how the program and SUNDIALS were built", Role::note,
-     [](const RunRow&) -> Cell { return reference::sundials_build(); }},
+     [](const RunRow&) -> Datum { return reference::sundials_build(); }},
     {"control", "", "", "the number: step [s], tolerance, or fraction of the stability limit", Role::key,
-     [](const RunRow& row) -> Cell { return std::string(to_string(row.run.configuration->control)); }},
-    {"value", "", "1", "its value", Role::key, [](const RunRow& row) -> Cell { return row.run.variant().value; }},
+     [](const RunRow& row) -> Datum { return std::string(to_string(row.run.configuration->control)); }},
+    {"value", "", "1", "its value", Role::key, [](const RunRow& row) -> Datum { return row.run.variant().value; }},
     {"outcome", "", "", "success, or why there is none", Role::outcome,
-     [](const RunRow& row) -> Cell { return row.run.counts() ? "success" : row.run.reason; }},
+     [](const RunRow& row) -> Datum { return row.run.counts() ? "success" : row.run.reason; }},
     {"side", "", "", "whose search it is of", Role::note,
-     [](const RunRow& row) -> Cell { return row.run.configuration->is_ours() ? "ours" : "SUNDIALS"; }},
+     [](const RunRow& row) -> Datum { return row.run.configuration->is_ours() ? "ours" : "SUNDIALS"; }},
     {"solvers", "", "", "of ours, whether the program chose them", Role::note,
-     [](const RunRow& row) -> Cell { return row.run.configuration->is_default() ? "automatic" : ""; }},
+     [](const RunRow& row) -> Datum { return row.run.configuration->is_default() ? "automatic" : ""; }},
     {"kind", "", "", "of its side, unless it is usual there", Role::note,
      [](const RunRow& row) {
        const Code code = row.run.configuration->code;
-       return to_cell(code == Code::drape ? "" : to_string(code));
+       return to_datum(code == Code::drape ? "" : to_string(code));
      }},
     {"uncertainty", "", "1", "of the reference, as the error", Role::uncertainty, field<&RunRow::uncertainty>},
-    {"steps", "", "1", "steps", Role::counter, [](const RunRow& row) -> Cell { return row.run.steps; }},
-    {"forces", "", "1", "evaluations of forces", Role::counter, [](const RunRow& row) -> Cell { return row.run.forces; }},
+    {"steps", "", "1", "steps", Role::counter, [](const RunRow& row) -> Datum { return row.run.steps; }},
+    {"forces", "", "1", "evaluations of forces", Role::counter, [](const RunRow& row) -> Datum { return row.run.forces; }},
     {"factorisations", "", "1", "matrices factored", Role::counter,
-     [](const RunRow& row) -> Cell { return row.run.factorisations; }},
+     [](const RunRow& row) -> Datum { return row.run.factorisations; }},
 };
 
 using Times = const results::Measured&;
@@ -64,10 +64,10 @@ using Times = const results::Measured&;
 constexpr ColumnOf<results::Measured> times_columns[] = {
     {"error", "", "1", "largest distance from the reference at all tenths of the end, over the scene's size", Role::error,
      field<&results::Measured::error>},
-    {"time", "", "ms", "median CPU time", Role::time, [](Times m) -> Cell { return results::quartiles(m.times).median; }},
-    {"lower", "", "ms", "lower quartile", Role::time, [](Times m) -> Cell { return results::quartiles(m.times).lower; }},
-    {"upper", "", "ms", "upper quartile", Role::time, [](Times m) -> Cell { return results::quartiles(m.times).upper; }},
-    {"repetitions", "", "1", "times it was run for this", Role::time, [](Times m) { return to_cell(m.times.size()); }},
+    {"time", "", "ms", "median CPU time", Role::time, [](Times m) -> Datum { return results::quartiles(m.times).median; }},
+    {"lower", "", "ms", "lower quartile", Role::time, [](Times m) -> Datum { return results::quartiles(m.times).lower; }},
+    {"upper", "", "ms", "upper quartile", Role::time, [](Times m) -> Datum { return results::quartiles(m.times).upper; }},
+    {"repetitions", "", "1", "times it was run for this", Role::time, [](Times m) { return to_datum(m.times.size()); }},
 };
 
 // --- What winners have in common -----------------------------------------------------------------------------------------
@@ -79,18 +79,18 @@ struct Level {
 };
 
 constexpr ColumnOf<Level> level_columns[] = {
-    {"scene", "scene", "", "its name", Role::key, [](const Level& level) -> Cell { return level.scene->problem.name; }},
+    {"scene", "scene", "", "its name", Role::key, [](const Level& level) -> Datum { return level.scene->problem.name; }},
     {"error", "error", "1", "at most, over the scene's size", Role::key, field<&Level::error>},
 };
 
 /// The size of the search on each side, and what part of the motion an error is.
 constexpr ColumnOf<SceneRuns> search_columns[] = {
     {"our_families", "", "1", "configurations of ours that were tried", Role::quantity,
-     [](const SceneRuns& scene) { return to_cell(number_of_configurations(scene, true)); }},
+     [](const SceneRuns& scene) { return to_datum(number_of_configurations(scene, true)); }},
     {"sundials_families", "", "1", "configurations of SUNDIALS that were tried", Role::quantity,
-     [](const SceneRuns& scene) { return to_cell(number_of_configurations(scene, false)); }},
+     [](const SceneRuns& scene) { return to_datum(number_of_configurations(scene, false)); }},
     {"motion", "", "1", "largest distance from the start, over the scene's size", Role::quantity,
-     [](const SceneRuns& scene) { return scene.problem.motion > 0 ? Cell(scene.problem.motion) : Cell(); }},
+     [](const SceneRuns& scene) { return scene.problem.motion > 0 ? Datum(scene.problem.motion) : Datum(); }},
 };
 
 /// CPU times of one over those of another, with the interval of its uncertainty.
@@ -108,9 +108,9 @@ std::optional<TimeRatio> ratio_of(const Winner& a, const Winner& b) {
 constexpr ColumnOf<TimeRatio> time_ratio_columns[] = {
     {"{}", "ratio", "1", "{}", Role::time, field<&TimeRatio::value>},
     {"{}_lower", "", "1", "its 95 % interval, by bootstrap", Role::time,
-     [](const TimeRatio& ratio) -> Cell { return ratio.interval.lower; }},
+     [](const TimeRatio& ratio) -> Datum { return ratio.interval.lower; }},
     {"{}_upper", "", "1", "its 95 % interval, by bootstrap", Role::time,
-     [](const TimeRatio& ratio) -> Cell { return ratio.interval.upper; }},
+     [](const TimeRatio& ratio) -> Datum { return ratio.interval.upper; }},
 };
 
 // --- Winners -------------------------------------------------------------------------------------------------------------
@@ -130,17 +130,17 @@ Beside beside(const Winner& winner, const Winner& best) {
 results::Quartiles times_of(const Beside& one) { return results::quartiles(one.winner.run->measured.times); }
 
 constexpr ColumnOf<Beside> winner_columns[] = {
-    {"{}", "", "", "the quickest", Role::note, [](const Beside& one) -> Cell { return one.winner.name(); }},
-    {"{}_ms", "{}", "ms", "its median CPU time", Role::time, [](const Beside& one) -> Cell { return times_of(one).median; }},
+    {"{}", "", "", "the quickest", Role::note, [](const Beside& one) -> Datum { return one.winner.name(); }},
+    {"{}_ms", "{}", "ms", "its median CPU time", Role::time, [](const Beside& one) -> Datum { return times_of(one).median; }},
     {"{}_lower", "", "ms", "lower quartile of its times", Role::time,
-     [](const Beside& one) -> Cell { return times_of(one).lower; }},
+     [](const Beside& one) -> Datum { return times_of(one).lower; }},
     {"{}_upper", "", "ms", "upper quartile of its times", Role::time,
-     [](const Beside& one) -> Cell { return times_of(one).upper; }},
+     [](const Beside& one) -> Datum { return times_of(one).upper; }},
 };
 
 constexpr ColumnOf<Beside> tie_columns[] = {
     {"{}_tie", "", "", "whether the gap is below the noise", Role::note,
-     [](const Beside& one) { return one.tied ? Cell("tie") : Cell(); }},
+     [](const Beside& one) { return one.tied ? Datum("tie") : Datum(); }},
 };
 
 /// A contender of the table of winners.
@@ -170,7 +170,7 @@ struct WinnersRow {
 
 constexpr ColumnOf<WinnersRow> best_columns[] = {
     {"best", "our best", "", "the quickest of all that the program offers", Role::note,
-     [](const WinnersRow& row) { return row.ours.winner ? Cell(row.ours.winner.name()) : Cell(); }},
+     [](const WinnersRow& row) { return row.ours.winner ? Datum(row.ours.winner.name()) : Datum(); }},
 };
 
 std::vector<WinnersRow> winners_rows(const std::vector<SceneRuns>& scenes, const std::vector<WinnerGroup>& groups) {
@@ -198,18 +198,18 @@ struct Sides {
 
 constexpr ColumnOf<Winner> side_columns[] = {
     {"{}", "{}", "", "the configuration with the value that is the quickest", Role::note,
-     [](const Winner& winner) -> Cell { return winner.name(); }},
+     [](const Winner& winner) -> Datum { return winner.name(); }},
     {"{}_ms", "CPU", "ms", "its median CPU time", Role::time,
-     [](const Winner& winner) { return winner ? Cell(winner.time) : Cell(); }},
+     [](const Winner& winner) { return winner ? Datum(winner.time) : Datum(); }},
 };
 
 constexpr ColumnOf<Sides> held_out_columns[] = {
     {"scene", "scene", "", "where it is judged", Role::key,
-     [](const Sides& row) -> Cell { return row.level.scene->problem.name; }},
+     [](const Sides& row) -> Datum { return row.level.scene->problem.name; }},
     {"training", "chosen on", "", "where the configurations were chosen", Role::key,
-     [](const Sides& row) -> Cell { return row.level.scene->training->problem.name; }},
+     [](const Sides& row) -> Datum { return row.level.scene->training->problem.name; }},
     {"error", "error", "1", "at most, over the scene's size", Role::key,
-     [](const Sides& row) -> Cell { return row.level.error; }},
+     [](const Sides& row) -> Datum { return row.level.error; }},
 };
 
 /// What was chosen on the scene's training, judged on it.
@@ -242,13 +242,13 @@ void add_ratio(results::Table& table, const std::vector<Sides>& rows, std::optio
 
 constexpr ColumnOf<Score> score_columns[] = {
     {"choice", "choice", "", "a method and what controls its accuracy", Role::key,
-     [](const Score& score) -> Cell { return score.choice.name(); }},
+     [](const Score& score) -> Datum { return score.choice.name(); }},
     {"cells", "cells", "1", "scenes and errors", Role::quantity,
-     [](const Score& score) { return to_cell(score.ratios.size()); }},
+     [](const Score& score) { return to_datum(score.ratios.size()); }},
     {"missed", "missed", "1", "of these not reached", Role::time, field<&Score::missed>},
     {"within", "within 1.5", "1", "of these at most 1.5 times our best, or tied with it", Role::time, field<&Score::within>},
     {"mean", "mean", "1", "geometric mean of the ratios to our best, those not reached as 10", Role::time,
-     [](const Score& score) -> Cell { return score.mean(); }},
+     [](const Score& score) -> Datum { return score.mean(); }},
     {"worst", "worst", "1", "the largest", Role::time, field<&Score::worst>},
 };
 

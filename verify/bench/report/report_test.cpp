@@ -22,14 +22,14 @@ namespace drape::verify::report_test {
 namespace {
 
 using nlohmann::json;
-using results::Cell;
 using results::ColumnOf;
+using results::Datum;
 using results::field;
 using results::Figure;
 using results::Part;
 using results::Role;
 using results::Table;
-using results::to_cell;
+using results::to_datum;
 using testing::AllOf;
 using testing::Contains;
 using testing::EndsWith;
@@ -47,11 +47,11 @@ struct Refinement {
 };
 
 constexpr ColumnOf<Refinement> order_columns[] = {
-    {"scene", "scene", "", "", Role::key, [](const Refinement&) { return to_cell("sheet"); }},
+    {"scene", "scene", "", "", Role::key, [](const Refinement&) { return to_datum("sheet"); }},
     {"method", "method", "", "", Role::key, field<&Refinement::method>},
     {"step", "h", "s", "", Role::key, field<&Refinement::step>},
     {"error", "rms error", "1", "", Role::error, field<&Refinement::error>},
-    {"uncertainty", "", "1", "", Role::uncertainty, [](const Refinement&) -> Cell { return 1e-5; }},
+    {"uncertainty", "", "1", "", Role::uncertainty, [](const Refinement&) -> Datum { return 1e-5; }},
     {"order", "order", "1", "", Role::note, field<&Refinement::order>},
     {"verdict", "verdict", "", "", Role::verdict, field<&Refinement::verdict>},
     {"fitted_order", "fitted", "1", "", Role::order, field<&Refinement::fitted_order>},
@@ -81,21 +81,21 @@ struct Trial {
   int k;
 };
 
-Cell time_of(const Trial& trial) { return trial.slowness * trial.k; }
+Datum time_of(const Trial& trial) { return trial.slowness * trial.k; }
 
 constexpr ColumnOf<Trial> trial_columns[] = {
     {"code", "", "", "", Role::key, field<&Trial::code>},
-    {"family", "", "", "", Role::key, [](const Trial& t) -> Cell { return fmt::format("{}, \"as it is\"", t.code); }},
-    {"side", "", "", "", Role::note, [](const Trial& t) { return to_cell(t.slowness == 1 ? "ours" : "others"); }},
-    {"kind", "", "", "", Role::note, [](const Trial& t) { return to_cell(t.slowness == 1 ? "" : t.code); }},
-    {"control", "", "", "", Role::key, [](const Trial&) { return to_cell("step"); }},
-    {"value", "", "1", "", Role::key, [](const Trial& t) -> Cell { return 0.1 / t.k; }},
-    {"outcome", "", "", "", Role::outcome, [](const Trial& t) { return to_cell(t.k == 3 ? "unstable" : "success"); }},
-    {"uncertainty", "", "1", "", Role::uncertainty, [](const Trial&) -> Cell { return 1e-9; }},
-    {"steps", "", "1", "", Role::counter, [](const Trial& t) { return to_cell(10 * t.k); }},
+    {"family", "", "", "", Role::key, [](const Trial& t) -> Datum { return fmt::format("{}, \"as it is\"", t.code); }},
+    {"side", "", "", "", Role::note, [](const Trial& t) { return to_datum(t.slowness == 1 ? "ours" : "others"); }},
+    {"kind", "", "", "", Role::note, [](const Trial& t) { return to_datum(t.slowness == 1 ? "" : t.code); }},
+    {"control", "", "", "", Role::key, [](const Trial&) { return to_datum("step"); }},
+    {"value", "", "1", "", Role::key, [](const Trial& t) -> Datum { return 0.1 / t.k; }},
+    {"outcome", "", "", "", Role::outcome, [](const Trial& t) { return to_datum(t.k == 3 ? "unstable" : "success"); }},
+    {"uncertainty", "", "1", "", Role::uncertainty, [](const Trial&) -> Datum { return 1e-9; }},
+    {"steps", "", "1", "", Role::counter, [](const Trial& t) { return to_datum(10 * t.k); }},
 };
 constexpr ColumnOf<Trial> measured_columns[] = {
-    {"error", "", "1", "", Role::error, [](const Trial& t) -> Cell { return std::pow(10.0, -t.k); }},
+    {"error", "", "1", "", Role::error, [](const Trial& t) -> Datum { return std::pow(10.0, -t.k); }},
     {"time", "", "ms", "", Role::time, time_of},
     {"lower", "", "ms", "", Role::time, time_of},
     {"upper", "", "ms", "", Role::time, time_of},
@@ -127,7 +127,7 @@ Table atlas() {
       "Verdicts",
       {{"n", "n", "1", "", Role::key, {n, n, n, n}, {}},
        {"step", "h", "s", "", Role::key, {0.02, 0.02, 0.02, 0.02}, {}},
-       {"method", "method", "", "", Role::key, std::vector<Cell>(4, "bdf2"), {}},
+       {"method", "method", "", "", Role::key, std::vector<Datum>(4, "bdf2"), {}},
        {"nu", "ν_h", "1", "", Role::quantity, {1.0, 1.0, 1e5, 1e5}, {}},
        {"to_damping", "h k/d", "1", "", Role::quantity, {1.0, infinite, 1.0, infinite}, {}},
        {"predicted", "predicted", "", "", Role::note, {"stable", "stable", "unstable", "unstable"}, {}, {"stable", "unstable"}},
@@ -158,7 +158,7 @@ Table hostile() {
 
 /// A table like those of figure 4.3.
 Table over_time() {
-  const std::vector<Cell> means{1.0, 2.0, 3.0, 4.0};
+  const std::vector<Datum> means{1.0, 2.0, 3.0, 4.0};
   Table table{"figure-4.3",
               "Figure 4.3: a sheet and a box",
               {column("t", "s", Role::key, {0.05, 0.1, 0.15, 0.2}), column("bdf2_updates", "1", Role::counter, means),

@@ -85,11 +85,11 @@ TEST(FieldWinner, IsNotARunThatFailedOrWasNotRepeated) {
   EXPECT_EQ(at(field_winners(sheets, Settings::tuned), 1e-2).best->method, "bdf2");
 }
 
-TEST(JudgedSetting, IsThatOfTheTrainingSheet) {
+TEST(TransferredSetting, IsThatOfTheTrainingSheet) {
   const std::vector<SheetResult> sheets{
       one_sheet(), sheet_of("hung-corners", {made_up("bdf2", 0.01, 5e-3, 10), made_up("bdf2", 0.005, 5e-4, 20),
                                              made_up("sbdf2", 0.0025, 0.3, 8), made_up("verlet", 0.9, 1e-5, 40)})};
-  for (const bench::Judged& row : judged_elsewhere(sheets)) {
+  for (const bench::Transfer& row : transfers(sheets)) {
     EXPECT_EQ(row.sheet->sheet.scene, "hung-corners");
     if (row.error == 1e-2) {
       EXPECT_EQ(row.setting, "sbdf2, h = 0.0025 s");
@@ -100,7 +100,7 @@ TEST(JudgedSetting, IsThatOfTheTrainingSheet) {
       EXPECT_EQ(row.verdict().standing, Standing::met);
     }
   }
-  EXPECT_THAT(judged_elsewhere(sheets), testing::SizeIs(5)) << "from 1e-1 to 1e-5";
+  EXPECT_THAT(transfers(sheets), testing::SizeIs(5)) << "from 1e-1 to 1e-5";
 }
 
 TEST(FieldAnswer, NamesTheFamilyThatWinsMostOften) {

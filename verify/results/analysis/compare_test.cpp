@@ -110,20 +110,20 @@ Recording timed(unsigned seed, double spread = 0.05, int repetitions = 10) {
   return recorded;
 }
 
-std::vector<std::string> texts_in(const Judged& judged, const std::string& name) {
+std::vector<std::string> texts_in(const Aspect& aspect, const std::string& name) {
   std::vector<std::string> texts;
-  for (const Column& c : judged.worst.columns)
+  for (const Column& c : aspect.worst.columns)
     if (c.name == name)
-      for (const Cell& cell : c.cells) texts.push_back(std::get<std::string>(cell));
+      for (const Datum& cell : c.cells) texts.push_back(std::get<std::string>(cell));
   return texts;
 }
 
 TEST(Compare, FindsNothingInARecordingAndItself) {
   const Recording a = timed(1);
   const Comparison comparison = compare(a, a);
-  for (const Judged* judged : {&comparison.accuracy, &comparison.work, &comparison.time}) {
-    EXPECT_EQ(judged->judgement, Judgement::same) << judged->reason;
-    EXPECT_EQ(rows(judged->worst), 0u);
+  for (const Aspect* aspect : {&comparison.accuracy, &comparison.work, &comparison.time}) {
+    EXPECT_EQ(aspect->change, Change::same) << aspect->reason;
+    EXPECT_EQ(rows(aspect->worst), 0u);
   }
   EXPECT_EQ(exit_code(comparison), 0);
 }
@@ -133,14 +133,14 @@ TEST(Compare, FindsACounterThatDiffersByOne) {
   Recording b = a;
   ++b.runs[3].work[1].count;
   const Comparison more = compare(a, b);
-  EXPECT_EQ(more.work.judgement, Judgement::regression);
+  EXPECT_EQ(more.work.change, Change::regression);
   EXPECT_THAT(texts_in(more.work, "cell"), ElementsAre(HasSubstr("method3")));
   EXPECT_THAT(texts_in(more.work, "quantity"), ElementsAre("force/tension"));
   EXPECT_THAT(texts_in(more.work, "b"), ElementsAre("301"));
-  EXPECT_EQ(more.accuracy.judgement, Judgement::same);
+  EXPECT_EQ(more.accuracy.change, Change::same);
   EXPECT_EQ(exit_code(more), 1);
   const Comparison less = compare(b, a);
-  EXPECT_EQ(less.work.judgement, Judgement::better);
+  EXPECT_EQ(less.work.change, Change::better);
   EXPECT_EQ(exit_code(less), 0);
 }
 
@@ -151,10 +151,10 @@ TEST(Compare, FindsAnErrorThatGrewBeyondItsUncertaintyAndNoOther) {
     b.runs[2].error->rms = rms;
     return compare(a, b);
   };
-  EXPECT_EQ(with_error(1.04e-3).accuracy.judgement, Judgement::regression);
-  EXPECT_EQ(with_error(1.029e-3).accuracy.judgement, Judgement::same) << "1e-3 · 1.01 + 2 · 1e-5";
-  EXPECT_EQ(with_error(0.9e-3).accuracy.judgement, Judgement::better);
-  EXPECT_EQ(with_error(NAN).accuracy.judgement, Judgement::regression);
+  EXPECT_EQ(with_error(1.04e-3).accuracy.change, Change::regression);
+  EXPECT_EQ(with_error(1.029e-3).accuracy.change, Change::same) << "1e-3 · 1.01 + 2 · 1e-5";
+  EXPECT_EQ(with_error(0.9e-3).accuracy.change, Change::better);
+  EXPECT_EQ(with_error(NAN).accuracy.change, Change::regression);
   EXPECT_EQ(exit_code(with_error(1.04e-3)), 1);
   EXPECT_THAT(texts_in(with_error(1.04e-3).accuracy, "b"), ElementsAre("0.00104 ± 1e-05"));
 }
@@ -164,9 +164,9 @@ TEST(Compare, LooksAtEnergiesWherePositionsSayLittle) {
   a.runs[0].error->growth = 1000;
   Recording b = a;
   b.runs[0].error->rms *= 5;
-  EXPECT_EQ(compare(a, b).accuracy.judgement, Judgement::same);
+  EXPECT_EQ(compare(a, b).accuracy.change, Change::same);
   b.runs[0].error->energy *= 5;
-  EXPECT_EQ(compare(a, b).accuracy.judgement, Judgement::regression);
+  EXPECT_EQ(compare(a, b).accuracy.change, Change::regression);
 }
 
 TEST(Compare, FindsRunsThatFailNow) {
@@ -174,8 +174,8 @@ TEST(Compare, FindsRunsThatFailNow) {
   Recording b = a;
   b.runs[5].outcome = solver::Outcome::not_converged;
   b.runs[5].error.reset();
-  EXPECT_EQ(compare(a, b).accuracy.judgement, Judgement::regression);
-  EXPECT_EQ(compare(b, a).accuracy.judgement, Judgement::better);
+  EXPECT_EQ(compare(a, b).accuracy.change, Change::regression);
+  EXPECT_EQ(compare(b, a).accuracy.change, Change::better);
 }
 
 TEST(Compare, SaysWhatMakesCellsDifferent) {
@@ -183,7 +183,7 @@ TEST(Compare, SaysWhatMakesCellsDifferent) {
   Recording b = a;
   for (RunRecord& r : b.runs) r.parameters[0].value = 1e-6;
   const Comparison comparison = compare(a, b);
-  EXPECT_EQ(comparison.accuracy.judgement, Judgement::not_comparable);
+  EXPECT_EQ(comparison.accuracy.change, Change::not_comparable);
   EXPECT_THAT(texts_in(comparison.accuracy, "b")[0], HasSubstr("parameter loop_tolerance (1e-05 and 1e-06)"));
   EXPECT_EQ(exit_code(comparison), 2);
   b = a;
@@ -210,7 +210,7 @@ int false_alarms(int trials, const CompareOptions& options) {
   for (int trial = 0; trial < trials; ++trial) {
     clock.time(a, 10, 0.5);
     clock.time(b, 10, 0.5, options.quiet ? 1 : 1.7);
-    alarms += compare(a, b, options).time.judgement == Judgement::regression;
+    alarms += compare(a, b, options).time.change == Change::regression;
   }
   return alarms;
 }
@@ -229,8 +229,8 @@ TEST(CompareTimes, FindsOneCellThatIsAFifthSlowerWhateverTheMachine) {
     Recording b = recording();
     Clock(2 * seed + 1).time(b, 10, 0.05, 1.8);
     for (double& time : b.runs[4].times_ms) time *= 1.2;
-    const Judged time = compare(a, b).time;
-    found += time.judgement == Judgement::regression && texts_in(time, "cell")[0].find("method4") != std::string::npos;
+    const Aspect time = compare(a, b).time;
+    found += time.change == Change::regression && texts_in(time, "cell")[0].find("method4") != std::string::npos;
   }
   EXPECT_GE(found, 19);
 }
@@ -239,16 +239,16 @@ TEST(CompareTimes, FindsThatAllAreAFifthSlowerOnAQuietMachine) {
   const Recording a = timed(1, 0.05, 3);  // too few for single cells
   Recording b = recording();
   Clock(2).time(b, 3, 0.05, 1.2);
-  EXPECT_EQ(compare(a, b, {.quiet = true}).time.judgement, Judgement::regression);
+  EXPECT_EQ(compare(a, b, {.quiet = true}).time.change, Change::regression);
   EXPECT_THAT(texts_in(compare(a, b, {.quiet = true}).time, "cell"), ElementsAre("all together"));
-  EXPECT_EQ(compare(b, a, {.quiet = true}).time.judgement, Judgement::better);
+  EXPECT_EQ(compare(b, a, {.quiet = true}).time.change, Change::better);
 }
 
 TEST(CompareTimes, TellWhatAllShareWithoutJudgingIt) {
   Recording b = recording();
   Clock(2).time(b, 10, 0.05, 1.2);
-  const Judged time = compare(timed(1), b).time;
-  EXPECT_EQ(time.judgement, Judgement::same);
+  const Aspect time = compare(timed(1), b).time;
+  EXPECT_EQ(time.change, Change::same);
   EXPECT_THAT(time.reason, HasSubstr("all share the ratio 1.2"));
 }
 
@@ -256,7 +256,7 @@ TEST(CompareTimes, SayWhyTheyCannotBeCompared) {
   const Recording a = timed(1);
   Recording b = a;
   b.provenance[0].value = "slow";
-  EXPECT_EQ(compare(a, b).time.judgement, Judgement::not_comparable);
+  EXPECT_EQ(compare(a, b).time.change, Change::not_comparable);
   EXPECT_EQ(compare(a, b).time.reason, "cpu differ: fast and slow");
   EXPECT_EQ(exit_code(compare(a, b)), 2);
   EXPECT_EQ(exit_code(compare(a, b, {.times = false})), 0);
@@ -268,7 +268,7 @@ TEST(CompareTimes, SayWhyTheyCannotBeCompared) {
 
 // --- Tables --------------------------------------------------------------------------------------------------------------
 
-Table orders(double order, const Cell& verdict, double rms, std::int64_t updates, double wall) {
+Table orders(double order, const Datum& verdict, double rms, std::int64_t updates, double wall) {
   return {"orders",
           "",
           {column("method", "", Role::key, {"bdf2"}), column("fitted_order", "1", Role::order, {order}),
@@ -281,13 +281,13 @@ TEST(CompareTables, JudgeOrdersErrorsAndCountersButNoTimes) {
   const Table good = orders(2.01, met, 1e-4, 10, 1);
   const auto against = [&](const Table& b) { return compare({{}, {}, {good}}, {{}, {}, {b}}); };
   EXPECT_EQ(exit_code(against(orders(2.02, met, 1e-4, 10, 5))), 0);
-  EXPECT_EQ(against(orders(1.9, met, 1e-4, 10, 1)).accuracy.judgement, Judgement::regression);
-  EXPECT_EQ(against(orders(2.01, missed, 1e-4, 10, 1)).accuracy.judgement, Judgement::regression);
-  EXPECT_EQ(against(orders(2.01, met, 1.1e-4, 10, 1)).accuracy.judgement, Judgement::regression);
-  EXPECT_EQ(against(orders(2.01, met, 0.9e-4, 10, 1)).accuracy.judgement, Judgement::better);
-  EXPECT_EQ(against(orders(2.01, met, 1e-4, 11, 1)).work.judgement, Judgement::regression);
+  EXPECT_EQ(against(orders(1.9, met, 1e-4, 10, 1)).accuracy.change, Change::regression);
+  EXPECT_EQ(against(orders(2.01, missed, 1e-4, 10, 1)).accuracy.change, Change::regression);
+  EXPECT_EQ(against(orders(2.01, met, 1.1e-4, 10, 1)).accuracy.change, Change::regression);
+  EXPECT_EQ(against(orders(2.01, met, 0.9e-4, 10, 1)).accuracy.change, Change::better);
+  EXPECT_EQ(against(orders(2.01, met, 1e-4, 11, 1)).work.change, Change::regression);
   EXPECT_THAT(against(good).work.reason, HasSubstr("1 cells"));
-  EXPECT_EQ(compare({{}, {}, {good}}, {{}, {}, {}}).accuracy.judgement, Judgement::not_comparable);
+  EXPECT_EQ(compare({{}, {}, {good}}, {{}, {}, {}}).accuracy.change, Change::not_comparable);
 }
 
 /// A row with an outcome.
@@ -300,29 +300,29 @@ Table ending(const std::string& outcome, std::vector<std::string> classes = {}) 
 TEST(CompareTables, JudgeOutcomesByWhetherTheyAreGood) {
   const auto judged = [](const Table& a, const Table& b) { return compare({{}, {}, {a}}, {{}, {}, {b}}); };
   const Table good = ending("success"), bad = ending("not converged"), other = ending("unstable");
-  EXPECT_EQ(judged(bad, good).accuracy.judgement, Judgement::better);
-  EXPECT_EQ(judged(good, bad).accuracy.judgement, Judgement::regression);
-  EXPECT_EQ(judged(bad, other).accuracy.judgement, Judgement::changed);
+  EXPECT_EQ(judged(bad, good).accuracy.change, Change::better);
+  EXPECT_EQ(judged(good, bad).accuracy.change, Change::regression);
+  EXPECT_EQ(judged(bad, other).accuracy.change, Change::changed);
   EXPECT_EQ(exit_code(judged(bad, other)), 0);
   EXPECT_THAT(judged(bad, other).accuracy.reason, HasSubstr("0 worse, 0 better, 1 changed"));
   EXPECT_THAT(texts_in(judged(bad, other).accuracy, "b"), ElementsAre("unstable"));
   const std::vector<std::string> classes{"accurate", "stable but wrong", "unstable"};
   const auto between = [&](const char* a, const char* b) {
-    return judged(ending(a, classes), ending(b, classes)).accuracy.judgement;
+    return judged(ending(a, classes), ending(b, classes)).accuracy.change;
   };
-  EXPECT_EQ(between("unstable", "accurate"), Judgement::better);
-  EXPECT_EQ(between("accurate", "stable but wrong"), Judgement::regression);
-  EXPECT_EQ(between("stable but wrong", "unstable"), Judgement::changed);
+  EXPECT_EQ(between("unstable", "accurate"), Change::better);
+  EXPECT_EQ(between("accurate", "stable but wrong"), Change::regression);
+  EXPECT_EQ(between("stable but wrong", "unstable"), Change::changed);
 }
 
 TEST(CompareTables, JudgeVerdictsByTheirStandings) {
-  const Cell met = Verdict{Standing::met, "below"}, open = Verdict{Standing::open, "no contact"}, classified = "no contact";
-  const auto judgement = [](const Cell& a, const Cell& b) {
-    return compare({{}, {}, {orders(2, a, 1e-4, 10, 1)}}, {{}, {}, {orders(2, b, 1e-4, 10, 1)}}).accuracy.judgement;
+  const Datum met = Verdict{Standing::met, "below"}, open = Verdict{Standing::open, "no contact"}, classified = "no contact";
+  const auto change = [](const Datum& a, const Datum& b) {
+    return compare({{}, {}, {orders(2, a, 1e-4, 10, 1)}}, {{}, {}, {orders(2, b, 1e-4, 10, 1)}}).accuracy.change;
   };
-  EXPECT_EQ(judgement(open, met), Judgement::better);
-  EXPECT_EQ(judgement(met, open), Judgement::regression);
-  EXPECT_EQ(judgement(classified, open), Judgement::same) << "a text without a standing is open";
+  EXPECT_EQ(change(open, met), Change::better);
+  EXPECT_EQ(change(met, open), Change::regression);
+  EXPECT_EQ(change(classified, open), Change::same) << "a text without a standing is open";
 }
 
 /// A row with one number, and what the reference of its error is uncertain by.
@@ -331,20 +331,20 @@ Table one_number(Role role, double value, double uncertainty) {
 }
 
 TEST(CompareTables, JudgeNoNoise) {
-  const auto judgement = [](Role role, double a, double b, double uncertainty) {
+  const auto change = [](Role role, double a, double b, double uncertainty) {
     return compare({{}, {}, {one_number(role, a, uncertainty)}}, {{}, {}, {one_number(role, b, 2 * uncertainty)}})
-        .accuracy.judgement;
+        .accuracy.change;
   };
-  EXPECT_EQ(judgement(Role::error, 1e-8, 2e-8, 1e-9), Judgement::regression);
-  EXPECT_EQ(judgement(Role::error, 1e-8, 2e-8, 1e-8), Judgement::same);
-  EXPECT_EQ(judgement(Role::quantity, 1e-8, 2e-8, 0), Judgement::regression);
-  EXPECT_EQ(judgement(Role::quantity, 0, 1e-13, 0), Judgement::same) << "round-off";
-  for (const Role untold : {Role::note, Role::time}) EXPECT_EQ(judgement(untold, 1e-8, 2e-8, 0), Judgement::same);
+  EXPECT_EQ(change(Role::error, 1e-8, 2e-8, 1e-9), Change::regression);
+  EXPECT_EQ(change(Role::error, 1e-8, 2e-8, 1e-8), Change::same);
+  EXPECT_EQ(change(Role::quantity, 1e-8, 2e-8, 0), Change::regression);
+  EXPECT_EQ(change(Role::quantity, 0, 1e-13, 0), Change::same) << "round-off";
+  for (const Role untold : {Role::note, Role::time}) EXPECT_EQ(change(untold, 1e-8, 2e-8, 0), Change::same);
 }
 
 /// Errors with ever smaller steps.
-Table curve(std::vector<Cell> steps, std::vector<Cell> errors) {
-  const std::vector<Cell> uncertainties(steps.size(), 1e-9);
+Table curve(std::vector<Datum> steps, std::vector<Datum> errors) {
+  const std::vector<Datum> uncertainties(steps.size(), 1e-9);
   return {"curve",
           "",
           {column("step", "s", Role::key, std::move(steps)), column("error", "1", Role::error, std::move(errors)),
@@ -354,20 +354,20 @@ Table curve(std::vector<Cell> steps, std::vector<Cell> errors) {
 TEST(CompareTables, MatchRowsByTheirKeys) {
   const auto judged = [](const Table& a, const Table& b) { return compare({{}, {}, {a}}, {{}, {}, {b}}).accuracy; };
   const Table whole = curve({0.1, 0.05, 0.025}, {1e-3, 1e-4, 5e-9});
-  EXPECT_EQ(judged(whole, curve({0.025, 0.05, 0.1}, {5e-9, 1e-4, 1e-3})).judgement, Judgement::same) << "in another order";
-  EXPECT_EQ(judged(whole, curve({0.1, 0.05}, {1e-3, 1e-4})).judgement, Judgement::same) << "the error is not resolved";
-  EXPECT_EQ(judged(whole, curve({0.1, 0.025}, {1e-3, 5e-9})).judgement, Judgement::not_comparable);
-  EXPECT_EQ(judged(curve({0.1}, {1e-3}), curve({0.1, 0.05}, {1e-3, 1e-4})).judgement, Judgement::not_comparable);
-  EXPECT_EQ(judged(whole, curve({0.1, 0.05}, {1e-3, 2e-4})).judgement, Judgement::regression);
+  EXPECT_EQ(judged(whole, curve({0.025, 0.05, 0.1}, {5e-9, 1e-4, 1e-3})).change, Change::same) << "in another order";
+  EXPECT_EQ(judged(whole, curve({0.1, 0.05}, {1e-3, 1e-4})).change, Change::same) << "the error is not resolved";
+  EXPECT_EQ(judged(whole, curve({0.1, 0.025}, {1e-3, 5e-9})).change, Change::not_comparable);
+  EXPECT_EQ(judged(curve({0.1}, {1e-3}), curve({0.1, 0.05}, {1e-3, 1e-4})).change, Change::not_comparable);
+  EXPECT_EQ(judged(whole, curve({0.1, 0.05}, {1e-3, 2e-4})).change, Change::regression);
 }
 
 TEST(CompareTables, MayLackRowsOnlyWhereTimesDecideWhichThereAre) {
   Table both{"times", "", {column("method", "", Role::key, {"a", "b"}), column("time", "ms", Role::time, {1.0, 2.0})}};
   Table one{"times", "", {column("method", "", Role::key, {"a"}), column("time", "ms", Role::time, {1.0})}};
-  const auto judgement = [&] { return compare({{}, {}, {both}}, {{}, {}, {one}}).accuracy.judgement; };
-  EXPECT_EQ(judgement(), Judgement::not_comparable);
+  const auto change = [&] { return compare({{}, {}, {both}}, {{}, {}, {one}}).accuracy.change; };
+  EXPECT_EQ(change(), Change::not_comparable);
   both.timed_rows = one.timed_rows = true;
-  EXPECT_EQ(judgement(), Judgement::same);
+  EXPECT_EQ(change(), Change::same);
 }
 
 }  // namespace

@@ -11,11 +11,11 @@
 namespace drape::verify::overview_test {
 namespace {
 
-const results::Cell two = results::Verdict{results::Standing::met, "2 as declared"};
-const results::Cell not_three = results::Verdict{results::Standing::missed, "not 3"};
-const results::Cell no_order = results::Verdict{results::Standing::open, "no order to be seen"};
+const results::Datum two = results::Verdict{results::Standing::met, "2 as declared"};
+const results::Datum not_three = results::Verdict{results::Standing::missed, "not 3"};
+const results::Datum no_order = results::Verdict{results::Standing::open, "no order to be seen"};
 
-using results::Cell;
+using results::Datum;
 using results::Recording;
 using results::Role;
 using results::RunRecord;
@@ -54,7 +54,7 @@ TEST(Overview, CountsOrdersThatAreAsDeclaredAndNamesTheOthers) {
 }
 
 TEST(Overview, ShowsHeadlineTablesWhole) {
-  const Table other{"quickest", "Who is quick", {column("k", "1", Role::key, std::vector<results::Cell>(12, 1.5))}};
+  const Table other{"quickest", "Who is quick", {column("k", "1", Role::key, std::vector<results::Datum>(12, 1.5))}};
   Table headline = other;
   headline.headline = true;
   const Table without_rows{"nothing", "", {}, true};
@@ -98,8 +98,8 @@ TEST(Overview, ShowsWhatFailedAndWhy) {
 }
 
 TEST(Overview, ShowsTenOfWhatIsNotAsItWasWanted) {
-  const std::vector<Cell> bars(24, "faster"), errors(24, 0.1);
-  std::vector<Cell> verdicts;
+  const std::vector<Datum> bars(24, "faster"), errors(24, 0.1);
+  std::vector<Datum> verdicts;
   for (int k = 0; k < 24; ++k) verdicts.push_back(k % 2 == 0 ? two : not_three);
   const Table table{"bars",
                     "",
@@ -113,7 +113,7 @@ TEST(Overview, ShowsTenOfWhatIsNotAsItWasWanted) {
 }
 
 TEST(Overview, ShowsWhatIsNotAsItWasWantedInAnyColumnOfATableForUsers) {
-  const Cell met = results::Verdict{results::Standing::met};
+  const Datum met = results::Verdict{results::Standing::met};
   Table table{"table",
               "",
               {column("method", "", Role::key, {"a", "b", "c"}),

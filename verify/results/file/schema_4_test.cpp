@@ -63,19 +63,19 @@ TEST(OldScenes, AreReadKeyByKeyFromTheirText) {
 
 TEST(SchemaFour, SaysWhatIsNotAsItWasWanted) {
   const auto usual = [](const char* text) { return written_verdict(text, 4); };
-  EXPECT_EQ(usual("NOT 4"), Cell(Verdict{Standing::missed, "not 4"}));
-  EXPECT_EQ(usual("BDF(2) is NOT nearer"), Cell(Verdict{Standing::missed, "BDF(2) is not nearer"}));
-  EXPECT_EQ(usual("as in theory"), Cell(Verdict{Standing::met, "as in theory"}));
-  EXPECT_EQ(usual("no theory known"), Cell(Verdict{Standing::open, "no theory known"}));
-  EXPECT_EQ(usual("stable but wrong"), Cell("stable but wrong"));
+  EXPECT_EQ(usual("NOT 4"), Datum(Verdict{Standing::missed, "not 4"}));
+  EXPECT_EQ(usual("BDF(2) is NOT nearer"), Datum(Verdict{Standing::missed, "BDF(2) is not nearer"}));
+  EXPECT_EQ(usual("as in theory"), Datum(Verdict{Standing::met, "as in theory"}));
+  EXPECT_EQ(usual("no theory known"), Datum(Verdict{Standing::open, "no theory known"}));
+  EXPECT_EQ(usual("stable but wrong"), Datum("stable but wrong"));
 }
 
 TEST(SchemaFive, OfTheFirstFilesBeginsVerdictsWithTheirStandings) {
   const auto worded = [](const char* text) { return written_verdict(text, 5); };
-  EXPECT_EQ(worded("missed: not met by 1.30: never"), Cell(Verdict{Standing::missed, "not met by 1.30: never"}));
-  EXPECT_EQ(worded("met"), Cell(Verdict{Standing::met}));
-  EXPECT_EQ(worded("under: not resolved"), Cell("under: not resolved"));
-  EXPECT_EQ(worded("methodical"), Cell("methodical"));
+  EXPECT_EQ(worded("missed: not met by 1.30: never"), Datum(Verdict{Standing::missed, "not met by 1.30: never"}));
+  EXPECT_EQ(worded("met"), Datum(Verdict{Standing::met}));
+  EXPECT_EQ(worded("under: not resolved"), Datum("under: not resolved"));
+  EXPECT_EQ(worded("methodical"), Datum("methodical"));
 }
 
 }  // namespace

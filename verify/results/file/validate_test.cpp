@@ -165,7 +165,7 @@ INSTANTIATE_TEST_SUITE_P(All, Planted, testing::ValuesIn(deviations), [](const a
 
 TEST(Verdicts, LieInFilesAsDetailsWithStandings) {
   const base::TemporaryFolder folder;
-  const std::vector<Cell> cells{Verdict{Standing::met, "below: by far"}, Verdict{Standing::missed}, "met: a text", ""};
+  const std::vector<Datum> cells{Verdict{Standing::met, "below: by far"}, Verdict{Standing::missed}, "met: a text", ""};
   RunFile(folder / "a.h5", provenance("test")).add({"t", "about t", {{"verdict", "", "", "what", Role::verdict, cells, {}}}});
   EXPECT_EQ(read_tables(folder / "a.h5").at(0).columns.at(0).cells, cells);
   EXPECT_THAT(validate(folder / "a.h5"), IsEmpty());
