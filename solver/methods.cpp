@@ -35,6 +35,7 @@ void rk4_substeps(Step& s);
 void bridson(Step& s);
 void rkl2(Step& s);
 void rkc2(Step& s);
+void rock2(Step& s);
 void generalized_alpha(Step& s);
 void generalized_alpha_half(Step& s);
 void newmark(Step& s);
@@ -234,6 +235,12 @@ constexpr Method method_rows[] = {
      .order = 2,
      .stages = Stages::none,
      .step = rkc2,
+     .meets_obstacles = false},
+    {.name = "rock2",
+     .description = "orthogonal Runge-Kutta-Chebyshev, explicit, as many stages as damping demands",
+     .order = 2,
+     .stages = Stages::none,
+     .step = rock2,
      .meets_obstacles = false},
     {.name = "generalized-alpha",
      .description = "generalised alpha of Chung and Hulbert, spectral radius 0.8 at infinity",

@@ -127,4 +127,6 @@ double rkc2_stages(double h_decay) {
   return std::max(2.0, std::ceil(std::sqrt(1 + 1.5 * h_decay / (1 - 2 * rkc2_damping / 15))));
 }
 
+double rock2_stages(double h_decay) { return std::max(3.0, std::ceil(std::sqrt((h_decay + 1.145) / 0.807))); }
+
 }  // namespace drape::solver

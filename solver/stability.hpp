@@ -32,6 +32,9 @@ double rkl2_stages(double h_decay);
 /// The same of `rkc2`: 2/3 (s² − 1) (1 − 2/15 ε) is not less   [Sommeijer, Shampine, Verwer 1998].
 double rkc2_stages(double h_decay);
 
+/// The same, at least 3, of `rock2`: 0.807 s² − 1.145 is not less, as measured from 3 to 500 stages.
+double rock2_stages(double h_decay);
+
 /// ε of `rkc2`: its stability polynomial stays below 1 − ε/3.
 constexpr double rkc2_damping = 2.0 / 13;
 

@@ -29,6 +29,7 @@ export const looks = {
     "bridson": "#00695C",
     "rkl2": "#F9A825",
     "rkc2": "#FF8F00",
+    "rock2": "#F4511E",
     "generalized-alpha": "#2E7D32",
     "generalized-alpha-0.5": "#81C784",
     "newmark": "#1B5E20",

@@ -10,9 +10,9 @@ namespace drape::solver {
 void rkl2(Step& s, double stages);
 void rkc2(Step& s, double stages);
 
-/// Number of stages of this step for h times the largest decay; 0 if it is not finite, or above the number at which a step
+/// Number of stages of this step for h times the largest decay; 0 if it is not finite, or above the `most` with which a step
 /// would take minutes: then the outcome is set.
-double stages_of(Step& s, double (*fewest)(double h_decay));
+double stages_of(Step& s, double (*fewest)(double h_decay), double most = 1e7);
 
 /// Coefficients of a stage Y_j.
 struct StageWeights {
@@ -20,9 +20,9 @@ struct StageWeights {
 };
 
 /// Y_j = (1 − μ − ν) Y_0 + μ Y_{j−1} + ν Y_{j−2} + μ̃ h F_{j−1} + γ̃ h F_0,   Y_1 = Y_0 + μ̃ h F_0,   y1 = Y_s,   with F = (v, M⁻¹
-/// f). `weights` gives those of j = 1, 2, … in turn.
+/// f). `weights` gives those of j = 1, 2, … in turn. Returns c of y1, which approximates y(t + c h).
 template <class Weights>
-void three_term_recurrence(Step& s, double stages, Weights weights) {
+double three_term_recurrence(Step& s, double stages, Weights weights) {
   const State& y0 = s.y0();
   s.scratch.rates.resize(2);
   State *before = &s.scratch.rates[0], *last = &s.scratch.rates[1];
@@ -43,6 +43,7 @@ void three_term_recurrence(Step& s, double stages, Weights weights) {
     std::swap(last, before);
   }
   s.y1() = *last;
+  return c;
 }
 
 }  // namespace drape::solver

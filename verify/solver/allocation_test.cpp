@@ -131,7 +131,7 @@ TEST_P(Allocations, DoNotHappenInStepsWithAllForces) {
 
 TEST(ExplicitMethods, DoNotAllocate) {
   const model::Override soft[] = {{"grid.n", "10"}, {"material.damping", "0.5"}};
-  for (const char* name : {"explicit-euler", "explicit-midpoint", "rk4", "rkl2", "rkc2"}) {
+  for (const char* name : {"explicit-euler", "explicit-midpoint", "rk4", "rkl2", "rkc2", "rock2"}) {
     const model::Cloth cloth = model::compile(model::load_scene("hung-edge", soft));
     EXPECT_EQ(allocations_of_steps(cloth, solver::method(name), {}), 0) << name;
   }
