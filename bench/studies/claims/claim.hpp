@@ -47,10 +47,12 @@ struct Claim {
   std::string_view command = "bench/run study claims";  ///< that shows the same with more beside it
 };
 
-/// The groups of claims, a file each: of linear modes, of linear systems, of orders, and of sheets in motion.
+/// The groups of claims, a file each: of linear modes, of linear systems, of orders, of sheets in motion, and of methods other
+/// than those of the thesis.
 std::span<const Claim> mode_claims();
 std::span<const Claim> system_claims();
 std::span<const Claim> order_claims();
 std::span<const Claim> sheet_claims();
+std::span<const Claim> alternative_claims();
 
 }  // namespace drape::bench

@@ -88,7 +88,7 @@ constexpr ColumnOf<CaseRow> case_columns[] = {
 
 std::vector<const Claim*> all_claims() {
   std::vector<const Claim*> all;
-  for (const auto group : {mode_claims(), system_claims(), order_claims(), sheet_claims()})
+  for (const auto group : {mode_claims(), system_claims(), order_claims(), sheet_claims(), alternative_claims()})
     for (const Claim& claim : group) all.push_back(&claim);
   return all;
 }

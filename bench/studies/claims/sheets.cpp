@@ -4,11 +4,9 @@
 #include <cmath>
 
 #include "bench/runs/lag.hpp"
-#include "bench/runs/motion_error.hpp"
 #include "bench/runs/record.hpp"
-#include "bench/runs/samples.hpp"
 #include "bench/studies/claims/claim.hpp"
-#include "model/scene_file/scene_file.hpp"
+#include "bench/studies/claims/sheet_runs.hpp"
 #include "reference/distance.hpp"
 
 /// Claims about sheets in motion: work, lag, error and energy of runs.
@@ -17,25 +15,8 @@ namespace {
 
 using results::RunRecord;
 
-constexpr double thesis_step = 0.01;  ///< [s], the step of the thesis
-
-model::Scene with(const std::string& scene, std::vector<model::Override> overrides) {
-  return model::load_scene(scene, overrides);
-}
-
-/// The sheet hung by its corners, d [N s/m].
-model::Scene hung(double damping, double end = 0.4) {
-  return with("hung-corners", {{"material.damping", fmt::format("{}", damping)}, {"end.time", fmt::format("{}", end)}});
-}
-
 /// The tablecloth with k and d of table 3.2.
 model::Scene thesis_tablecloth() { return with("tablecloth", {{"material.tension", "1e4"}, {"material.damping", "50"}}); }
-
-RunRecord run_by(const model::Scene& scene, const std::string& method, double step = thesis_step) {
-  RunSpec spec{scene, "", nullptr, step, {}};
-  choose_method(spec, method);
-  return record(spec);
-}
 
 /// By the loop of the thesis with IC(0) and its usual tolerances.
 RunRecord run_as_in_thesis(const model::Scene& scene, const char* method, double loop_tolerance = 1e-5) {
@@ -162,36 +143,6 @@ std::vector<ClaimCase> implicit_damping_saves_substeps() {
 
 // --- Motion ------------------------------------------------------------------------------------------------------------------
 
-/// A motion by the midpoint rule with steps of 1 ms, and what twice that would change.
-struct FineMotion {
-  reference::Trajectory motion;
-  double uncertainty = 0;  ///< root mean square at the end [m]
-};
-
-std::vector<solver::State> states_by(const model::Scene& scene, const std::string& method, double step,
-                                     const std::vector<double>& times) {
-  RunSpec spec{scene, "", nullptr, step, {}};
-  choose_method(spec, method);
-  Samples samples(times);
-  Observer* const observers[] = {&samples};
-  record(spec, observers);
-  return std::move(samples).states();
-}
-
-FineMotion fine_motion(const model::Scene& scene) {
-  constexpr double fine = 1e-3;
-  const model::Cloth cloth = model::compile(scene);
-  FineMotion found;
-  const int count = static_cast<int>(std::lround(scene.end / (2 * fine)));
-  for (int k = 1; k <= count; ++k) found.motion.times.push_back(2 * fine * k);
-  found.motion.states = states_by(scene, "midpoint", fine, found.motion.times);
-  const auto coarse = states_by(scene, "midpoint", 2 * fine, {scene.end});
-  found.uncertainty = reference::rms_distance(found.motion.states.back().x, coarse.back().x) / 3;  // of order 2
-  found.motion.times.insert(found.motion.times.begin(), 0);
-  found.motion.states.insert(found.motion.states.begin(), cloth.start);
-  return found;
-}
-
 ClaimCase lag_case(const std::string& where, const model::Scene& scene, const FineMotion& fine, const std::string& method,
                    double lower, double upper) {
   std::vector<double> times;
@@ -200,7 +151,7 @@ ClaimCase lag_case(const std::string& where, const model::Scene& scene, const Fi
   if (states.size() < times.size()) return {where, NAN, NAN, lower, upper};
   const Delay late = delay(times, states, fine.motion);
   const bool at_end_of_scan = std::abs(late.seconds) >= 0.999 * longest_lag * scene.end;
-  return {where + (at_end_of_scan ? ", at least" : ""), late.seconds, fine.uncertainty / late.speed, lower, upper};
+  return {where + (at_end_of_scan ? " (at least)" : ""), late.seconds, fine.uncertainty / late.speed, lower, upper};
 }
 
 constexpr double visible_lag = 1e-3;  ///< [s]
@@ -219,10 +170,6 @@ std::vector<ClaimCase> first_order_is_slow() {
 
 std::vector<ClaimCase> second_order_is_not() {
   return lags_of({"bdf2", "midpoint", "ros2", "sbdf2"}, -visible_lag, visible_lag);
-}
-
-double distance_at_end(const model::Scene& scene, const RunRecord& run, const solver::Vectors& x) {
-  return run.succeeded() ? reference::rms_distance(run.final_state.x, x) / model::size(scene) : NAN;
 }
 
 std::vector<ClaimCase> one_newton_step_is_enough() {
@@ -259,16 +206,6 @@ std::vector<ClaimCase> imex_is_stable_on_cloth() {
     cases.push_back({method, run_by(scene, method).last_good_time / scene.end, 0, 0.999, 1.001});
   }
   return cases;
-}
-
-/// Largest rise of the energy above that of the start [J].
-double energy_gain(const model::Scene& scene, const std::string& method, double step) {
-  const model::Cloth cloth = model::compile(scene);
-  const double start = total_energy(cloth, 0, cloth.start);
-  const RunRecord run = run_by(scene, method, step);
-  double gain = 0;
-  for (const results::StepRecord& one : run.steps) gain = std::max(gain, one.kinetic_energy + one.potential_energy - start);
-  return gain;
 }
 
 std::vector<ClaimCase> midpoint_does_not_gain_energy() {

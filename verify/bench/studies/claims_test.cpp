@@ -61,7 +61,8 @@ TEST(ClaimVerdict, IsDecidedByWhatRefutes) {
 
 std::vector<const Claim*> ledger() {
   std::vector<const Claim*> all;
-  for (const auto group : {bench::mode_claims(), bench::system_claims(), bench::order_claims(), bench::sheet_claims()})
+  for (const auto group : {bench::mode_claims(), bench::system_claims(), bench::order_claims(), bench::sheet_claims(),
+                           bench::alternative_claims()})
     for (const Claim& claim : group) all.push_back(&claim);
   return all;
 }
@@ -73,7 +74,7 @@ TEST(Ledger, NamesEachClaimOnceWithItsSource) {
     for (const std::string_view text : {claim->source, claim->claim, claim->measured, claim->unit, claim->command})
       EXPECT_FALSE(text.empty()) << claim->id;
   }
-  EXPECT_GE(ids.size(), 30U);
+  EXPECT_GE(ids.size(), 40U);
 }
 
 /// The same measurement with a number beyond its bounds.
@@ -106,6 +107,11 @@ TEST(Ledger, OfSystemsIsDecidedByNumbersThatCouldHaveRefutedIt) {
   expect_refutable(bench::system_claims());
 }
 
+TEST(Ledger, OfAlternativesIsDecidedByNumbersThatCouldHaveRefutedIt) {
+  DRAPE_SLOW();
+  expect_refutable(bench::alternative_claims());
+}
+
 /// What a measured claim comes to.
 std::string verdict_on(std::string_view id) {
   for (const Claim* claim : ledger())
@@ -118,6 +124,16 @@ TEST(Ledger, TellsMethodsApartByTheirModes) {
   EXPECT_EQ(verdict_on("E-23"), "only if implicit-euler, bdf2, tr-bdf2, esdirk4") << "the midpoint rule does not damp";
   EXPECT_EQ(verdict_on("C-11"), "met: confirmed");
   EXPECT_THAT(verdict_on("C-07"), testing::StartsWith("only if ω² = κ (imex-euler)"));
+}
+
+TEST(Ledger, FindsOnePassOfOrderOneOnlyWithExplicitForcesOfVelocities) {
+  DRAPE_SLOW();
+  EXPECT_EQ(verdict_on("C-05"), "only if explicit forces of velocities, too");
+}
+
+TEST(Ledger, FindsWhatTheLiteratureSaysOfAlternatives) {
+  DRAPE_SLOW();
+  for (const char* id : {"C-15", "C-17", "F-10", "F-11", "F-13"}) EXPECT_EQ(verdict_on(id), "met: confirmed") << id;
 }
 
 }  // namespace

@@ -1,0 +1,140 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "bench/runs/record.hpp"
+#include "bench/studies/claims/claim.hpp"
+#include "bench/studies/claims/sheet_runs.hpp"
+#include "model/cloth.hpp"
+#include "solver/methods/strain_limited.hpp"
+
+/// Claims about methods and stage solvers other than those of the thesis.
+namespace drape::bench {
+namespace {
+
+using results::RunRecord;
+
+/// A sheet that falls without being stretched, so that nothing but gravity moves it.
+std::vector<ClaimCase> kang_is_far_from_the_solution() {
+  std::vector<ClaimCase> cases;
+  for (const char* damping : {"50", "5"}) {
+    model::Scene scene = with("hung-edge", {{"material.damping", damping}, {"end.time", "0.1"}});
+    scene.pins.clear();
+    const auto fallen = [&](const char* method) { return run_by(scene, method).final_state.v.colwise().mean().norm(); };
+    cases.push_back({fmt::format("d = {}", damping), fallen("kang/1") / fallen("imex-euler"), 0, 0, 0.5});
+  }
+  return cases;
+}
+
+/// The sheet hung by its corners, pulled to one and a half of its size and cut by sweeps over its springs in a random order.
+solver::Vectors cut_in_order(const model::Cloth& cloth, unsigned order, int sweeps) {
+  std::vector<solver::CompliantConstraint> springs = cloth.ode.compliant_constraints();
+  std::shuffle(springs.begin(), springs.end(), std::mt19937(order));
+  solver::Vectors x = 1.5 * cloth.start.x, weights = cloth.ode.mass.cwiseInverse().replicate(1, 3);
+  filter(cloth.ode.pins, weights);
+  for (const solver::Pin& pin : cloth.ode.pins) x.row(pin.particle) = cloth.start.x.row(pin.particle);
+  for (int k = 0; k < sweeps; ++k) solver::limit_strain(springs, weights, x);
+  return x;
+}
+
+std::vector<ClaimCase> strain_limits_depend_on_the_order() {
+  constexpr int orders = 10;
+  constexpr double visible = 1e-3;  // part of the size
+  const model::Scene scene = hung(50);
+  const model::Cloth cloth = model::compile(scene);
+  std::vector<ClaimCase> cases;
+  for (const int sweeps : {1, 10, 100}) {
+    std::vector<solver::Vectors> all;
+    solver::Vectors mean = solver::Vectors::Zero(cloth.start.x.rows(), 3);
+    for (unsigned order = 0; order < orders; ++order) mean += all.emplace_back(cut_in_order(cloth, order, sweeps)) / orders;
+    double sum = 0;
+    for (const solver::Vectors& x : all) sum += (x - mean).squaredNorm() / (orders - 1);
+    const double spread = std::sqrt(sum / static_cast<double>(mean.rows())) / model::size(scene);
+    const double uncertainty = spread / std::sqrt(2.0 * (orders - 1));  // of a standard deviation of so many
+    cases.push_back({fmt::format("sweeps: {}", sweeps), spread, uncertainty, visible, unbounded});
+  }
+  return cases;
+}
+
+/// A small sheet hung by its edge, and steps with which XPBD of few iterations does not gain energy.
+model::Scene sheet_of_xpbd() { return with("peer-edge", {{"grid.n", "10"}, {"end.time", "0.1"}}); }
+constexpr double step_of_xpbd = 2.5e-3;  ///< [s]
+
+std::vector<ClaimCase> small_steps_beat_iterations() {
+  const model::Scene scene = sheet_of_xpbd();
+  const FineMotion fine = fine_motion(scene);
+  std::vector<ClaimCase> cases;
+  for (const int n : {4, 20, 100}) {
+    const auto error = [&](const std::string& method) {
+      return distance_at_end(scene, run_by(scene, method, step_of_xpbd), fine.motion.states.back().x);
+    };
+    const double small = error(fmt::format("xpbd/{}x1", n)), many = error(fmt::format("xpbd/1x{}", n));
+    const double doubt = fine.uncertainty / model::size(scene) * (1 / small + 1 / many);
+    cases.push_back({fmt::format("n = {}", n), small / many, small / many * doubt, 0, 0.999});
+  }
+  return cases;
+}
+
+std::vector<ClaimCase> xpbd_does_not_know_iterations() {
+  constexpr double visible = 1e-2;  // part of the size
+  model::Scene scene = sheet_of_xpbd();
+  scene.end = 0.4;
+  std::vector<ClaimCase> cases;
+  for (const int n : {1, 2, 5, 10, 20}) {
+    const auto end = [&](int iterations) { return run_by(scene, fmt::format("xpbd/1x{}", iterations), step_of_xpbd); };
+    cases.push_back({fmt::format("{} and {} iterations", n, 2 * n), distance_at_end(scene, end(n), end(2 * n).final_state.x), 0,
+                     0, visible});
+  }
+  return cases;
+}
+
+std::vector<ClaimCase> chebyshev_saves_an_order_of_magnitude() {
+  const auto updates = [](const model::Scene& scene, const char* stage, double radius) {
+    RunSpec spec{scene, "", &solver::method("implicit-euler"), thesis_step, solver::thesis_options()};
+    spec.options.stage = &solver::stage_kind(stage);
+    spec.options.chebyshev_radius = radius;
+    const RunRecord run = record(spec);
+    return run.succeeded() ? static_cast<double>(results::work_count(run, "updates")) : unbounded;
+  };
+  std::vector<ClaimCase> cases;
+  for (const double d : {50.0, 5.0, 0.5}) {
+    const model::Scene scene = hung(d, 0.1);
+    double best = unbounded;
+    for (const double radius : {0.8, 0.9, 0.97, 0.99, 0.997}) best = std::min(best, updates(scene, "chebyshev", radius));
+    cases.push_back({fmt::format("d = {:g}", d), best / updates(scene, "fixed-point", 0), 0, 0, 0.1});
+  }
+  return cases;
+}
+
+std::vector<ClaimCase> energy_momentum_keeps_the_energy() {
+  constexpr double small = 1e-8;  // [J], of some 3 J that gravity gives
+  std::vector<ClaimCase> cases;
+  for (const double h : {0.01, 0.005}) {
+    const model::Scene scene = with("hung-edge", {{"material.damping", "0"}, {"end.time", "0.4"}});
+    cases.push_back({fmt::format("h = {:g} s", h), energy_gain(scene, "energy-momentum", h), 0, -small, small});
+  }
+  return cases;
+}
+
+constexpr Claim of_alternatives[] = {
+    {"C-15", "Etzmuß 2002", "3.2", "the approximate solve of Kang and others is not near the solution",
+     "speed of a falling sheet over that of IMEX Euler, which solves the same system", "1", kang_is_far_from_the_solution},
+    {"C-17", "Etzmuß 2002", "3.2", "what strain limiting gives depends on the order of the springs",
+     "standard deviation over ten orders, over the size", "1", strain_limits_depend_on_the_order},
+    {"F-10", "Macklin and others 2019", "", "n sub-steps of XPBD are more accurate than n iterations",
+     "error over that with as many iterations", "1", small_steps_beat_iterations},
+    {"F-11", "Macklin, Müller, Chentanez 2016", "", "the stiffness of XPBD does not depend on the number of iterations",
+     "distance of the ends over the size", "1", xpbd_does_not_know_iterations},
+    {"F-12", "Wang 2015", "", "Chebyshev's acceleration saves an order of magnitude of iterations",
+     "updates over those of the loop, with the best of five radii", "1", chebyshev_saves_an_order_of_magnitude},
+    {"F-13", "Simo, Tarnow 1992", "", "the energy-momentum method does not gain energy", "rise of the energy, no damping", "J",
+     energy_momentum_keeps_the_energy},
+};
+
+}  // namespace
+
+std::span<const Claim> alternative_claims() { return of_alternatives; }
+
+}  // namespace drape::bench
