@@ -62,7 +62,7 @@ std::vector<ClaimCase> one_pass_is_of_order_one() {
   in_air.sheet.air = 10;
   const MeasuredOrder without = measured_order("bdf2", smooth_scene(), 1), with = measured_order("bdf2", in_air, 1);
   return {{"explicit forces of positions only", without.order, without.spread, 0.9, 1.1},
-          {"explicit forces of velocities, too", with.order, with.spread, 0.9, 1.1}};
+          {"also explicit forces of velocities", with.order, with.spread, 0.9, 1.1}};
 }
 
 std::vector<ClaimCase> any_matrix_will_do() { return order_two("ros2-w"); }

@@ -128,7 +128,7 @@ TEST(Ledger, TellsMethodsApartByTheirModes) {
 
 TEST(Ledger, FindsOnePassOfOrderOneOnlyWithExplicitForcesOfVelocities) {
   DRAPE_SLOW();
-  EXPECT_EQ(verdict_on("C-05"), "only if explicit forces of velocities, too");
+  EXPECT_EQ(verdict_on("C-05"), "only if also explicit forces of velocities");
 }
 
 TEST(Ledger, FindsWhatTheLiteratureSaysOfAlternatives) {
