@@ -6,7 +6,7 @@
 namespace drape::model {
 namespace {
 
-constexpr double difference = 1e-4;  ///< over the time of a reaction: of the times whose poses give velocities
+constexpr double pose_step = 1e-4;  ///< over the time of a reaction: of the times whose poses give velocities
 
 }  // namespace
 
@@ -15,7 +15,7 @@ Contacts::Contacts(std::span<const ObstacleRule> obstacles, const ContactRule& r
     : obstacles_(obstacles.begin(), obstacles.end()),
       distance_(rule.distance),
       relaxation_(rule.relaxation),
-      moment_(difference * rule.reaction_time),
+      moment_(pose_step * rule.reaction_time),
       gravity_(gravity),
       answers_(obstacles_.size(), std::vector<Answer>(particles)),
       queries_(work.counter("obstacle_queries", "particles whose distance from an obstacle was computed")) {}

@@ -72,7 +72,7 @@ const std::vector<RunRecord> runs{good_run(), failed_run()};
 
 TEST(Csv, HasTheColumnsThatScriptsRelyOn) {
   EXPECT_EQ(
-      to_csv(to_table({})),
+      to_csv(to_table(std::vector<RunRecord>{})),
       "scene,method,step,outcome,message,steps,starting_steps,updates,cg_iterations,wall_ms_min,wall_ms_median,wall_ms_max,"
       "error_rms,"
       "error_run,error_relative,reference,reference_error,error_max,growth,energy_error,centre_error,amplitude,"
@@ -112,7 +112,7 @@ TEST(Json, HasTheColumnsOfCsvAsKeysInTheirOrder) {
   ASSERT_THAT(list, SizeIs(2));
   std::string header;
   for (const auto& item : list[0].items()) header += (header.empty() ? "" : ",") + item.key();
-  EXPECT_EQ(header + "\n", to_csv(to_table({})));
+  EXPECT_EQ(header + "\n", to_csv(to_table(std::vector<RunRecord>{})));
 }
 
 TEST(Json, KeepsValuesAndGivesNullWhereThereIsNone) {
