@@ -112,6 +112,97 @@ std::vector<ClaimCase> chebyshev_saves_an_order_of_magnitude() {
   return cases;
 }
 
+/// Exponent of the error over the length of the sub-step.
+std::vector<ClaimCase> small_steps_are_of_order_one() {
+  const model::Scene scene = sheet_of_xpbd();
+  const FineMotion fine = fine_motion(scene);
+  const auto error = [&](int n) {
+    return distance_at_end(scene, run_by(scene, fmt::format("xpbd/{}x1", n), step_of_xpbd), fine.motion.states.back().x);
+  };
+  std::vector<ClaimCase> cases;
+  for (const int n : {5, 10}) {  // beyond, the reference is not much better
+    const double coarse = error(n), half = error(2 * n);
+    const double doubt = fine.uncertainty / model::size(scene) * (1 / coarse + 1 / half) / std::log(2);
+    cases.push_back({fmt::format("{} and {} sub-steps", n, 2 * n), std::log2(coarse / half), doubt, 0.9, 1.1});
+  }
+  return cases;
+}
+
+/// Sweeps of vertex block descent over passes of the loop, whose global steps are those of projective dynamics.
+std::vector<ClaimCase> vertices_converge_faster() {
+  const auto updates = [](const model::Scene& scene, const char* stage, double tolerance) {
+    RunSpec spec{scene, "", &solver::method("implicit-euler"), thesis_step, solver::thesis_options()};
+    spec.options.stage = &solver::stage_kind(stage);
+    spec.options.loop_tolerance = tolerance;
+    spec.options.max_updates = 20'000;
+    const RunRecord run = record(spec);
+    return run.succeeded() ? static_cast<double>(results::work_count(run, "updates")) : NAN;
+  };
+  std::vector<ClaimCase> cases;
+  for (const double d : {50.0, 5.0, 0.5})
+    for (const double tolerance : {1e-1, 1e-2}) {
+      const model::Scene scene = hung(d, 0.2);
+      cases.push_back({fmt::format("d = {:g}, to {:g} of |b|", d, tolerance),
+                       updates(scene, "vbd", tolerance) / updates(scene, "fixed-point", tolerance), 0, 0, 0.999});
+    }
+  return cases;
+}
+
+/// Σ x × m v.
+Eigen::Vector3d angular_momentum(const solver::SplitOde& ode, const solver::State& y) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (int i = 0; i < ode.particles(); ++i) sum += ode.mass[i] * Eigen::Vector3d(y.x.row(i)).cross(Eigen::Vector3d(y.v.row(i)));
+  return sum;
+}
+
+/// A free sheet without weight and damping that turns about a slanted axis.
+std::vector<ClaimCase> desbrun_keeps_angular_momentum() {
+  constexpr double round_off = 1e-10;
+  model::Scene scene = with("hung-edge", {{"material.damping", "0"}, {"forces.gravity", "[0, 0, 0]"}});
+  scene.pins.clear();
+  const model::Cloth cloth = model::compile(scene);
+  solver::State start = cloth.start;
+  const Eigen::RowVector3d omega(1, 2, 5);
+  for (int i = 0; i < cloth.ode.particles(); ++i) start.v.row(i) = omega.cross(start.x.row(i));
+  const Eigen::Vector3d before = angular_momentum(cloth.ode, start);
+  std::vector<ClaimCase> cases;
+  for (const double h : {0.01, 0.001}) {
+    solver::Integrator integrator(cloth.ode, solver::method("desbrun"), {}, start);
+    solver::Outcome outcome = solver::Outcome::success;
+    for (int k = 0; k < 10 && outcome == solver::Outcome::success; ++k) outcome = integrator.step(h).outcome;
+    const double lost = (angular_momentum(cloth.ode, integrator.state()) - before).norm() / before.norm();
+    cases.push_back({fmt::format("h = {:g} s", h), outcome == solver::Outcome::success ? lost : NAN, 0, 0, round_off});
+  }
+  return cases;
+}
+
+/// The largest strain at the end.
+std::vector<ClaimCase> strain_stays_limited() {
+  constexpr double limit = 0.1, slack = 1e-3;
+  std::vector<ClaimCase> cases;
+  for (const int sweeps : {1, 10, 100}) {
+    const model::Scene scene = hung(50);
+    const model::Cloth cloth = model::compile(scene);
+    const RunRecord run = run_by(scene, fmt::format("strain-limited/{}", sweeps));
+    double strain = 0;
+    for (const solver::CompliantConstraint& spring : cloth.ode.compliant_constraints())
+      if (spring.kind == solver::CompliantConstraint::Kind::distance) {
+        const auto [i, j, unused] = spring.particles;
+        strain = std::max(strain, (run.final_state.x.row(j) - run.final_state.x.row(i)).norm() / spring.rest - 1);
+      }
+    cases.push_back({fmt::format("sweeps: {}", sweeps), run.succeeded() ? strain : NAN, 0, 0, limit + slack});
+  }
+  return cases;
+}
+
+std::vector<ClaimCase> one_newton_step_does_not_gain_energy() {
+  constexpr double small = 1e-2;  // [J], of some 3 J that gravity gives
+  std::vector<ClaimCase> cases;
+  for (const double d : {50.0, 5.0, 0.5, 0.0})
+    cases.push_back({fmt::format("d = {:g}", d), energy_gain(hung(d), "one-newton-bdf2", thesis_step), 0, -unbounded, small});
+  return cases;
+}
+
 std::vector<ClaimCase> energy_momentum_keeps_the_energy() {
   constexpr double small = 1e-8;  // [J], of some 3 J that gravity gives
   std::vector<ClaimCase> cases;
@@ -135,6 +226,15 @@ constexpr Claim of_alternatives[] = {
      "updates over those of the loop, with the best of five radii", "1", chebyshev_saves_an_order_of_magnitude},
     {"F-13", "Simo, Tarnow 1992", "", "the energy-momentum method does not gain energy", "rise of the energy, no damping", "J",
      energy_momentum_keeps_the_energy},
+    {"F-14", "Macklin and others 2019", "", "the error of small steps falls like 1/n", "order in the length of the sub-step",
+     "1", small_steps_are_of_order_one},
+    {"F-15", "Chen and others 2024", "", "vertex block descent has a superior rate of convergence",
+     "sweeps over the passes of projective dynamics", "1", vertices_converge_faster, "bench/run study stages"},
+    {"F-18", "Desbrun, Schröder, Barr 1999", "", "the correction keeps the angular momentum", "part of it that is lost", "1",
+     desbrun_keeps_angular_momentum},
+    {"F-19", "Provot 1995", "", "no spring stays longer than by a tenth", "largest strain", "1", strain_stays_limited},
+    {"F-20", "Choi, Ko 2002", "", "BDF(2) with one Newton step is stable", "rise of the energy, h = 0.01 s", "J",
+     one_newton_step_does_not_gain_energy, "bench/run study stability --method one-newton-bdf2"},
 };
 
 }  // namespace

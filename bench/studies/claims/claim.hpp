@@ -45,14 +45,19 @@ struct Claim {
   std::string_view unit;
   std::vector<ClaimCase> (*measure)();
   std::string_view command = "bench/run study claims";  ///< that shows the same with more beside it
+  bool timed = false;                                   ///< whether the number is a ratio of times
 };
 
-/// The groups of claims, a file each: of linear modes, of linear systems, of orders, of sheets in motion, and of methods other
-/// than those of the thesis.
+/// The groups of claims, a file each: of forces, of linear modes, of linear systems, of orders, of sheets in motion, and of
+/// methods other than those of the thesis.
+std::span<const Claim> force_claims();
 std::span<const Claim> mode_claims();
 std::span<const Claim> system_claims();
 std::span<const Claim> order_claims();
 std::span<const Claim> sheet_claims();
 std::span<const Claim> alternative_claims();
+
+/// All of them, group by group.
+std::vector<const Claim*> all_claims();
 
 }  // namespace drape::bench

@@ -22,6 +22,9 @@ struct LedgerRow {
 
 Datum text_of_claim(const LedgerRow& row, std::string_view Claim::*member) { return to_datum(row.claim->*member); }
 
+/// A number in the column of times or in that of all others, which is the same on every machine.
+Datum number_if(bool belongs_here, double number) { return belongs_here ? Datum(number) : Datum(); }
+
 std::string confirmed_of(const LedgerRow& row) {
   int confirmed = 0;
   for (const ClaimCase& one : row.cases) confirmed += judge(one) == Holds::confirmed;
@@ -41,9 +44,13 @@ constexpr ColumnOf<LedgerRow> ledger_columns[] = {
     {"where", "where", "", "the case that decides", Role::note,
      [](const LedgerRow& row) { return to_datum(deciding(row.cases).where); }},
     {"value", "value", "1", "number of that case, in its unit", Role::quantity,
-     [](const LedgerRow& row) { return Datum(deciding(row.cases).value); }},
+     [](const LedgerRow& row) { return number_if(!row.claim->timed, deciding(row.cases).value); }},
     {"uncertainty", "±", "1", "its uncertainty", Role::quantity,
-     [](const LedgerRow& row) { return Datum(deciding(row.cases).uncertainty); }},
+     [](const LedgerRow& row) { return number_if(!row.claim->timed, deciding(row.cases).uncertainty); }},
+    {"time_value", "of times", "1", "ratio of times, in place of a value", Role::time,
+     [](const LedgerRow& row) { return number_if(row.claim->timed, deciding(row.cases).value); }},
+    {"time_uncertainty", "±", "1", "its uncertainty", Role::time,
+     [](const LedgerRow& row) { return number_if(row.claim->timed, deciding(row.cases).uncertainty); }},
     {"number_unit", "unit", "", "unit of the number", Role::note,
      [](const LedgerRow& row) { return text_of_claim(row, &Claim::unit); }},
     {"confirmed", "confirmed", "", "cases that are as claimed", Role::note,
@@ -76,8 +83,14 @@ Datum bound_or_none(double bound) { return std::isfinite(bound) ? Datum(bound) :
 constexpr ColumnOf<CaseRow> case_columns[] = {
     {"id", "claim", "", "number in the ledger", Role::key, [](const CaseRow& row) { return to_datum(row.claim->id); }},
     {"where", "where", "", "the condition", Role::key, [](const CaseRow& row) { return to_datum(row.one.where); }},
-    {"value", "value", "1", "number, in its unit", Role::quantity, [](const CaseRow& row) { return Datum(row.one.value); }},
-    {"uncertainty", "±", "1", "its uncertainty", Role::quantity, [](const CaseRow& row) { return Datum(row.one.uncertainty); }},
+    {"value", "value", "1", "number, in its unit", Role::quantity,
+     [](const CaseRow& row) { return number_if(!row.claim->timed, row.one.value); }},
+    {"uncertainty", "±", "1", "its uncertainty", Role::quantity,
+     [](const CaseRow& row) { return number_if(!row.claim->timed, row.one.uncertainty); }},
+    {"time_value", "of times", "1", "ratio of times, in place of a value", Role::time,
+     [](const CaseRow& row) { return number_if(row.claim->timed, row.one.value); }},
+    {"time_uncertainty", "±", "1", "its uncertainty", Role::time,
+     [](const CaseRow& row) { return number_if(row.claim->timed, row.one.uncertainty); }},
     {"lower", "from", "1", "the claim holds from here on", Role::note,
      [](const CaseRow& row) { return bound_or_none(row.one.lower); }},
     {"upper", "to", "1", "and up to here", Role::note, [](const CaseRow& row) { return bound_or_none(row.one.upper); }},
@@ -85,13 +98,6 @@ constexpr ColumnOf<CaseRow> case_columns[] = {
     {"verdict", "verdict", "", "what the number comes to", Role::verdict,
      [](const CaseRow& row) { return to_datum(in_a_word(judge(row.one))); }, nullptr, words_of_cases},
 };
-
-std::vector<const Claim*> all_claims() {
-  std::vector<const Claim*> all;
-  for (const auto group : {mode_claims(), system_claims(), order_claims(), sheet_claims(), alternative_claims()})
-    for (const Claim& claim : group) all.push_back(&claim);
-  return all;
-}
 
 std::vector<LedgerRow> measure_claims(Checkpoint& checkpoint) {
   std::vector<LedgerRow> rows;
@@ -114,6 +120,14 @@ std::vector<results::Table> claims_tables(const std::vector<LedgerRow>& ledger) 
 }
 
 }  // namespace
+
+std::vector<const Claim*> all_claims() {
+  std::vector<const Claim*> all;
+  for (const auto group :
+       {force_claims(), mode_claims(), system_claims(), order_claims(), sheet_claims(), alternative_claims()})
+    for (const Claim& claim : group) all.push_back(&claim);
+  return all;
+}
 
 std::vector<Job> claims(const Question&) {
   return {job("claims", static_cast<int>(all_claims().size()), measure_claims, claims_tables)};
