@@ -59,22 +59,14 @@ TEST(ClaimVerdict, IsDecidedByWhatRefutes) {
   EXPECT_EQ(bench::deciding(std::span(cases).first(1)).where, "yes");
 }
 
-std::vector<const Claim*> ledger() {
-  std::vector<const Claim*> all;
-  for (const auto group : {bench::mode_claims(), bench::system_claims(), bench::order_claims(), bench::sheet_claims(),
-                           bench::alternative_claims()})
-    for (const Claim& claim : group) all.push_back(&claim);
-  return all;
-}
-
 TEST(Ledger, NamesEachClaimOnceWithItsSource) {
   std::set<std::string_view> ids;
-  for (const Claim* claim : ledger()) {
+  for (const Claim* claim : bench::all_claims()) {
     EXPECT_TRUE(ids.insert(claim->id).second) << claim->id << " is there twice";
     for (const std::string_view text : {claim->source, claim->claim, claim->measured, claim->unit, claim->command})
       EXPECT_FALSE(text.empty()) << claim->id;
   }
-  EXPECT_GE(ids.size(), 40U);
+  EXPECT_GE(ids.size(), 49U);
 }
 
 /// The same measurement with a number beyond its bounds.
@@ -94,13 +86,17 @@ void expect_refutable(std::span<const Claim> claims) {
     ASSERT_FALSE(cases.empty()) << claim.id;
     for (const ClaimCase& one : cases) {
       EXPECT_TRUE(std::isfinite(one.value)) << claim.id << ", " << one.where;
-      EXPECT_NE(judge(one), Holds::undecided) << claim.id << ", " << one.where << ": " << one.value << " ± " << one.uncertainty;
+      if (!claim.timed) {
+        EXPECT_NE(judge(one), Holds::undecided)
+            << claim.id << ", " << one.where << ": " << one.value << " ± " << one.uncertainty;
+      }
       EXPECT_FALSE(beyond(one).empty()) << claim.id << ", " << one.where << " could not be refuted";
       for (const ClaimCase& other : beyond(one)) EXPECT_EQ(judge(other), Holds::refuted) << claim.id << ", " << one.where;
     }
   }
 }
 
+TEST(Ledger, OfForcesIsDecidedByNumbersThatCouldHaveRefutedIt) { expect_refutable(bench::force_claims()); }
 TEST(Ledger, OfModesIsDecidedByNumbersThatCouldHaveRefutedIt) { expect_refutable(bench::mode_claims()); }
 TEST(Ledger, OfSystemsIsDecidedByNumbersThatCouldHaveRefutedIt) {
   DRAPE_SLOW();
@@ -114,7 +110,7 @@ TEST(Ledger, OfAlternativesIsDecidedByNumbersThatCouldHaveRefutedIt) {
 
 /// What a measured claim comes to.
 std::string verdict_on(std::string_view id) {
-  for (const Claim* claim : ledger())
+  for (const Claim* claim : bench::all_claims())
     if (claim->id == id) return to_string(judge(claim->measure()));
   return "no such claim";
 }
@@ -126,6 +122,15 @@ TEST(Ledger, TellsMethodsApartByTheirModes) {
   EXPECT_THAT(verdict_on("C-07"), testing::StartsWith("only if ω² = κ (imex-euler)"));
 }
 
+TEST(Ledger, FindsThatASaddleNeedsTwist) {
+  EXPECT_EQ(verdict_on("C-21"), "only if slanted cylinder");
+  EXPECT_EQ(verdict_on("C-23b"), "met: confirmed");
+}
+
+TEST(Ledger, FindsThatAlphaMethodsLoseWhatIsPrescribed) {
+  for (const char* id : {"F-17", "F-17b"}) EXPECT_EQ(verdict_on(id), "met: confirmed") << id;
+}
+
 TEST(Ledger, FindsOnePassOfOrderOneOnlyWithExplicitForcesOfVelocities) {
   DRAPE_SLOW();
   EXPECT_EQ(verdict_on("C-05"), "only if also explicit forces of velocities");
@@ -133,7 +138,9 @@ TEST(Ledger, FindsOnePassOfOrderOneOnlyWithExplicitForcesOfVelocities) {
 
 TEST(Ledger, FindsWhatTheLiteratureSaysOfAlternatives) {
   DRAPE_SLOW();
-  for (const char* id : {"C-15", "C-17", "F-10", "F-11", "F-13"}) EXPECT_EQ(verdict_on(id), "met: confirmed") << id;
+  for (const char* id : {"C-15", "C-17", "F-10", "F-11", "F-13", "F-14", "F-18", "F-19", "F-20"})
+    EXPECT_EQ(verdict_on(id), "met: confirmed") << id;
+  EXPECT_EQ(verdict_on("F-15"), "only if d = 0.5, to 0.1 of |b|, d = 0.5, to 0.01 of |b|") << "vertex block descent";
 }
 
 }  // namespace
