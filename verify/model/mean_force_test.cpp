@@ -11,6 +11,7 @@
 #include "solver/integrator.hpp"
 #include "verify/support/model_fixtures.hpp"
 #include "verify/support/pinned_sheet.hpp"
+#include "verify/support/slow.hpp"
 
 namespace drape::verify::mean_force_test {
 namespace {
@@ -107,6 +108,7 @@ double drift(const model::Cloth& cloth, const char* method, double h, int n) {
 }
 
 TEST(EnergyMomentum, KeepsTheEnergyOfHungSheets) {
+  DRAPE_SLOW();
   const model::Override undamped[] = {{"material.damping", "0"}};
   for (const char* scene : {"hung-edge", "hung-corners"}) {
     const model::Cloth cloth = model::compile(model::load_scene(scene, undamped));

@@ -12,6 +12,7 @@
 #include "model/cloth.hpp"
 #include "model/scene_file/scene_file.hpp"
 #include "solver/integrator.hpp"
+#include "verify/support/slow.hpp"
 #include "verify/support/small_problems.hpp"
 
 namespace drape::verify::similarity_test {
@@ -99,6 +100,7 @@ INSTANTIATE_TEST_SUITE_P(, Similar, testing::ValuesIn(names(solver::methods())),
                          [](const auto& test) { return identifier(test.param); });
 
 TEST_P(Similar, ScenesMoveAlikeToTheLastBit) {
+  DRAPE_SLOW();
   const Method& method = solver::method(GetParam());
   for (const Case& scene : cases) {
     if (method.needs_energies || (scene.obstacles && !method.meets_obstacles)) continue;

@@ -7,6 +7,7 @@
 #include "model/cloth.hpp"
 #include "model/scene_file/scene_file.hpp"
 #include "solver/base/decompositions.hpp"
+#include "verify/support/slow.hpp"
 #include "verify/support/small_problems.hpp"
 
 namespace drape::verify::stability_test {
@@ -69,6 +70,7 @@ TEST(Rk4Limit, IsKnownForPureModes) {
 }
 
 TEST(Rk4Limit, IsThatOfTheWorstModeBelow) {
+  DRAPE_SLOW();
   for (const Spectrum& stiffest : {Spectrum{4, 0}, {0, 3}, {4, 0.2}, {4, 3}, {4, 40}}) {
     const double limit = rk4_limit(stiffest);
     double most = 0;

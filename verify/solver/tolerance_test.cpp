@@ -145,6 +145,7 @@ TEST(Tolerance, SaysSoWhereStabilityLimitsTheSteps) {
 
 /// Where what pilots told at first was wrong by more than a factor of ten.
 TEST(Tolerance, IsNearTheErrorWherePilotsMislead) {
+  DRAPE_SLOW();
   struct Datum {
     const char *scene, *method;
     double tolerance;

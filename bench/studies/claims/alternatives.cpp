@@ -176,22 +176,30 @@ std::vector<ClaimCase> desbrun_keeps_angular_momentum() {
   return cases;
 }
 
-/// The largest strain at the end.
+/// Largest strain of a spring.
+double largest_strain(const model::Cloth& cloth, const solver::Vectors& x) {
+  double strain = 0;
+  for (const solver::CompliantConstraint& spring : cloth.ode.compliant_constraints())
+    if (spring.kind == solver::CompliantConstraint::Kind::distance) {
+      const auto [i, j, unused] = spring.particles;
+      strain = std::max(strain, (x.row(j) - x.row(i)).norm() / spring.rest - 1);
+    }
+  return strain;
+}
+
+/// Cloth is so soft that without a limit its springs get longer by more than a tenth, which the first case makes sure of.
 std::vector<ClaimCase> strain_stays_limited() {
-  constexpr double limit = 0.1, slack = 1e-3;
-  std::vector<ClaimCase> cases;
-  for (const int sweeps : {1, 10, 100}) {
-    const model::Scene scene = hung(50);
-    const model::Cloth cloth = model::compile(scene);
-    const RunRecord run = run_by(scene, fmt::format("strain-limited/{}", sweeps));
-    double strain = 0;
-    for (const solver::CompliantConstraint& spring : cloth.ode.compliant_constraints())
-      if (spring.kind == solver::CompliantConstraint::Kind::distance) {
-        const auto [i, j, unused] = spring.particles;
-        strain = std::max(strain, (run.final_state.x.row(j) - run.final_state.x.row(i)).norm() / spring.rest - 1);
-      }
-    cases.push_back({fmt::format("sweeps: {}", sweeps), run.succeeded() ? strain : NAN, 0, 0, limit + slack});
-  }
+  constexpr double limit = 0.1, slack = 1e-3, step = 1e-3;
+  const model::Scene scene = with("hung-corners", {{"material.tension", "100"}, {"end.time", "0.5"}});
+  const model::Cloth cloth = model::compile(scene);
+  const auto strain_by = [&](const std::string& method) {
+    const RunRecord run = run_by(scene, method, step);
+    return run.succeeded() ? largest_strain(cloth, run.final_state.x) : NAN;
+  };
+  std::vector<ClaimCase> cases{{"no limit", strain_by("implicit-euler"), 0, 1.5 * limit, unbounded}};
+  for (const int sweeps : {1, 10, 100})
+    cases.push_back(
+        {fmt::format("sweeps: {}", sweeps), strain_by(fmt::format("strain-limited/{}", sweeps)), 0, 0, limit + slack});
   return cases;
 }
 

@@ -159,6 +159,7 @@ TEST(ProgramRun, FailsIfItsOutputIsLost) {
 }
 
 TEST(ProgramRun, HandsEveryOptionToTheSolver) {
+  DRAPE_SLOW();
   const BenchIntegrators program;
   const Words command = tiny + Words{"--method", "bdf2/fixed-point/ic0,verlet,bdf2", "--step", "0.01"};
   const std::vector<Row> usual = csv(program, command);
@@ -239,6 +240,7 @@ TEST(ProgramFailure, IsARowWithReasonAndLastGoodTime) {
 }
 
 TEST(ProgramFailure, HalfWayTellsHowFarItCame) {
+  DRAPE_SLOW();
   const BenchIntegrators program;
   const std::vector<Row> rows = csv(program, unstable);
   ASSERT_THAT(rows, SizeIs(2));
@@ -355,6 +357,7 @@ TEST(ProgramRun, StopsWhereTheTwoFamiliesDisagreeByMoreThanAllowed) {
 }
 
 TEST(ProgramRun, OffersStatisticsWherePerturbationsGrow) {
+  DRAPE_SLOW();
   const BenchIntegrators program;
   const Words folding{"run",     "--scene", "hung-corners", "--set",  "grid.n=8", "--set", "material.damping=0",
                       "--until", "1.5",     "--method",     "verlet", "--step",   "0.01"};

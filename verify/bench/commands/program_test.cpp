@@ -62,6 +62,7 @@ TEST(ProgramList, DescribesTheNamesOfAllKinds) {
 }
 
 TEST(ProgramList, HasOnlyWhatRuns) {
+  DRAPE_SLOW();
   const BenchIntegrators program;
   for (const std::string& scene : lines(program.output({"list", "scenes"}))) {
     const Words command{"run",      "--scene", scene,     "--method", joined(of_the_thesis, ","),
@@ -256,6 +257,7 @@ TEST(ProgramStudy, TakesTheMethodsThatAreNamed) {
 }
 
 TEST(ProgramInspect, FindsTablesByTheBeginningOfTheirNames) {
+  DRAPE_SLOW();
   const BenchIntegrators program;
   program.output({"study", "modes", "--quick", "--out", "modes.h5", "--method", "bdf2"});
   const std::string whole = program.output({"inspect", "modes.h5", "--table", "amplification"});

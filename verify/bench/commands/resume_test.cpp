@@ -101,6 +101,7 @@ TEST(Resume, AStudyKilledAtAnyMomentEndsAsIfItHadNotBeen) {
 }
 
 TEST(Resume, TakesWhatTheJournalHasAndComputesTheRest) {
+  DRAPE_SLOW();
   const BenchIntegrators program;
   program.output(small_study + Words{"--out", "whole.h5"});
   const auto none = nlohmann::json::array();
@@ -145,6 +146,7 @@ TEST(Resume, AFinishedSweepIsOnlyShown) {
 }
 
 TEST(Resume, IsRefusedForAnotherSweepAndForFilesThatAreNone) {
+  DRAPE_SLOW();
   const BenchIntegrators program;
   program.output(small_sweep + Words{"--out", "a.h5"});
   EXPECT_THAT(refusal(program, small_study + Words{"--out", "a.h5", "--resume"}),
@@ -170,6 +172,7 @@ bool appears(const std::filesystem::path& file) {
 const Words large_sweep{"study", "hung-sheets", "--quick", "--repeat", "1", "--no-reference", "--out", "a.h5"};
 
 TEST(Sweep, RefusesASecondProcessAndEndsWithWhatIsDone) {
+  DRAPE_SLOW();
   const std::size_t group = 6 + solver::methods().size();
   const BenchIntegrators program;
   RunningProgram first(program.command(large_sweep));

@@ -349,6 +349,7 @@ void record(const BenchIntegrators& program, const std::string& scene, const Wor
 }
 
 TEST(Report, ShowsAllThereIs) {  // one test, since a browser takes seconds to start
+  DRAPE_SLOW();
   const BenchIntegrators program;
   record(program, "hung-corners", {"--set", "grid.n=6", "--method", "bdf2,sbdf2", "--step", "0.02,0.01", "--out", "runs.h5"});
   const Words once{"--method", "bdf2", "--step", "0.01", "--no-reference", "--repeat", "1", "--out"};

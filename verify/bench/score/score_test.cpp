@@ -12,6 +12,7 @@
 #include "results/file/motion_file.hpp"
 #include "results/file/run_file.hpp"
 #include "verify/support/bench_integrators.hpp"
+#include "verify/support/slow.hpp"
 
 namespace drape::verify::score_test {
 namespace {
@@ -153,6 +154,7 @@ Vectors shuffled(const Vectors& x) {
 }
 
 TEST(Score, OfARunIsWhatTheRunRecordsHoweverItIsWritten) {
+  DRAPE_SLOW();
   const BenchIntegrators program;
   const results::RunRecord euler = run(program, {"--method", "implicit-euler", "--step", "0.02", "--trajectory", "every=0.02"});
   const Motion motion = motion_of(euler);

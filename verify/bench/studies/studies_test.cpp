@@ -330,6 +330,7 @@ TEST_F(ProgramStudies, TheLedgerIsDecidedByNumbers) {
 }
 
 TEST_F(ProgramStudies, ErrorsAreNearTheirTolerances) {
+  DRAPE_SLOW();
   const auto all = tables("tolerance");
   ASSERT_THAT(all, SizeIs(3));
   const auto known = AnyOf("met: within 10", HasSubstr("under by"), "cost explodes", "fails");
@@ -361,6 +362,7 @@ TEST_F(ProgramStudies, EquilibriaConvergeAsDeclared) {
 }
 
 TEST_F(ProgramStudies, ReferencesAgree) {
+  DRAPE_SLOW();
   const auto all = tables("references");
   ASSERT_THAT(all, SizeIs(2));
   EXPECT_THAT(verdicts(all[0]), AllOf(SizeIs(4), Each("met: as wanted")));  // growth

@@ -22,6 +22,7 @@
 #include "results/file/schema.hpp"
 #include "verify/support/file_size_limit.hpp"
 #include "verify/support/record_text.hpp"
+#include "verify/support/slow.hpp"
 #include "verify/support/temporary_folder.hpp"
 
 namespace drape::verify::results_test {
@@ -247,6 +248,7 @@ int kill_writer(const fs::path& path, int runs, std::chrono::microseconds later)
 }
 
 TEST(RunFile, KilledWriterLeavesAllThatWasAdded) {
+  DRAPE_SLOW();
   std::mt19937 random(1);
   for (int runs = 0; runs < 8; ++runs) {
     const base::TemporaryFolder folder;

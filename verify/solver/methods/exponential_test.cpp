@@ -8,6 +8,7 @@
 
 #include "reference/theory/amplification.hpp"
 #include "solver/linear/phi_functions.hpp"
+#include "verify/support/slow.hpp"
 #include "verify/support/small_problems.hpp"
 
 namespace drape::verify::exponential_test {
@@ -151,6 +152,7 @@ State after(const Row& row, std::string_view method, double h, int steps) {
 }
 
 TEST(ExponentialMethods, AreExactForLinearForcesWhateverTheStep) {
+  DRAPE_SLOW();
   for (const double damping : {0.0, 0.1, 30.0}) {
     const Row row = row_of_springs(100, damping);
     for (const char* method : exponential_methods) {

@@ -189,6 +189,7 @@ TEST(Xpbd, IsOfFirstOrderInItsSubSteps) {
 
 /// Implicit Euler has the gradients at the end of the step, sweeps those on the way there.
 TEST(Xpbd, IsNearlyImplicitEulerAfterManySweeps) {
+  DRAPE_SLOW();
   const model::Cloth cloth = sheet({{"grid.n", "5"}, {"material.tension", "3000"}, {"material.damping", "0"}});
   const auto after = [&](const char* method, const Options& options) {
     return moved(cloth.ode, method, options, cloth.start, 0.1, 0.01);
