@@ -64,7 +64,7 @@ std::vector<std::string> named_methods(const std::vector<std::string>& names, co
   if (names != std::vector<std::string>{"all"}) return names;
   std::vector<std::string> all;
   for (const solver::Method& method : solver::methods())
-    if ((scene.obstacles.empty() || method.meets_obstacles) && in_the_way(method, scene).empty()) all.emplace_back(method.name);
+    if (reason_against(method, scene).empty()) all.emplace_back(method.name);
   return all;
 }
 

@@ -1,6 +1,7 @@
 #include "bench/runs/run_spec.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
@@ -8,6 +9,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "model/cloth.hpp"
 #include "solver/base/printable.hpp"
 #include "solver/stage/stage_solver.hpp"
 
@@ -89,6 +91,14 @@ void choose_method(RunSpec& spec, const std::string& name) {
   if (next < parts.size() && method.implicit()) spec.options.linear_solver = &solver::linear_solver(parts[next++]);
   if (!understood || next < parts.size() || name.ends_with('/'))
     throw std::invalid_argument(fmt::format("method '{}': expected {}", base::quoted(name), expected(method)));
+}
+
+std::string reason_against(const solver::Method& method, const model::Scene& scene) {
+  if (!scene.obstacles.empty() && !method.meets_obstacles) return "meets no obstacles";
+  if (method.needs_energies)
+    if (const auto forces = model::forces_without_energy(scene.sheet); !forces.empty())
+      return fmt::format("needs energies of {}", fmt::join(forces, ", "));
+  return "";
 }
 
 }  // namespace drape::bench

@@ -26,6 +26,9 @@ struct RunSpec {
 /// from.
 void choose_method(RunSpec& spec, const std::string& name);
 
+/// Why a method cannot run on a scene, in a few words; empty if it can.
+std::string reason_against(const solver::Method& method, const model::Scene& scene);
+
 /// Runs that are compared with each other: repetitions are interleaved within a group and it is recorded as a whole.
 using Group = std::vector<RunSpec>;
 

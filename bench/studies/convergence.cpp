@@ -142,7 +142,9 @@ std::vector<Experiment> bending() {
   const double none = std::numeric_limits<double>::quiet_NaN();
   std::vector<Experiment> all{
       bending(5, along_normal, "consistent", 2, {}),
-      bending(5, along_normal, "printed", none, as_printed + std::vector<Override>{{"material.bend_form", "printed"}})};
+      bending(5, along_normal, "printed", none, as_printed + std::vector<Override>{{"material.bend_form", "printed"}}),
+      bending(5, along_normal, "printed, is_border", none,
+              as_printed + std::vector<Override>{{"material.bend_form", "printed-is-border"}})};
   for (const double B : {0.01, 0.005}) {
     all.push_back(bending(B, along_normal, "consistent", 2, {}));
     all.push_back(bending(B, whole, "unprojected", 2, {{"material.bend_projected", "false"}}));

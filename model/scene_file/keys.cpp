@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::string_view damping_forms[] = {"linear", "projected"};
 constexpr std::string_view shear_forms[] = {"conservative", "printed"};
-constexpr std::string_view bend_forms[] = {"membrane", "plate", "printed"};
+constexpr std::string_view bend_forms[] = {"membrane", "plate", "printed", "printed-is-border"};
 constexpr std::string_view border_cells[] = {"dual", "whole"};
 constexpr std::string_view planes[] = {"horizontal", "vertical"};
 constexpr std::string_view responses[] = {"constraint", "reaction"};
@@ -135,7 +135,7 @@ std::span<const SceneKey> scene_key_table() {
        in_material<&Material::bend>, check::non_negative},
       {"material.bend_damping", {"N m s, of the membrane N s/m", bend_damping_unit}, "viscous counterparts of B1, B2",
        in_material<&Material::bend_damping>, check::non_negative},
-      {"material.bend_form", "", "\"plate\" (fourth order), \"membrane\" (second order) or \"printed\" (Algorithm 4 of the thesis)",
+      {"material.bend_form", "", "\"plate\" (fourth order), \"membrane\" (second order), \"printed\" (Algorithm 4 of the thesis) or \"printed-is-border\" (with the border rule of 6.2.1)",
        in_material<&Material::bend_form>, check::one_of<bend_forms>},
       {"material.bend_projected", "", "plate only: forces along the vertex normal (as the thesis) or, if false, in all directions",
        in_material<&Material::bend_projected>, check::flag},

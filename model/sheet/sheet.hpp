@@ -29,9 +29,10 @@ enum class ShearForm {
 };
 
 enum class BendForm {
-  membrane,  ///< second order [Etzmuß 2002, (2.24)]; always projected onto the normal
-  plate,     ///< fourth order [Etzmuß 2002, (2.26)]
-  printed,   ///< the plate of Algorithm 4: not consistent on borders and without twist; always projected
+  membrane,           ///< second order [Etzmuß 2002, (2.24)]; always projected onto the normal
+  plate,              ///< fourth order [Etzmuß 2002, (2.26)]
+  printed,            ///< the plate of Algorithm 4: not consistent on borders and without twist; always projected
+  printed_is_border,  ///< the same without forces across borders on border particles [Etzmuß 2002, 6.2.1]
 };
 
 /// Elastic moduli and their viscous counterparts (Kelvin–Voigt). Zero: the force does not exist.

@@ -93,8 +93,8 @@ TEST(Compile, PlansAForceThatIsViscousOnly) {
 TEST(Compile, PlansNormalsOnlyIfAForceAsks) {
   for (const ForceCase& force : force_cases()) {
     const bool asks = force.name == "membrane" || force.name == "plate" || force.name == "printed_plate" ||
-                      force.wind.needs_normals() || force.air != 0 || force.name.starts_with("all_of") ||
-                      force.name == "all_with_a_membrane";
+                      force.name == "printed_is_border" || force.wind.needs_normals() || force.air != 0 ||
+                      force.name.starts_with("all_of") || force.name == "all_with_a_membrane";
     EXPECT_EQ(cloth_of(force.name).plan.normals, asks) << force.name;
   }
 }

@@ -68,7 +68,7 @@ std::vector<Case> cases() {
   for (const ForceCase& force : force_cases())
     for (const Motion& motion : motions()) {
       const bool consistent = force.material.shear_form == ShearForm::conservative &&
-                              force.material.bend_form != BendForm::printed && force.gravity.isZero() && !force.wind.blows() &&
+                              force.material.bend_form < BendForm::printed && force.gravity.isZero() && !force.wind.blows() &&
                               force.air == 0;
       if (consistent && acts(force.name, motion)) all.emplace_back(force.name, motion);
     }

@@ -77,6 +77,7 @@ TEST(MeanForce, DoesNotExistWithoutAnEnergy) {
                                                          {"membrane", "membrane"},
                                                          {"plate", "plate"},
                                                          {"printed_plate", "printed-plate"},
+                                                         {"printed_is_border", "printed-plate"},
                                                          {"all_with_a_membrane", "membrane"}};
   for (const ForceCase& force : force_cases()) {
     const model::Cloth cloth = model::compile(scene_of(force, five_by_four()));

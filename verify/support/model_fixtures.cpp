@@ -22,6 +22,7 @@ std::vector<ForceCase> force_cases() {
           {"membrane",            made_of(membrane),          false,   false,   false,   false,    false,   false},
           {"plate",               made_of(plate),             false,   false,   false,   false,    false,   false},
           {"printed_plate",       made_of(printed_plate),     false,   false,   false,   false,    false,   false},
+          {"printed_is_border",   made_of(printed_is_border), false,   false,   false,   false,    false,   false},
           {"unprojected_plate",   made_of(unprojected_plate), true,    true,    true,    true,     false,   true},
           {"gravity",             Material{},                 true,    false,   false,   true,     true,    true,  g},
           {"wind",                Material{},                 false,   false,   false,   true,     true,    false, none, w},

@@ -34,6 +34,7 @@ inline void contraction(Material& m) { m.contraction = 1.1, m.contraction_dampin
 inline void membrane(Material& m) { m.bend = {0.9, 0.6}, m.bend_damping = {0.2, 0.3}, m.bend_form = BendForm::membrane; }
 inline void plate(Material& m) { m.bend = {0.06, 0.04}, m.bend_damping = {0.01, 0.02}; }
 inline void printed_plate(Material& m) { plate(m), m.bend_form = BendForm::printed; }
+inline void printed_is_border(Material& m) { plate(m), m.bend_form = BendForm::printed_is_border; }
 inline void unprojected_plate(Material& m) { plate(m), m.bend_projected = false; }
 
 template <class... Parts>

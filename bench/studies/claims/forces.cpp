@@ -1,4 +1,9 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
 #include <functional>
+#include <utility>
 
 #include "bench/studies/claims/claim.hpp"
 #include "bench/studies/claims/sheet_runs.hpp"
@@ -54,7 +59,152 @@ std::vector<ClaimCase> normal_curvature_leaves_shear_alone() {
        2 * round_off_of_forces}};
 }
 
+// --- Algorithms 3 and 5 as they are printed, beside the forces that this program has in their place -----------------------
+
+constexpr double side = 1;  ///< [m]
+constexpr double amplitude = 0.2;
+
+/// A flat sheet, n × n, of a material that has no forces except those in `material`.
+model::Cloth sheet_of(int n, const std::vector<model::Override>& material) {
+  std::vector<model::Override> overrides{{"grid.n", fmt::format("{}", n)}, {"grid.size", fmt::format("{}", side)},
+                                         {"material.tension", "0"},        {"material.damping", "0"},
+                                         {"material.shear", "0"},          {"material.density", "1"},
+                                         {"forces.gravity", "[0, 0, 0]"}};
+  overrides.insert(overrides.end(), material.begin(), material.end());
+  model::Scene scene = with("hung-edge", overrides);
+  scene.pins.clear();
+  return model::compile(scene);
+}
+
+/// Forces per area at the particles of a square sheet, row by row.
+using Densities = std::function<solver::Vectors(int n, const solver::Vectors& x)>;
+
+Densities of_program(std::vector<model::Override> material) {
+  return [material = std::move(material)](int n, const solver::Vectors& x) {
+    const model::Cloth cloth = sheet_of(n, material);
+    solver::Vectors f = x;
+    cloth.ode.force(0, x, solver::Vectors::Zero(x.rows(), 3), f);
+    return solver::Vectors(cloth.ode.mass.cwiseInverse().asDiagonal() * f);
+  };
+}
+
+/// Algorithm 3 with B = 1, before its projection: Σ_edges (x_j − x_i)/l²; 6.2.1 leaves out edges across a border on it.
+Densities algorithm_3(bool is_border) {
+  return [is_border](int n, const solver::Vectors& x) {
+    const double l = side / (n - 1);
+    solver::Vectors R = solver::Vectors::Zero(x.rows(), 3);
+    for (int b = 0; b < n; ++b)
+      for (int a = 0; a < n; ++a)
+        for (const auto& [da, db] : {std::pair(-1, 0), std::pair(1, 0), std::pair(0, -1), std::pair(0, 1)}) {
+          const int c = a + da, d = b + db;
+          if (c < 0 || c >= n || d < 0 || d >= n) continue;
+          const int across = da != 0 ? a : b;
+          if (is_border && (across == 0 || across == n - 1)) continue;
+          R.row(a + n * b) += (x.row(c + n * d) - x.row(a + n * b)) / (l * l);
+        }
+    return R;
+  };
+}
+
+/// Algorithm 5 with C12 = 1; the divergence divides by l once more.
+solver::Vectors algorithm_5(int n, const solver::Vectors& x) {
+  const double l = side / (n - 1);
+  solver::Vectors F = solver::Vectors::Zero(x.rows(), 3);
+  for (int b = 0; b < n; ++b)
+    for (int a = 0; a < n; ++a) {
+      const int i = a + n * b, j = (a > 0 ? a - 1 : a + 1) + n * b, k = a + n * (b > 0 ? b - 1 : b + 1);
+      const Eigen::RowVector3d u = x.row(j) - x.row(i), v = x.row(k) - x.row(i);
+      const Eigen::RowVector3d f_u = (v.norm() / l - 1) / l * u.normalized(), f_v = (u.norm() / l - 1) / l * v.normalized();
+      F.row(i) += f_u + f_v;
+      F.row(j) -= f_u;
+      F.row(k) -= f_v;
+    }
+  return F;
+}
+
+/// A motion with the force per area that belongs to it.
+struct Deformed {
+  Eigen::RowVector3d (*position)(double u, double v);
+  Eigen::RowVector3d (*density)(double u, double v);
+};
+
+/// z = α sin(2u + ½), curved on its borders too.
+constexpr Deformed wave{
+    [](double u, double v) { return Eigen::RowVector3d(u, v, amplitude * std::sin(2 * u + 0.5)); },
+    [](double u, double /*v*/) { return Eigen::RowVector3d(0, 0, -4 * amplitude * std::sin(2 * u + 0.5)); }};
+
+/// y = v (1 + α u²): ε22 = α u², ε11 = r − 1 with r = |s_u| = √(1 + (2 α u v)²).
+constexpr Deformed fan{[](double u, double v) { return Eigen::RowVector3d(u, v * (1 + amplitude * u * u), 0); },
+                       [](double u, double v) {
+                         const double w = 2 * amplitude * u * v, r = std::sqrt(1 + w * w);
+                         const double r_u = 2 * amplitude * v * w / r, r_v = 2 * amplitude * u * w / r;
+                         const Eigen::RowVector3d t(1 / r, w / r, 0);
+                         const Eigen::RowVector3d t_u(-r_u / (r * r), 2 * amplitude * v / r - w * r_u / (r * r), 0);
+                         const Eigen::RowVector3d along_u = 2 * amplitude * u * t + amplitude * u * u * t_u;
+                         return Eigen::RowVector3d(along_u + Eigen::RowVector3d(0, r_v, 0));
+                       }};
+
+enum class Place { inside, on_border };
+
+/// Order of the largest error of a force per area, from `coarse` intervals a side to twice as many. Inside is further from a
+/// border than a quarter of the side; on the borders the corners are left out.
+double order_of_force(const Deformed& deformed, const Densities& densities, Place place, int coarse) {
+  const auto error = [&](int intervals) {
+    const int n = intervals + 1;
+    solver::Vectors x(n * n, 3);
+    const auto coordinate = [&](int a) { return side * a / intervals; };
+    for (int b = 0; b < n; ++b)
+      for (int a = 0; a < n; ++a) x.row(a + n * b) = deformed.position(coordinate(a), coordinate(b));
+    const solver::Vectors f = densities(n, x);
+    double largest = 0;
+    for (int b = intervals / 4; b <= intervals - intervals / 4; ++b) {
+      const int begin = place == Place::inside ? intervals / 4 : 0, end = intervals - begin;
+      for (int a = begin; a <= end; a += place == Place::inside ? 1 : intervals)
+        largest = std::max(largest, (f.row(a + n * b) - deformed.density(coordinate(a), coordinate(b))).norm());
+    }
+    return largest;
+  };
+  return std::log2(error(coarse) / error(2 * coarse));
+}
+
+/// A case with the orders of two refinements: their middle, and half their distance.
+ClaimCase order_case(const char* where, const Deformed& deformed, const Densities& densities, Place place, double lower) {
+  const double before = order_of_force(deformed, densities, place, 32), after = order_of_force(deformed, densities, place, 64);
+  return {where, (before + after) / 2, std::abs(before - after) / 2, lower, unbounded};
+}
+
+/// The same wave with the force along the normal only, g'' (−g', 0, 1)/(1 + g'²).
+constexpr Deformed wave_along_normal{wave.position, [](double u, double v) {
+                                       const double slope = 2 * amplitude * std::cos(2 * u + 0.5);
+                                       const double normal = wave.density(u, v)[2] / (1 + slope * slope);
+                                       return Eigen::RowVector3d(-slope * normal, 0, normal);
+                                     }};
+
+std::vector<ClaimCase> algorithm_3_is_consistent() {
+  const Densities ours = of_program({{"material.bend", "1"}, {"material.bend_form", "membrane"}});
+  const double consistent = 0.9;
+  return {order_case("inside", wave, algorithm_3(false), Place::inside, consistent),
+          order_case("borders, as printed", wave, algorithm_3(false), Place::on_border, consistent),
+          order_case("borders, is_border", wave, algorithm_3(true), Place::on_border, consistent),
+          order_case("borders, as here", wave_along_normal, ours, Place::on_border, consistent)};
+}
+
+std::vector<ClaimCase> algorithm_5_is_of_second_order() {
+  const double second = 1.9;
+  const Densities tension = of_program({{"material.tension", "2"}});  // more than C12, or the material would gain energy
+  const Densities with_contraction = of_program({{"material.tension", "2"}, {"material.contraction", "1"}});
+  const auto contraction = [&](int n, const solver::Vectors& x) {
+    return solver::Vectors(with_contraction(n, x) - tension(n, x));
+  };
+  return {order_case("as printed", fan, algorithm_5, Place::inside, second),
+          order_case("in cells, as here", fan, contraction, Place::inside, second)};
+}
+
 constexpr Claim of_forces[] = {
+    {"P-03", "Etzmuß 2002", "2.5", "Algorithm 3 discretises the membrane, borders included", "order of the force per area", "1",
+     algorithm_3_is_consistent},
+    {"P-05", "Etzmuß 2002", "2.5", "Algorithm 5 discretises (2.22), to second order as the other forces",
+     "order of the force per area", "1", algorithm_5_is_of_second_order},
     {"C-21", "Etzmuß 2002", "2.3.5", "no forces due to the off-diagonal f are needed",
      "membrane forces over those of a cylinder", "1", no_twist_is_needed},
     {"C-23b", "Etzmuß 2002", "2.3.5", "the whole curvature would counteract shear, the normal curvature does not",

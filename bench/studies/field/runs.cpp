@@ -157,7 +157,7 @@ SheetResult run_sheet(const FieldSheet& sheet, const Methods& methods, Checkpoin
                      truth.known() ? truth.uncertainty : NAN, truth.missing};
   for (const Method* method : all_or(methods)) {
     checkpoint.show(fmt::format("{}: {}", sheet.name(), method->name));
-    if (scene.obstacles.empty() || method->meets_obstacles)
+    if (reason_against(*method, scene).empty())
       std::ranges::move(
           checkpoint.once(std::string(method->name), [&] { return runs_of_method(*method, sheet, scene, truth); }),
           std::back_inserter(result.runs));

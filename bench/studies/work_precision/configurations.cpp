@@ -107,10 +107,8 @@ constexpr std::string_view searched[] = {"imex-euler",    "implicit-euler", "sbd
                                          "bdf3",          "bdf4",           "bdf5"};
 
 /// Why a method is not tried; empty if it is. `named`: it was asked for by its name.
-std::string reason_against(const solver::Method& method, const model::Scene& scene, Search search, bool named) {
-  if (!scene.obstacles.empty() && !method.meets_obstacles) return "meets no obstacles";
-  if (method.needs_energies && !model::forces_without_energy(scene.sheet).empty())
-    return "not all elastic forces have energies";
+std::string reason_to_leave_out(const solver::Method& method, const model::Scene& scene, Search search, bool named) {
+  if (std::string reason = reason_against(method, scene); !reason.empty()) return reason;
   if (!named && std::ranges::find(searched, method.name) == std::end(searched))
     return "both sides are searched alike; name it by --method";
   if (named || method.sub_steps || !tries_few(search) || std::ranges::find(few, method.name) != std::end(few)) return "";
@@ -123,7 +121,7 @@ void add_ours(std::vector<Configuration>& all, const model::Scene& scene, Search
   for (const solver::Method* chosen : all_or(methods)) {
     const solver::Method& method = *chosen;
     const std::string name(method.name);
-    if (!reason_against(method, scene, search, !methods.empty()).empty()) continue;
+    if (!reason_to_leave_out(method, scene, search, !methods.empty()).empty()) continue;
     if (method.sub_steps) {
       all.push_back(by_fraction(spec_of(scene, name), tries_few(search) ? 3 : 10));
       continue;
@@ -184,7 +182,7 @@ Configuration ladder(const model::Scene& scene, const std::string& method) {
 std::vector<LeftOut> left_out(const model::Scene& scene, Search search, const Methods& methods) {
   std::vector<LeftOut> all;
   for (const solver::Method* method : all_or(methods))
-    if (std::string reason = reason_against(*method, scene, search, !methods.empty()); !reason.empty())
+    if (std::string reason = reason_to_leave_out(*method, scene, search, !methods.empty()); !reason.empty())
       all.push_back({method, std::move(reason)});
   return all;
 }

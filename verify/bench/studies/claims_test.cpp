@@ -66,7 +66,7 @@ TEST(Ledger, NamesEachClaimOnceWithItsSource) {
     for (const std::string_view text : {claim->source, claim->claim, claim->measured, claim->unit, claim->command})
       EXPECT_FALSE(text.empty()) << claim->id;
   }
-  EXPECT_GE(ids.size(), 49U);
+  EXPECT_GE(ids.size(), 54U);
 }
 
 /// The same measurement with a number beyond its bounds.
@@ -125,6 +125,16 @@ TEST(Ledger, TellsMethodsApartByTheirModes) {
 TEST(Ledger, FindsThatASaddleNeedsTwist) {
   EXPECT_EQ(verdict_on("C-21"), "only if slanted cylinder");
   EXPECT_EQ(verdict_on("C-23b"), "met: confirmed");
+}
+
+TEST(Ledger, FindsWhatPrintedAlgorithmsLackOnBordersAndBesideThem) {
+  EXPECT_EQ(verdict_on("P-03"), "only if inside, borders, as here");
+  EXPECT_EQ(verdict_on("P-05"), "only if in cells, as here");
+}
+
+TEST(Ledger, FindsThatControlByPassesSavesThemWithLittleDamping) {
+  DRAPE_SLOW();
+  EXPECT_EQ(verdict_on("C-27"), "only if d = 5, d = 0.5");
 }
 
 TEST(Ledger, FindsThatAlphaMethodsLoseWhatIsPrescribed) {
