@@ -136,7 +136,7 @@ std::vector<ClaimCase> order_of_table_3_1() {
           {"CG iterations", agreement_of_order(printed_cg, cg), 0, 0.999, 1.001}};
 }
 
-/// Of a sheet that swings against a box and comes to rest on it, the iterations of the last fifth of a second.
+/// Iterations in the last fifth of a second of a sheet that swings against a box and comes to rest on it, over those before.
 std::vector<ClaimCase> resting_costs_little() {
   constexpr double little = 1.5;
   constexpr std::size_t at_rest = 20;
