@@ -22,7 +22,6 @@ export const looks = {
     "rodas3": "#6E2C00",
     "ros34pw2": "#4A235A",
     "ros2-w": "#73C6B6",
-    "ros34pw2-w": "#A569BD",
     "explicit-euler": "#BDBDBD",
     "explicit-midpoint": "#9E9E9E",
     "rk4": "#616161",

@@ -115,14 +115,6 @@ void rosenbrock(Step& s, std::string_view name) {
   });
 }
 
-/// With the constant K and D in the place of the Jacobian.
-void w_method(Step& s, std::string_view name) {
-  const RosenbrockTableau& T = base::find_named(rosenbrock_tableaus(), "Rosenbrock method", name);
-  const double gamma = T.gamma * s.h;
-  rosenbrock(s, T, false,
-             [&s, gamma](const State& r, State& z) { return s.accept(s.stage->solve_increment(gamma, s.y0(), r, z)); });
-}
-
 }  // namespace
 
 std::span<const RosenbrockTableau> rosenbrock_tableaus() { return tableaus; }
@@ -131,7 +123,13 @@ void ros2(Step& s) { rosenbrock(s, "ros2"); }
 void ros3p(Step& s) { rosenbrock(s, "ros3p"); }
 void rodas3(Step& s) { rosenbrock(s, "rodas3"); }
 void ros34pw2(Step& s) { rosenbrock(s, "ros34pw2"); }
-void ros2_w(Step& s) { w_method(s, "ros2"); }
-void ros34pw2_w(Step& s) { w_method(s, "ros34pw2"); }
+
+// With the constant K and D in the place of the Jacobian.
+void ros2_w(Step& s) {
+  const RosenbrockTableau& T = base::find_named(rosenbrock_tableaus(), "Rosenbrock method", "ros2");
+  const double gamma = T.gamma * s.h;
+  rosenbrock(s, T, false,
+             [&s, gamma](const State& r, State& z) { return s.accept(s.stage->solve_increment(gamma, s.y0(), r, z)); });
+}
 
 }  // namespace drape::solver
