@@ -15,6 +15,7 @@ SparseMatrix laplacian(const Grid& grid, const WeftWarp& b, bool is_border) {
   std::vector<Eigen::Triplet<double>> entries;
   for (const Edge& edge : edges(grid)) {
     const double weight = along(b, edge) / (edge.length * edge.length);
+    if (weight == 0) continue;
     for (const auto& [i, j] : {std::pair(edge.i, edge.j), std::pair(edge.j, edge.i)}) {
       if (is_border && on_border(grid, i, edge)) continue;
       entries.emplace_back(i, j, weight);
