@@ -29,6 +29,13 @@ Eigen::RowVector3d centre_of_mass(const Eigen::VectorXd& mass, const Vectors& x)
   return (mass.asDiagonal() * x).colwise().sum() / mass.sum();
 }
 
+Eigen::Vector3d angular_momentum(const Eigen::VectorXd& mass, const Eigen::RowVector3d& centre, const solver::State& y) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (Eigen::Index i = 0; i < y.x.rows(); ++i)
+    sum += mass[i] * (y.x.row(i) - centre).transpose().cross(y.v.row(i).transpose());
+  return sum;
+}
+
 double centre_distance(const Eigen::VectorXd& mass, const Vectors& a, const Vectors& b) {
   return centre_of_mass(mass, a - b).norm();
 }

@@ -24,6 +24,9 @@ double largest_rms_distance(std::span<const solver::Vectors> a, std::span<const 
 /// Centre of mass [m]. `mass`: of each particle [kg].
 Eigen::RowVector3d centre_of_mass(const Eigen::VectorXd& mass, const solver::Vectors& x);
 
+/// Angular momentum about `centre` [kg m²/s].
+Eigen::Vector3d angular_momentum(const Eigen::VectorXd& mass, const Eigen::RowVector3d& centre, const solver::State& y);
+
 /// Distance of the centres of mass [m] of two sets of positions.
 double centre_distance(const Eigen::VectorXd& mass, const solver::Vectors& a, const solver::Vectors& b);
 

@@ -16,10 +16,7 @@ constexpr double still = 1e-3;  ///< of its size: a scene that moves by less in 
 Eigen::RowVector3d momentum(const model::Cloth& cloth, const State& y) { return cloth.ode.mass.transpose() * y.v; }
 
 Eigen::Vector3d angular_momentum(const model::Cloth& cloth, const Eigen::RowVector3d& centre, const State& y) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (Eigen::Index i = 0; i < y.x.rows(); ++i)
-    sum += cloth.ode.mass[i] * (y.x.row(i) - centre).transpose().cross(y.v.row(i).transpose());
-  return sum;
+  return reference::angular_momentum(cloth.ode.mass, centre, y);
 }
 
 }  // namespace

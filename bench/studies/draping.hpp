@@ -1,8 +1,11 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "model/scene.hpp"
 #include "results/columns.hpp"
@@ -14,6 +17,24 @@ namespace drape::bench {
 struct PublishedWork {
   std::int64_t updates, cg_iterations;
 };
+
+/// Table 3.1 by k, then by d, both ascending: d = 160 and 1600 N s/m, k = 10³ and 10⁵ N/m, or 10⁴, as an exponent is lost.
+using PublishedBlock = std::array<std::array<std::optional<PublishedWork>, 2>, 2>;
+inline constexpr PublishedBlock published_table_3_1{
+    {{PublishedWork{377, 566}, PublishedWork{52, 52}}, {PublishedWork{803, 1160}, PublishedWork{198, 538}}}};
+
+/// A method as the thesis prints it: its work, and the time on another machine [s].
+struct PublishedRun {
+  PublishedWork work;
+  double seconds;
+};
+
+/// The tablecloth of table 3.2.
+inline const std::map<std::string_view, PublishedRun> published_table_3_2{{"imex-euler", {{100, 745}, 1.69}},
+                                                                          {"implicit-euler", {{206, 1038}, 3.06}},
+                                                                          {"sbdf2", {{100, 304}, 1.57}},
+                                                                          {"bdf2", {{122, 857}, 2.57}},
+                                                                          {"midpoint", {{494, 813}, 4.39}}};
 
 /// What became of a falling sheet, beside what the thesis prints of it.
 struct Draping {

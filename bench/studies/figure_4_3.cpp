@@ -7,6 +7,7 @@
 
 #include "bench/runs/record.hpp"
 #include "bench/runs/timing.hpp"
+#include "bench/studies/step_means.hpp"
 #include "bench/studies/studies.hpp"
 #include "model/scene_file/scene_file.hpp"
 #include "results/columns.hpp"
@@ -16,10 +17,9 @@
 namespace drape::bench {
 namespace {
 
-constexpr double box_step = 0.01;    ///< [s]
-constexpr std::size_t window = 5;    ///< steps of which users see the mean
-constexpr std::size_t at_rest = 20;  ///< the last steps
-constexpr double most_iterations = 1.5, most_time = 1.3;
+constexpr double box_step = 0.01;  ///< [s]
+constexpr std::size_t window = 5;  ///< steps of which users see the mean
+constexpr double most_time = 1.3;
 
 model::Scene swing(bool quick) {
   std::vector<model::Override> overrides;
@@ -36,27 +36,12 @@ using results::Role;
 using results::RunRecord;
 using results::Standing;
 using results::StepRecord;
-using Steps = std::span<const StepRecord>;
 
 /// A run against the box. The method is named alone: all runs have the thesis' solvers.
 struct BoxRun {
   std::string method;
   RunRecord run;
 };
-
-/// The steps before the first contact.
-Steps before_contact(const RunRecord& run) {
-  return {run.steps.begin(), std::ranges::find_if(run.steps, [](const StepRecord& s) { return s.contacts > 0; })};
-}
-
-/// NaN if there are none.
-double mean(Steps steps, int StepRecord::*value) {
-  double sum = 0;
-  for (const StepRecord& s : steps) sum += s.*value;
-  return sum / static_cast<double>(steps.size());
-}
-
-double iterations(Steps steps) { return mean(steps, &StepRecord::cg_iterations); }
 
 /// Means of a run over some of its steps.
 struct Means {
@@ -151,12 +136,11 @@ std::vector<Ratio> ratios(const Group& group, int repetitions) {
   const auto times = time_group(group, {steps_to_time(with), steps_to_time(without)}, repetitions, [] {});
   const double time = base::quantile(times[0], 0.5) / base::quantile(times[1], 0.5);
   const std::string_view method = group[0].method->name;
-  const Steps all = with.steps, rest = all.last(std::min(all.size(), at_rest));
-  return {ratio(method, with, "CG iterations a step, at rest over before the first contact",
-                iterations(rest) / iterations(before_contact(with)), most_iterations),
+  return {ratio(method, with, "CG iterations a step, at rest over before the first contact", iterations_at_rest(with),
+                most_iterations_at_rest),
           ratio(method, with, "time, with over without box", time, most_time),
-          ratio(method, with, "time a CG iteration, with over without box", time * iterations(without.steps) / iterations(all),
-                most_time)};
+          ratio(method, with, "time a CG iteration, with over without box",
+                time * iterations(without.steps) / iterations(with.steps), most_time)};
 }
 
 std::vector<Ratio> contact_costs(bool quick, Checkpoint& checkpoint) {

@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <map>
-
 #include "bench/runs/record.hpp"
 #include "bench/runs/timing.hpp"
 #include "bench/studies/draping.hpp"
@@ -14,18 +12,6 @@ namespace {
 
 using results::field;
 using results::Role;
-
-/// A method as the thesis prints it: its work, and the time on another machine [s].
-struct PublishedRun {
-  PublishedWork work;
-  double seconds;
-};
-
-const std::map<std::string_view, PublishedRun> thesis_runs{{"imex-euler", {{100, 745}, 1.69}},
-                                                           {"implicit-euler", {{206, 1038}, 3.06}},
-                                                           {"sbdf2", {{100, 304}, 1.57}},
-                                                           {"bdf2", {{122, 857}, 2.57}},
-                                                           {"midpoint", {{494, 813}, 4.39}}};
 
 /// All methods with the same cloth and the same tolerances.
 struct TableclothBlock {
@@ -92,8 +78,8 @@ MethodRun row_of(const TableclothBlock& block, const RunSpec& cell, const result
                 {},
                 {},
                 {}};
-  const auto published = thesis_runs.find(cell.method->name);
-  const bool known = block.of_thesis && published != thesis_runs.end();
+  const auto published = published_table_3_2.find(cell.method->name);
+  const bool known = block.of_thesis && published != published_table_3_2.end();
   row.run = draping(cell.scene, run, known ? std::optional(published->second.work) : std::nullopt);
   if (known) row.thesis_seconds = published->second.seconds;
   if (!run.times_ms.empty()) row.solver_ms = base::quantile(run.times_ms, 0.5);

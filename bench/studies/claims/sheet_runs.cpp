@@ -54,6 +54,10 @@ double distance_at_end(const model::Scene& scene, const results::RunRecord& run,
   return run.succeeded() ? reference::rms_distance(run.final_state.x, x) / model::size(scene) : NAN;
 }
 
+double work_of(const results::RunRecord& run, const char* kind) {
+  return run.succeeded() ? static_cast<double>(results::work_count(run, kind)) : NAN;
+}
+
 double energy_gain(const model::Scene& scene, const std::string& method, double step) {
   const model::Cloth cloth = model::compile(scene);
   const double start = total_energy(cloth, 0, cloth.start);

@@ -35,6 +35,9 @@ FineMotion fine_motion(const model::Scene& scene);
 /// Root mean square distance at the end of a run over the size of the scene; NaN if it failed.
 double distance_at_end(const model::Scene& scene, const results::RunRecord& run, const solver::Vectors& x);
 
+/// A count of the work of a run; NaN if it failed.
+double work_of(const results::RunRecord& run, const char* kind);
+
 /// Largest rise of the energy above that of the start [J].
 double energy_gain(const model::Scene& scene, const std::string& method, double step);
 

@@ -1,13 +1,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <span>
+#include <string_view>
 
 #include "bench/runs/lag.hpp"
 #include "bench/runs/record.hpp"
 #include "bench/studies/claims/claim.hpp"
 #include "bench/studies/claims/sheet_runs.hpp"
+#include "bench/studies/draping.hpp"
+#include "bench/studies/step_means.hpp"
 #include "reference/distance.hpp"
 
 /// Claims about sheets in motion: work, lag, error and energy of runs.
@@ -20,14 +23,10 @@ using results::RunRecord;
 model::Scene thesis_tablecloth() { return with("tablecloth", {{"material.tension", "1e4"}, {"material.damping", "50"}}); }
 
 /// By the loop of the thesis with IC(0) and its usual tolerances.
-RunRecord run_as_in_thesis(const model::Scene& scene, const char* method, double loop_tolerance = 1e-5) {
+RunRecord run_as_in_thesis(const model::Scene& scene, std::string_view method, double loop_tolerance = 1e-5) {
   RunSpec spec{scene, "", &solver::method(method), thesis_step, solver::thesis_options()};
   spec.options.loop_tolerance = loop_tolerance;
   return record(spec);
-}
-
-double work_of(const RunRecord& run, const char* kind) {
-  return run.succeeded() ? static_cast<double>(results::work_count(run, kind)) : NAN;
 }
 
 double work_ratio(const model::Scene& scene, const char* method, const char* other, const char* kind) {
@@ -87,71 +86,52 @@ std::vector<ClaimCase> midpoint_converges_more_slowly() {
   return cases;
 }
 
-/// Part of the pairs that are in the printed order less that of the others: Kendall's τ.
-double agreement_of_order(const std::vector<double>& printed, const std::vector<double>& ours) {
-  double sum = 0, pairs = 0;
-  for (std::size_t i = 0; i < printed.size(); ++i)
-    for (std::size_t j = 0; j < i; ++j, ++pairs) sum += (printed[i] - printed[j]) * (ours[i] - ours[j]) > 0 ? 1 : -1;
-  return sum / pairs;
-}
-
-/// Table 3.2's tablecloth, the printed updates and CG iterations.
-struct PrintedWork {
-  const char* method;
-  double updates, cg_iterations;
+/// A run beside what the thesis prints of its work.
+struct PrintedRun {
+  PublishedWork printed;
+  RunRecord run;
 };
-constexpr PrintedWork table_3_2_tablecloth[] = {
-    {"imex-euler", 100, 745}, {"implicit-euler", 206, 1038}, {"sbdf2", 100, 304}, {"bdf2", 122, 857}, {"midpoint", 494, 813}};
+
+/// Part of the pairs whose work is in the printed order less that of the others: Kendall's τ.
+ClaimCase order_case(const char* where, const std::vector<PrintedRun>& runs, const char* kind,
+                     std::int64_t PublishedWork::*printed) {
+  double sum = 0, pairs = 0;
+  for (std::size_t i = 0; i < runs.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j, ++pairs) {
+      const auto as_printed = static_cast<double>(runs[i].printed.*printed - runs[j].printed.*printed);
+      sum += as_printed * (work_of(runs[i].run, kind) - work_of(runs[j].run, kind)) > 0 ? 1 : -1;
+    }
+  return {where, sum / pairs, 0, 0.999, 1.001};
+}
 
 std::vector<ClaimCase> orders_of_table_3_2() {
-  std::vector<double> printed_cg, cg, printed_updates, updates;
-  for (const PrintedWork& row : table_3_2_tablecloth) {
-    const RunRecord run = run_as_in_thesis(thesis_tablecloth(), row.method);
-    printed_cg.push_back(row.cg_iterations);
-    cg.push_back(work_of(run, "cg_iterations"));
-    if (!solver::method(row.method).nonlinear()) continue;  // one update a step
-    printed_updates.push_back(row.updates);
-    updates.push_back(work_of(run, "updates"));
+  std::vector<PrintedRun> all, nonlinear;  // the others take one update a step
+  for (const auto& [method, printed] : published_table_3_2) {
+    all.push_back({printed.work, run_as_in_thesis(thesis_tablecloth(), method)});
+    if (solver::method(method).nonlinear()) nonlinear.push_back(all.back());
   }
-  return {{"updates of the implicit methods", agreement_of_order(printed_updates, updates), 0, 0.999, 1.001},
-          {"CG iterations of all", agreement_of_order(printed_cg, cg), 0, 0.999, 1.001}};
+  return {order_case("updates of the implicit methods", nonlinear, "updates", &PublishedWork::updates),
+          order_case("CG iterations of all", all, "cg_iterations", &PublishedWork::cg_iterations)};
 }
 
-/// BDF(2) on the tablecloth, k = 10³ and 10⁵ with d = 160 and 1600. The exponent of the larger k is lost: see study table-3.1.
+/// BDF(2); the larger k is taken for 10⁵.
 std::vector<ClaimCase> order_of_table_3_1() {
-  struct Printed {
-    double k, d, updates, cg_iterations;
-  };
-  std::vector<double> printed_updates, updates, printed_cg, cg;
-  for (const auto& [k, d, its_updates, its_cg] :
-       {Printed{1e3, 160, 377, 566}, {1e3, 1600, 52, 52}, {1e5, 160, 803, 1160}, {1e5, 1600, 198, 538}}) {
-    const RunRecord run = run_as_in_thesis(
-        with("tablecloth", {{"material.tension", fmt::format("{}", k)}, {"material.damping", fmt::format("{}", d)}}), "bdf2");
-    printed_updates.push_back(its_updates);
-    updates.push_back(work_of(run, "updates"));
-    printed_cg.push_back(its_cg);
-    cg.push_back(work_of(run, "cg_iterations"));
-  }
-  return {{"updates", agreement_of_order(printed_updates, updates), 0, 0.999, 1.001},
-          {"CG iterations", agreement_of_order(printed_cg, cg), 0, 0.999, 1.001}};
+  constexpr std::array k{"1e3", "1e5"}, d{"160", "1600"};
+  std::vector<PrintedRun> runs;
+  for (const std::size_t i : {0, 1})
+    for (const std::size_t j : {0, 1})
+      runs.push_back({*published_table_3_1[i][j],
+                      run_as_in_thesis(with("tablecloth", {{"material.tension", k[i]}, {"material.damping", d[j]}}), "bdf2")});
+  return {order_case("updates", runs, "updates", &PublishedWork::updates),
+          order_case("CG iterations", runs, "cg_iterations", &PublishedWork::cg_iterations)};
 }
 
-/// Iterations in the last fifth of a second of a sheet that swings against a box and comes to rest on it, over those before.
+/// A sheet swings against a box and comes to rest on it.
 std::vector<ClaimCase> resting_costs_little() {
-  constexpr double little = 1.5;
-  constexpr std::size_t at_rest = 20;
   std::vector<ClaimCase> cases;
-  for (const char* method : {"sbdf2", "bdf2", "midpoint"}) {
-    const RunRecord run = run_as_in_thesis(with("box_swing", {}), method);
-    const auto iterations = [](std::span<const results::StepRecord> steps) {
-      double sum = 0;
-      for (const results::StepRecord& step : steps) sum += static_cast<double>(step.cg_iterations);
-      return sum / static_cast<double>(steps.size());
-    };
-    const auto first_contact = std::ranges::find_if(run.steps, [](const auto& step) { return step.contacts > 0; });
-    cases.push_back({method, iterations(std::span(run.steps).last(at_rest)) / iterations({run.steps.begin(), first_contact}), 0,
-                     0, little});
-  }
+  for (const char* method : {"sbdf2", "bdf2", "midpoint"})
+    cases.push_back(
+        {method, iterations_at_rest(run_as_in_thesis(with("box_swing", {}), method)), 0, 0, most_iterations_at_rest});
   return cases;
 }
 

@@ -8,6 +8,7 @@
 
 #include "model/cloth.hpp"
 #include "model/scene_file/scene_file.hpp"
+#include "reference/distance.hpp"
 #include "solver/methods/desbrun.hpp"
 #include "solver/methods/strain_limited.hpp"
 #include "verify/support/small_problems.hpp"
@@ -107,11 +108,8 @@ TEST(Desbrun, IsImexEulerBeforeItsCorrection) {
         << p.name;
 }
 
-/// Σ x × m v.
 Eigen::Vector3d angular_momentum(const SplitOde& ode, const State& y) {
-  Eigen::Vector3d L = Eigen::Vector3d::Zero();
-  for (int i = 0; i < ode.particles(); ++i) L += ode.mass[i] * Eigen::Vector3d(y.x.row(i)).cross(Eigen::Vector3d(y.v.row(i)));
-  return L;
+  return reference::angular_momentum(ode.mass, Eigen::RowVector3d::Zero(), y);
 }
 
 /// A free sheet that turns about a slanted axis, and flies.
