@@ -7,6 +7,7 @@
 #include "model/forces/fused/fused_forces.hpp"
 #include "model/jacobian/exact.hpp"
 #include "model/jacobian/newton.hpp"
+#include "model/memory/cloth_memory.hpp"
 #include "model/obstacles/reaction.hpp"
 #include "model/sheet/edges.hpp"
 #include "model/sheet/normals.hpp"
@@ -34,12 +35,16 @@ class Forces {
   std::vector<solver::CompliantConstraint> constraints() const;
 
   /// For the energy guard, whose evaluations do not count as work of a method: sets f, uncounted.
-  void whole(double t, const Vectors& x, const Vectors& v, Vectors& f) { add_up(whole_law_, {t, x, v, normals_of(x)}, f); }
+  void whole(double t, const Vectors& x, const Vectors& v, Vectors& f) {
+    add_up(whole_law_, {t, x, v, normals_of(x)}, f);
+    add_springs(x, f);
+  }
   void active(double t, const Vectors& x, const Vectors& v, Vectors& f) {
     add_up(active_law_, {t, x, v, normals_of(x)}, f, &Term::active);
   }
   bool has_active() const;
 
+  ClothMemory& memory() { return memory_; }
   double energy(const Vectors& x) const;
   void mean_excess(const Vectors& x0, const Vectors& x1, Vectors& f) const;
   void jacobian(double t, const Vectors& x, const Vectors& v, ExactJacobian& matrix, SparseMatrix& df_dx, SparseMatrix& df_dv);
@@ -53,9 +58,11 @@ class Forces {
   Configuration configuration(double t, const Vectors& x, const Vectors& v);
   SparseMatrix edge_matrix(const WeftWarp& modulus) const;
   void add_up(const std::unique_ptr<FusedForces>& law, const Configuration& c, Vectors& f, bool Term::*which = nullptr) const;
+  void add_springs(const Vectors& x, Vectors& f) const;
   void visit(const Configuration& c, const JacobianEntries& entries) const;
 
   Grid grid_;
+  ClothMemory memory_;
   GridLaw law_;
   std::vector<CountedTerm> terms_;
   std::unique_ptr<FusedForces> whole_law_, explicit_law_, unconstrained_law_, active_law_;  ///< null if the law is zero
@@ -67,6 +74,7 @@ class Forces {
 
 Forces::Forces(const Sheet& sheet, solver::Counters& work, Plan& plan)
     : grid_(sheet.grid),
+      memory_(work),
       vertex_normals_(sheet.grid),
       forces_(work.counter("forces", "evaluations of the whole force")),
       explicit_forces_(work.counter("explicit_forces", "evaluations of the explicit part of the force")),
@@ -94,8 +102,11 @@ Forces::Forces(const Sheet& sheet, solver::Counters& work, Plan& plan)
   explicit_law_ = fused(law_.explicit_part());
   active_law_ = fused(active);
   if (has_constraints()) unconstrained_law_ = fused(unconstrained);
+  for (const CountedTerm& counted : terms_)
+    if (counted.term.memory) memory_.add(counted.term.memory);
   if (needs_normals_) normals_.resize(grid_.particles(), 3);
   plan.normals = needs_normals_;
+  plan.internal_variables = memory_.variables();
 }
 
 const Vectors& Forces::normals_of(const Vectors& x) {
@@ -119,9 +130,15 @@ void Forces::add_up(const std::unique_ptr<FusedForces>& law, const Configuration
     if (counted.term.force && (which == nullptr || counted.term.*which)) counted.term.force(c, f);
 }
 
+void Forces::add_springs(const Vectors& x, Vectors& f) const {
+  for (const CountedTerm& counted : terms_)
+    if (counted.term.springs) counted.term.springs(x, f);
+}
+
 void Forces::force(double t, const Vectors& x, const Vectors& v, Vectors& f, bool whole) {
   ++(whole ? forces_ : explicit_forces_);
   add_up(whole ? whole_law_ : explicit_law_, configuration(t, x, v), f);
+  if (whole) add_springs(x, f);
   for (const CountedTerm& counted : terms_) *counted.evaluations += whole || counted.in_explicit_force ? 1 : 0;
 }
 
@@ -129,6 +146,7 @@ void Forces::force(double t, const Vectors& x, const Vectors& v, Vectors& f, boo
 void Forces::unconstrained_force(double t, const Vectors& x, const Vectors& v, Vectors& f) {
   ++explicit_forces_;
   add_up(unconstrained_law_, configuration(t, x, v), f);
+  add_springs(x, f);
   for (const CountedTerm& counted : terms_) *counted.evaluations += counted.in_unconstrained_force ? 1 : 0;
 }
 
@@ -259,6 +277,7 @@ solver::SplitOde::Force given(const std::shared_ptr<Forces>& forces, const std::
 
 Cloth compile(const Scene& scene) {
   Cloth cloth;
+  cloth.start = start(scene);
   solver::SplitOde& ode = cloth.ode;
   const auto forces = std::make_shared<Forces>(scene.sheet, *ode.work, cloth.plan);
   ode.mass = masses(scene.sheet);
@@ -275,6 +294,13 @@ Cloth compile(const Scene& scene) {
   }
   ode.potential_energy = [forces](double, const Vectors& x) { return forces->energy(x); };
   ode.mean_excess = [forces](double, const Vectors& x0, const Vectors& x1, Vectors& f) { forces->mean_excess(x0, x1, f); };
+  if (const int count = forces->memory().variables(); count > 0) {
+    ode.memory = std::shared_ptr<solver::Memory>(forces, &forces->memory());
+    cloth.start.z.setZero(count);
+    forces->memory().set_stiffness(ode.stiffness);
+    ode.memory->begin(1, 0, cloth.start);
+    ode.stiffness = ode.memory->stiffness();
+  }
   ode.without_energy = cloth.plan.without_energy;
   ode.jacobian = [forces, exact = ExactJacobian(3 * ode.particles())](double t, const Vectors& x, const Vectors& v,
                                                                       SparseMatrix& df_dx, SparseMatrix& df_dv) mutable {
@@ -292,7 +318,6 @@ Cloth compile(const Scene& scene) {
     reaction = respond(scene.contact, cloth.contacts, ode);
   }
   cloth.given = given(forces, reaction, ode);
-  cloth.start = start(scene);
   solver::prescribe(ode.pins, cloth.start.v);
   cloth.plan.obstacles = static_cast<int>(scene.obstacles.size());
   cloth.plan.particles = ode.particles();
@@ -311,10 +336,11 @@ std::vector<std::string> forces_without_energy(const Sheet& sheet) {
 
 std::string to_string(const Plan& plan) {
   return fmt::format(
-      "{} particles, {} of {} degrees of freedom pinned; forces: {}; normals: {}; obstacles: {}; entries of K: {}, of D: {}",
+      "{} particles, {} of {} degrees of freedom pinned; forces: {}; normals: {}; internal variables: {}; obstacles: {}; "
+      "entries of K: {}, of D: {}",
       plan.particles, plan.pinned_dofs, 3 * plan.particles,
-      plan.terms.empty() ? "none" : fmt::format("{}", fmt::join(plan.terms, ", ")), plan.normals ? "yes" : "no", plan.obstacles,
-      plan.stiffness_entries, plan.damping_entries);
+      plan.terms.empty() ? "none" : fmt::format("{}", fmt::join(plan.terms, ", ")), plan.normals ? "yes" : "no",
+      plan.internal_variables, plan.obstacles, plan.stiffness_entries, plan.damping_entries);
 }
 
 }  // namespace drape::model

@@ -17,6 +17,7 @@ struct Plan {
   int particles = 0;
   int pinned_dofs = 0;  ///< of 3N
   int obstacles = 0;
+  int internal_variables = 0;  ///< of forces that remember the motion
   int stiffness_entries = 0, damping_entries = 0;
 };
 

@@ -40,6 +40,7 @@ struct Start {
 struct Scene {
   std::string name;
   std::string description;
+  std::string fabric;  ///< the measured cloth that the material began with; empty if it has none
   Sheet sheet;
   std::vector<PinRule> pins;
   std::vector<ObstacleRule> obstacles;

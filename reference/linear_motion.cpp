@@ -58,6 +58,7 @@ LinearMotion::LinearMotion(const SplitOde& ode, Trajectory middles, double h)
 
 void LinearMotion::linearise(std::size_t step) {
   const State& y = middles_.states[step];
+  if (ode_.memory) ode_.memory->begin(1, middles_.times[step], y);
   ode_.jacobian(middles_.times[step], y.x, y.v, dx_, dv_);
   steep_ = h_ / 2 * dx_ + dv_;
 }

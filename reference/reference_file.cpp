@@ -28,7 +28,10 @@ Json to_json(const solver::Vectors& values) { return to_json(values.data(), stat
 
 Json to_json(const Trajectory& trajectory) {
   Json states = Json::array();
-  for (const solver::State& state : trajectory.states) states.push_back({{"x", to_json(state.x)}, {"v", to_json(state.v)}});
+  for (const solver::State& state : trajectory.states)
+    states.push_back({{"x", to_json(state.x)},
+                      {"v", to_json(state.v)},
+                      {"z", to_json(state.z.data(), static_cast<std::size_t>(state.z.size()))}});
   return {{"times", to_json(trajectory.times)}, {"states", std::move(states)}};
 }
 
@@ -49,7 +52,11 @@ solver::Vectors vectors(const Json& json) {
 
 Trajectory trajectory(const Json& json) {
   Trajectory result{numbers(json.at("times")), {}};
-  for (const Json& state : json.at("states")) result.states.push_back({vectors(state.at("x")), vectors(state.at("v"))});
+  for (const Json& state : json.at("states")) {
+    const std::vector<double> z = numbers(state.at("z"));
+    result.states.push_back({vectors(state.at("x")), vectors(state.at("v")),
+                             Eigen::Map<const Eigen::VectorXd>(z.data(), static_cast<Eigen::Index>(z.size()))});
+  }
   return result;
 }
 
@@ -58,10 +65,12 @@ void require_consistent(const Reference& reference) {
   const std::vector<double>& times = reference.trajectory.times;
   const std::vector<solver::State>& states = reference.trajectory.states;
   const Eigen::Index rows = states.empty() ? 0 : states.front().x.rows();
+  const Eigen::Index variables = states.empty() ? 0 : states.front().z.size();
   const auto fits = [&](const Trajectory& trajectory) {
     return trajectory.times == times && trajectory.states.size() == times.size() &&
-           std::ranges::all_of(trajectory.states,
-                               [&](const solver::State& y) { return y.x.rows() == rows && y.v.rows() == rows; });
+           std::ranges::all_of(trajectory.states, [&](const solver::State& y) {
+             return y.x.rows() == rows && y.v.rows() == rows && y.z.size() == variables;
+           });
   };
   for (const auto* series : {&reference.error, &reference.growth})
     if (series->size() != times.size()) throw DamagedFile("it has not a number for each time");

@@ -6,8 +6,10 @@ namespace drape::solver {
 
 State state_within(double t, double t0, const State& y0, double t1, const State& y1) {
   const double h = t1 - t0, s = (t - t0) / h, r = 1 - s;
-  return {r * r * (1 + 2 * s) * y0.x + s * s * (1 + 2 * r) * y1.x + h * s * r * (r * y0.v - s * y1.v),
+  State y{r * r * (1 + 2 * s) * y0.x + s * s * (1 + 2 * r) * y1.x + h * s * r * (r * y0.v - s * y1.v),
           6 * s * r / h * (y1.x - y0.x) + r * (1 - 3 * s) * y0.v + s * (1 - 3 * r) * y1.v};
+  if (y0.z.size() == y1.z.size()) y.z = r * y0.z + s * y1.z;
+  return y;
 }
 
 DenseOutput::DenseOutput(std::span<const double> times, double t0, State y0) : times_(times), t_(t0), before_(std::move(y0)) {}

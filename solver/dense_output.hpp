@@ -9,7 +9,7 @@ namespace drape::solver {
 
 /// The state at time t of a step from t0 to t1: the cubic with the positions and velocities of both ends, and its derivative.
 /// Between exact states the largest error of positions is O((t1 − t0)⁴), of velocities O((t1 − t0)³)   [Hairer, Nørsett, Wanner
-/// 1993, II.6].
+/// 1993, II.6]. Internal variables are on the line between both ends.
 State state_within(double t, double t0, const State& y0, double t1, const State& y1);
 
 /// Interpolates the states of a run at given times, whatever its steps.

@@ -40,9 +40,10 @@ int history_points(const Method& method, const Options& options) {
   return std::max(method.history, estimates ? method.order + 1 : 0);
 }
 
-/// The initial point, with prescribed velocities set.
+/// The initial point, with prescribed velocities set, and nothing remembered if it does not say what.
 Point first_point(const SplitOde& ode, const Method& method, double t, State y) {
   prescribe(ode.pins, y.v);
+  if (ode.memory && y.z.size() == 0) y.z.setZero(ode.memory->variables());
   return {t, std::move(y), method.forces > 0 ? Vectors::Zero(ode.particles(), 3) : Vectors(), false};
 }
 
@@ -56,12 +57,13 @@ std::string describe(Outcome outcome, const StageResult& result, double t, doubl
 Integrator::Integrator(const SplitOde& ode, const Method& method, const Options& options, State y0, double t0)
     : options_(options),
       method_(method),
+      own_(ode.memory ? std::optional<SplitOde>(ode) : std::nullopt),
       history_(history_points(method, options), method.forces, first_point(ode, method, t0, std::move(y0))),
       next_(history_[0]),
       scratch_{Vectors::Zero(ode.particles(), 3), Vectors::Zero(ode.particles(), 3), Vectors::Zero(ode.particles(), 3), {}},
       sub_stepping_{.substeps = ode.work->counter("substeps", "explicit sub-steps inside the stability limit"),
                     .limits = ode.work->counter("stability_limits", "estimates of that limit, some tens of forces each")},
-      step_{.ode = ode,
+      step_{.ode = own_ ? *own_ : ode,
             .options = options_,
             .stage = nullptr,
             .linearised = nullptr,
@@ -85,13 +87,19 @@ Integrator::Integrator(const SplitOde& ode, const Method& method, const Options&
                                 ode.without_energy.front() + "'");
   const LinearCounters registered(*ode.work);  // so that explicit methods record zeros
   if (method.implicit()) {
-    ContactResponse* const contacts = ode.contacts ? &contacts_.emplace(ode) : nullptr;
-    step_.stage = &stage_.emplace(ode, options_, contacts);
+    ContactResponse* const contacts = ode.contacts ? &contacts_.emplace(step_.ode) : nullptr;
+    step_.stage = &stage_.emplace(step_.ode, options_, contacts);
   } else if (ode.contacts) {
-    sub_stepping_.impacts = &impacts_.emplace(ode);
+    sub_stepping_.impacts = &impacts_.emplace(step_.ode);
   }
-  if (method.stages == Method::Stages::linearised) step_.linearised = &linearised_.emplace(ode);
-  if (method.stages == Method::Stages::exponential) step_.phi = &phi_.emplace(ode);
+  if (method.stages == Method::Stages::linearised) step_.linearised = &linearised_.emplace(step_.ode);
+  if (method.stages == Method::Stages::exponential) step_.phi = &phi_.emplace(step_.ode);
+  if (ode.memory) {
+    ode.memory->begin(method.order, t0, state());
+    stiffness_changes_ = ode.memory->stiffness_changes();
+    own_->stiffness = ode.memory->stiffness();
+    if (stage_) stage_->renew();
+  }
   ode.work->counter("history_states", "states before the current one that the method keeps") = method.history - 1;
 }
 
@@ -104,6 +112,8 @@ StageResult Integrator::step(double h) {
   step_error_.embedded = false;
   step_error_.split_gamma = 0;
   next_.has_f = false;
+  step_.recall();
+  follow_stiffness();
   begin_contacts(h);
   method_.step(step_);
   const bool hard = hit_hard();
@@ -125,6 +135,20 @@ StageResult Integrator::step(double h) {
   finish_contacts();
   remember(h, hard);
   return result;
+}
+
+/// The explicit forces of the history are those without K x: the K of now.
+void Integrator::follow_stiffness() {
+  if (!own_ || own_->memory->stiffness_changes() == stiffness_changes_) return;
+  stiffness_changes_ = own_->memory->stiffness_changes();
+  const SparseMatrix less = own_->stiffness - own_->memory->stiffness();
+  own_->stiffness = own_->memory->stiffness();
+  if (method_.stages == Method::Stages::linear)
+    for (int k = 0; k < method_.forces; ++k)
+      if (history_[k].has_f) history_[k].f += less * history_[k].y.x;
+  if (stage_) stage_->renew();
+  kept_.reset();
+  sub_stepping_.limit = 0;
 }
 
 void Integrator::begin_contacts(double h) {
@@ -194,6 +218,7 @@ void Integrator::remember(double h, bool hard) {
   const Vectors& v1 = next_.y.v;
   const bool rough =
       extrapolates_ && history_.smooth() > 1 && (v1 - scratch_.av).squaredNorm() > (v1 - state().v).squaredNorm();
+  if (step_.ode.memory) step_.ode.memory->carry(step_.t + h, next_.y);
   next_.t = end_of_step(h);
   history_.push(next_, h);
   if (hard) history_.restart();

@@ -48,6 +48,7 @@ class Integrator {
   ContactReport contacts() const;
 
  private:
+  void follow_stiffness();
   void begin_contacts(double h);
   bool hit_hard() const;
   void step_without_history();
@@ -59,6 +60,7 @@ class Integrator {
 
   const Options options_;
   const Method& method_;
+  std::optional<SplitOde> own_;              ///< with the K of now, if forces remember the motion
   std::optional<ContactResponse> contacts_;  ///< of implicit methods
   std::optional<ImpactResponse> impacts_;    ///< of explicit ones
   std::optional<StageSolver> stage_;
@@ -74,6 +76,7 @@ class Integrator {
   const bool extrapolates_;  ///< whether the history is longer than the method needs
   double tolerance_;
   double error_ = 0;
+  std::int64_t stiffness_changes_ = 0;
   double lost_time_ = 0;  ///< round-off added to the time [s]
   std::int64_t &steps_, &rejected_, &starting_;
 };

@@ -4,6 +4,10 @@ namespace drape::solver {
 
 double kinetic_energy(const SplitOde& ode, const Vectors& v) { return 0.5 * ode.mass.dot(v.rowwise().squaredNorm()); }
 
+double stored_energy(const SplitOde& ode, double t, const State& y) {
+  return ode.potential_energy(t, y.x) + (ode.memory ? ode.memory->energy(y) : 0);
+}
+
 void prescribe(const std::vector<Pin>& pins, Vectors& v) {
   for (const Pin& pin : pins)
     for (int c = 0; c < 3; ++c)

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "solver/counters.hpp"
+#include "solver/memory.hpp"
 #include "solver/state.hpp"
 
 namespace drape::solver {
@@ -67,8 +68,12 @@ struct SplitOde {
   std::function<std::vector<CompliantConstraint>()> compliant_constraints;
   Force unconstrained_force;  ///< force without theirs; absent: that is all of it
 
-  /// Potential energy [J] of the conservative forces.
+  /// Potential energy [J] of the conservative forces, without what memory stores.
   std::function<double(double t, const Vectors& x)> potential_energy;
+
+  /// Null if no force remembers the motion. Else forces are those of the state that it has passed last, or of a path from
+  /// there.
+  std::shared_ptr<Memory> memory;
 
   /// Adds to the force f(t, (x0 + x1)/2, v) what the mean force between these positions has more: a discrete gradient, whose
   /// work along x1 − x0 is the potential energy that is lost, and which keeps both momenta that the force keeps. Absent:
@@ -96,6 +101,9 @@ struct SplitOde {
 
 /// Kinetic energy ½ Σ m v² [J].
 double kinetic_energy(const SplitOde& ode, const Vectors& v);
+
+/// Potential energy with what memory stores [J].
+double stored_energy(const SplitOde& ode, double t, const State& y);
 
 /// Sets the prescribed velocities in v.
 void prescribe(const std::vector<Pin>& pins, Vectors& v);

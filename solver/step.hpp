@@ -77,6 +77,16 @@ struct Step {
     return *std::any_cast<Kept>(&kept);
   }
 
+  /// Ends a sub-step: what follows goes on from here. `recall` goes back to the newest point of the history.
+  void pass(double time, State& y) const {
+    if (!ode.memory) return;
+    ode.memory->carry(time, y);
+    ode.memory->pass(time, y);
+  }
+  void recall() const {
+    if (ode.memory) ode.memory->pass(history[0].t, history[0].y);
+  }
+
   /// f_expl of a point of this step, evaluated at most once.
   const Vectors& explicit_force(Point& point, double time) const {
     if (!point.has_f) ode.explicit_force(time, point.y.x, point.y.v, point.f);

@@ -36,7 +36,8 @@ struct Room {
 const std::vector<Room> rooms = {
     {"solver/base", {"solver/base/"}, {}},
     {"solver's vocabulary",
-     {"solver/counters.", "solver/filter.", "solver/outcome.", "solver/split_ode.", "solver/stage.", "solver/state."},
+     {"solver/counters.", "solver/filter.", "solver/memory.", "solver/outcome.", "solver/split_ode.", "solver/stage.",
+      "solver/state."},
      {"solver/base"}},
     {"solver/linear", {"solver/linear/"}, {"solver's vocabulary"}},
     {"solver/contact", {"solver/contact/"}, {"solver's vocabulary"}},
@@ -45,7 +46,8 @@ const std::vector<Room> rooms = {
     {"solver", {"solver/"}, {"solver/stage"}},
     {"solver/methods", {"solver/methods/"}, {"solver"}},
 
-    {"model/sheet", {"model/sheet/"}, {"solver"}},
+    {"model/memory", {"model/memory/"}, {"solver"}},
+    {"model/sheet", {"model/sheet/"}, {"model/memory"}},
     {"model/forces/fused", {"model/forces/fused/"}, {"model/sheet"}},
     {"model/forces", {"model/forces/"}, {"model/forces/fused"}},
     {"model/jacobian", {"model/jacobian/"}, {"model/forces"}},
@@ -231,8 +233,8 @@ TEST(LayeringChecker, KnowsTheOrderInsideFolders) {
   const std::vector<std::vector<std::string>> chains = {
       {"solver/base/a.hpp", "solver/state.hpp", "solver/linear/a.hpp", "solver/options.hpp", "solver/stage/a.hpp",
        "solver/a.hpp", "solver/methods/a.hpp"},
-      {"model/sheet/a.hpp", "model/forces/fused/a.hpp", "model/forces/a.hpp", "model/jacobian/a.hpp", "model/a.hpp",
-       "model/scene_file/a.hpp"},
+      {"model/memory/a.hpp", "model/sheet/a.hpp", "model/forces/fused/a.hpp", "model/forces/a.hpp", "model/jacobian/a.hpp",
+       "model/a.hpp", "model/scene_file/a.hpp"},
       {"model/sheet/a.hpp", "model/keys/a.hpp", "model/obstacles/a.hpp", "model/obstacles/shapes/a.hpp", "model/a.hpp"},
       {"reference/trajectory.hpp", "reference/sundials/a.hpp", "reference/a.hpp"},
       {"reference/exact/a.hpp", "reference/theory/a.hpp", "reference/a.hpp"},

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "bench/studies/studies.hpp"
+#include "model/fabric.hpp"
 #include "model/scene_file/scene_file.hpp"
 #include "solver/base/terminal.hpp"
 #include "solver/methods.hpp"
@@ -42,6 +43,8 @@ Choices stage_solver_choices() { return from_table(solver::stage_kinds()); }
 Choices linear_solver_choices() { return from_table(solver::linear_solvers()); }
 
 Choices study_choices() { return from_table(studies()); }
+
+Choices fabric_choices() { return from_table(model::fabrics()); }
 
 std::string paragraph(std::string_view title, const Choices& choices) {
   const auto length = [](const Choice& choice) { return choice.name.size(); };

@@ -19,6 +19,7 @@ Choices method_choices();
 Choices stage_solver_choices();
 Choices linear_solver_choices();
 Choices study_choices();
+Choices fabric_choices();
 
 /// A title, and below it the choices with their descriptions, one a line.
 std::string paragraph(std::string_view title, const Choices& choices);

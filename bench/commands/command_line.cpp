@@ -101,6 +101,7 @@ int run_command_line(int argc, const char* const* argv) {
   add_check(app, command_line, exit_code);
   add_report(app);
   add_export(app);
+  add_fabric(app);
   add_score(app, command_line);
   app.footer(
       fmt::format("Examples:\n"

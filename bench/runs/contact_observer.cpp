@@ -19,7 +19,7 @@ void ContactObserver::begin(const model::Scene& scene, const model::Cloth& cloth
 
 void ContactObserver::see(double t, const solver::State& y) {
   if (!record_) return;
-  const double kinetic = solver::kinetic_energy(cloth_->ode, y.v), potential = cloth_->ode.potential_energy(t, y.x);
+  const double kinetic = solver::kinetic_energy(cloth_->ode, y.v), potential = solver::stored_energy(cloth_->ode, t, y);
   const double energy = kinetic + potential;
   least_ = std::min(least_, energy);
   scale_ = base::larger(scale_, kinetic + std::abs(potential - start_));

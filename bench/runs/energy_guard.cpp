@@ -78,7 +78,7 @@ EnergyGuard::EnergyGuard(const model::Scene& scene, const model::Cloth& cloth)
 
 double EnergyGuard::kinetic_and_elastic(double t, const State& y) const {
   const double gravity = -weight_.cwiseProduct(y.x).sum();
-  return solver::kinetic_energy(cloth_.ode, y.v) + cloth_.ode.potential_energy(t, y.x) - gravity;
+  return solver::kinetic_energy(cloth_.ode, y.v) + solver::stored_energy(cloth_.ode, t, y) - gravity;
 }
 
 /// What a wind may have done in a step that is longer than its swing [J].

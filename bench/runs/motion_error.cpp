@@ -22,7 +22,7 @@ Eigen::Vector3d angular_momentum(const model::Cloth& cloth, const Eigen::RowVect
 }  // namespace
 
 double total_energy(const model::Cloth& cloth, double t, const State& y) {
-  return solver::kinetic_energy(cloth.ode, y.v) + cloth.ode.potential_energy(t, y.x);
+  return solver::kinetic_energy(cloth.ode, y.v) + solver::stored_energy(cloth.ode, t, y);
 }
 
 MotionScale motion_scale(const model::Cloth& cloth, const reference::Trajectory& trajectory, double size) {

@@ -98,7 +98,7 @@ class StepRecorder : public Observer {
   void begin(const model::Scene&, const model::Cloth& cloth, const solver::State&) override { ode_ = &cloth.ode; }
   void observe(const solver::StepReport& step) override {
     steps_.push_back({step.t, step.h, step.updates, step.cg_iterations, solver::kinetic_energy(*ode_, step.y.v),
-                      ode_->potential_energy(step.t, step.y.x), step.contacts.constrained});
+                      solver::stored_energy(*ode_, step.t, step.y), step.contacts.constrained});
   }
 
  private:

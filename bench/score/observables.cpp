@@ -46,7 +46,7 @@ std::vector<solver::Vectors> velocities_of(std::span<const double> times, const 
 Observables observe(const model::Scene& scene, const model::Cloth& cloth, double t, const solver::State& y) {
   Observables o;
   o.kinetic = solver::kinetic_energy(cloth.ode, y.v);
-  o.potential = cloth.ode.potential_energy(t, y.x);
+  o.potential = solver::stored_energy(cloth.ode, t, y);
   o.total = o.kinetic + o.potential;
   o.centre = reference::centre_of_mass(cloth.ode.mass, y.x);
   o.lowest = y.x.col(2).minCoeff();

@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <numbers>
 #include <utility>
 
 #include "bench/runs/certified_reference.hpp"
 #include "bench/runs/record.hpp"
+#include "bench/runs/sweep_options.hpp"
 #include "model/scene_file/scene_file.hpp"
 #include "solver/base/statistics.hpp"
 
@@ -108,6 +110,33 @@ constexpr results::ColumnOf<RefinedRun> refined_columns[] = {
     {"reason", "reason", "", "what was thrown", results::Role::note, results::field<&RefinedRun::reason>},
 };
 
+/// The curves of all methods on a scene.
+struct OrdersOnScene {
+  std::string families;  ///< behind the reference
+  std::vector<RefinedRun> runs;
+};
+
+OrdersOnScene compute_orders(const model::Scene& scene, double most_work, const std::vector<const solver::Method*>& methods,
+                             Checkpoint& checkpoint) {
+  const model::Cloth cloth = model::compile(scene);
+  checkpoint.show("reference of " + scene.name);
+  const auto say = [&](const std::string& pace) { checkpoint.report("reference of " + scene.name + ": " + pace); };
+  References references(SweepOptions().agreement, {.say = say}, 1e-12);  // the more of a curve is resolved
+  const reference::Reference reference = references(scene, cloth);
+  checkpoint.advance();
+  std::vector<RefinedRun> runs;
+  for (const solver::Method* method : methods) {
+    if (method->needs_energies && !cloth.plan.without_energy.empty()) continue;
+    checkpoint.show(fmt::format("{} on {}", method->name, scene.name));
+    const std::string name(method->name);
+    auto curve = refine(tight(scene, name), name, cloth, reference, most_work, checkpoint);
+    fit_curve(curve, method->order);
+    std::ranges::move(curve, std::back_inserter(runs));
+    checkpoint.advance();
+  }
+  return {fmt::format("{} + {}", reference.name, reference.witness), std::move(runs)};
+}
+
 }  // namespace
 
 model::Scene smooth_scene() {
@@ -154,6 +183,16 @@ results::Table refinement_table(std::string name, std::string description, const
   draw(table, results::Figure::convergence,
        {{Part::figure, "scene"}, {Part::curve, "method"}, {Part::x, "step"}, {Part::y, "error"}, {Part::detail, "order"}});
   return table;
+}
+
+Job orders_on(const model::Scene& scene, double most_work, const std::vector<const solver::Method*>& methods) {
+  const std::string name = "orders-" + scene.name;
+  const auto compute = [=](Checkpoint& checkpoint) { return compute_orders(scene, most_work, methods, checkpoint); };
+  const auto present = [=](const OrdersOnScene& orders) {
+    return refinement_table(
+        name, fmt::format("Order in time on {}, {:g} s; reference {}", scene.name, scene.end, orders.families), orders.runs);
+  };
+  return job(name, 1 + static_cast<int>(methods.size()), compute, present);
 }
 
 }  // namespace drape::bench

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "bench/runs/checkpoint.hpp"
+#include "bench/runs/recording.hpp"
 #include "bench/runs/run.hpp"
 #include "reference/reference.hpp"
 #include "results/analysis/order_fit.hpp"
@@ -37,6 +38,9 @@ std::vector<RefinedRun> refine(const RunSpec& spec, const std::string& name, con
 
 /// Gives the first run its curve.
 void fit_curve(std::vector<RefinedRun>& runs, int declared_order);
+
+/// The curves of methods on a scene, with its own reference: a job. most_work: as in `refine`.
+Job orders_on(const model::Scene& scene, double most_work, const std::vector<const solver::Method*>& methods);
 
 /// A table of such curves.
 results::Table refinement_table(std::string name, std::string description, const std::vector<RefinedRun>& runs);

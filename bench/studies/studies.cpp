@@ -55,6 +55,10 @@ std::span<const Study> studies() {
       {.name = "limits",
        .description = "where \"stable under all circumstances\" ends: shear and bending that the implicit part does not know",
        .answer = limits},
+      {.name = "memory",
+       .description = "moduli that relax: the fit of a quality, the loss of a cycle, orders of all methods, what it costs",
+       .answer = memory,
+       .any_methods = true},
       {.name = "scaling",
        .description =
            "time of a step and of a CG iteration from 20 x 20 to a million particles, beside the machine's bandwidth",

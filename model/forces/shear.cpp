@@ -1,4 +1,3 @@
-#include <array>
 #include <memory>
 
 #include "model/forces/term.hpp"
@@ -6,12 +5,6 @@
 
 namespace drape::model {
 namespace {
-
-/// The corners of a cell as pairs of one edge p along u and one edge q along v: the quadrants of its particles.
-std::array<std::pair<EdgeEnds, EdgeEnds>, 4> quadrants(const Cell& cell) {
-  return {
-      {{cell.lower(), cell.left()}, {cell.lower(), cell.right()}, {cell.upper(), cell.left()}, {cell.upper(), cell.right()}}};
-}
 
 /// Derivatives of the pulls g_p = s q, g_q = s p with s = κ <p, q> + κ_d (<ṗ, q> + <p, q̇>).
 void quadrant_jacobian(const Configuration& c, EdgeEnds P, EdgeEnds Q, double kappa, double kappa_d,

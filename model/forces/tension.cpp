@@ -9,7 +9,8 @@ namespace drape::model {
 /// Tension: σ = k ε, ε = |d|/l − 1 along every edge [Etzmuß 2002, (2.20), Alg. 1]; E = Σ ½ k ε² l w with the strip's width
 /// w, half on borders. K takes k w/l (x_j − x_i), the explicit remainder is −k w (x_j − x_i)° [(3.18)].
 std::optional<Term> make_tension(const Sheet& sheet) {
-  const WeftWarp k = sheet.material.tension;
+  const Material& m = sheet.material;
+  const WeftWarp k{m.weft_curve.given() ? 0 : m.tension.weft, m.warp_curve.given() ? 0 : m.tension.warp};
   if (!k.any()) return {};
   const auto all = std::make_shared<const std::vector<Edge>>(edges(sheet.grid));
 

@@ -4,10 +4,12 @@ namespace drape::model {
 
 // Each in its file under model/forces/.
 std::optional<Term> make_tension(const Sheet& sheet);
+std::optional<Term> make_curves(const Sheet& sheet);
 std::optional<Term> make_linear_damping(const Sheet& sheet);
 std::optional<Term> make_projected_damping(const Sheet& sheet);
 std::optional<Term> make_shear(const Sheet& sheet);
 std::optional<Term> make_printed_shear(const Sheet& sheet);
+std::optional<Term> make_relaxation(const Sheet& sheet);
 std::optional<Term> make_contraction(const Sheet& sheet);
 std::optional<Term> make_membrane(const Sheet& sheet);
 std::optional<Term> make_plate(const Sheet& sheet);
@@ -19,6 +21,7 @@ std::optional<Term> make_air(const Sheet& sheet);
 std::span<const TermKind> term_kinds() {
   static constexpr TermKind table[] = {
       {.name = "tension", .description = "springs along weft and warp (2.20), Alg. 1", .make = make_tension},
+      {.name = "curves", .description = "tension by measured curves with branches, 2.1.3", .make = make_curves},
       {.name = "damping",
        .description = "linear damping d/l² (v_j − v_i) along weft and warp (3.18)",
        .make = make_linear_damping},
@@ -27,6 +30,9 @@ std::span<const TermKind> term_kinds() {
        .make = make_projected_damping},
       {.name = "shear", .description = "conservative shear W = ½ G <s_u, s_v>² with its viscous part", .make = make_shear},
       {.name = "printed-shear", .description = "shear as Algorithm 2 prints it", .make = make_printed_shear},
+      {.name = "relaxation",
+       .description = "what Maxwell elements forget of tension and shear, 2.4.2",
+       .make = make_relaxation},
       {.name = "contraction", .description = "transverse contraction (2.22) with its viscous part", .make = make_contraction},
       {.name = "membrane", .description = "membrane bending (2.24) with its viscous part", .make = make_membrane},
       {.name = "plate", .description = "thin-plate bending (2.26) with its viscous part", .make = make_plate},

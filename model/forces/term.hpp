@@ -1,11 +1,13 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string_view>
 
 #include "model/forces/fused/law.hpp"
+#include "model/memory/term_memory.hpp"
 #include "model/sheet/sheet.hpp"
 #include "solver/split_ode.hpp"
 
@@ -47,6 +49,11 @@ struct Term {
   /// Adds to the force in the middle of x0 and x1 what the mean force between them has more (SplitOde::mean_excess); absent:
   /// nothing, as where the energy is at most quadratic.
   std::function<void(const Vectors& x0, const Vectors& x1, Vectors& f)> mean_excess;
+
+  /// Adds the pull of its memory's part of K; absent: there is none. With `force` it is all of it.
+  std::function<void(const Vectors& x, Vectors& f)> springs;
+
+  std::shared_ptr<TermMemory> memory;  ///< what `force` remembers, with the energy that it stores; null: nothing
 
   GridLaw active_law;           ///< part of `law` that neither has an energy nor only dissipates
   bool active = false;          ///< whether `force` neither has an energy nor only dissipates

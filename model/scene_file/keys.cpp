@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "model/fabric.hpp"
 #include "model/scene_file/obstacle_keys.hpp"
 #include "model/scene_file/pin_keys.hpp"
 
@@ -74,6 +75,113 @@ void read_grid_size(const Value& value, Scene& scene) {
 
 Data grid_size_data(const Scene& scene) { return List{scene.sheet.grid.size_u, scene.sheet.grid.size_v}; }
 
+/// Keys that follow change what the fabric has.
+void read_fabric(const Value& value, Scene& scene) {
+  scene.fabric = value.text();
+  if (scene.fabric.empty()) return;
+  std::vector<std::string_view> names;
+  for (const Fabric& fabric : fabrics()) names.push_back(fabric.name);
+  const Fabric& fabric = fabrics()[value.one_of(names)];
+  scene.sheet.material = material_of(fabric);
+}
+
+Data fabric_data(const Scene& scene) { return scene.fabric; }
+
+/// Pairs of two positive numbers.
+template <class Pair>
+std::vector<Pair> pairs(const Value& value) {
+  std::vector<Pair> all;
+  for (const Value& entry : rules(value)) {
+    const std::vector<Value> parts = entry.list(2);
+    all.push_back({parts[0].positive(), parts[1].positive()});
+  }
+  return all;
+}
+
+template <class Pair>
+Data pairs_data(const std::vector<Pair>& all) {
+  List list;
+  for (const auto& [first, second] : all) list.emplace_back(List{first, second});
+  return list;
+}
+
+/// Points of a curve that begins at the given ordinate and rises.
+Polyline curve(const Value& value, double first, double last_x) {
+  std::vector<Polyline::Point> points;
+  for (const Value& entry : rules(value)) {
+    const std::vector<Value> parts = entry.list(2);
+    points.push_back({parts[0].non_negative(), parts[1].non_negative()});
+  }
+  if (points.size() < 2 || points.front()[1] != 0 || !(points.front()[0] <= first) ||
+      (last_x > 0 && points.back() != Polyline::Point{last_x, last_x}))
+    value.fail(last_x > 0 ? "points from [part of the largest strain, 0] to [1, 1]" : "at least two points, the first [0, 0]");
+  for (std::size_t k = 1; k < points.size(); ++k)
+    if (!(points[k][0] > points[k - 1][0]) || !(points[k][1] >= points[k - 1][1]))
+      value.fail(fmt::format("strains that grow and stresses that do not fall, unlike point {}", k));
+  return Polyline(std::move(points));
+}
+
+template <StressCurve Material::*which, double WeftWarp::*modulus>
+void read_curve(const Value& value, Scene& scene) {
+  Material& m = scene.sheet.material;
+  m.*which = {};
+  if (value.list().empty()) return;
+  (m.*which).loading = curve(value, 0, 0);
+  m.tension.*modulus = (m.*which).loading.slope(0);
+  if (!(m.tension.*modulus > 0)) value.fail("a first piece that rises");
+}
+
+/// A loop that is passed the right way round loses energy.
+template <StressCurve Material::*which>
+void read_unloading(const Value& value, Scene& scene) {
+  StressCurve& both = scene.sheet.material.*which;
+  both.unloading = {};
+  if (value.list().empty()) return;
+  if (!both.given()) value.fail("the curve of loading as well");
+  both.unloading = curve(value, 1, 1);
+  for (const auto& [largest, stress] : both.loading.points())
+    for (const auto& [part, share] : both.unloading.points())
+      if (share * stress > both.loading.value(part * largest) * (1 + 1e-12))
+        value.fail(fmt::format(
+            "less stress than in loading: at {:g} of the strain {:g} it is more, and loops would feed energy", part, largest));
+}
+
+template <StressCurve Material::*which, Polyline StressCurve::*branch>
+Data curve_data(const Scene& scene) {
+  List list;
+  for (const auto& [x, y] : (scene.sheet.material.*which.*branch).points()) list.emplace_back(List{x, y});
+  return list;
+}
+
+void read_maxwell(const Value& value, Scene& scene) {
+  double sum = 0;
+  for (const MaxwellElement& element : scene.sheet.material.relaxation.maxwell = pairs<MaxwellElement>(value))
+    sum += element.part;
+  if (!(sum < 1)) value.fail("parts whose sum is below 1, or nothing would hold the sheet");
+}
+
+Data maxwell_data(const Scene& scene) { return pairs_data(scene.sheet.material.relaxation.maxwell); }
+
+void read_series(const Value& value, Scene& scene) {
+  scene.sheet.material.relaxation.series = pairs<KelvinVoigtElement>(value);
+}
+
+Data series_data(const Scene& scene) { return pairs_data(scene.sheet.material.relaxation.series); }
+
+void read_band(const Value& value, Scene& scene) {
+  const std::vector<Value> ends = value.list(2);
+  const Band band = {ends[0].positive(), ends[1].positive()};
+  constexpr double widest = 1e6;
+  if (!(band[0] < band[1] && band[1] <= widest * band[0]))
+    value.fail("[lowest, highest], the highest at most a million times the lowest");
+  scene.sheet.material.relaxation.band = band;
+}
+
+Data band_data(const Scene& scene) {
+  const Band& band = scene.sheet.material.relaxation.band;
+  return List{band[0], band[1]};
+}
+
 void read_pleats(const Value& value, Scene& scene) {
   const std::vector<Value> parts = value.list(2);
   const double count = parts[0].non_negative(), degrees = parts[1].non_negative();
@@ -89,8 +197,8 @@ Data pleats_data(const Scene& scene) { return List{double(scene.start.pleats.cou
 
 template <auto member>
 constexpr auto in_sheet = at<&Scene::sheet, member>;
-template <auto member>
-constexpr auto in_material = at<&Scene::sheet, &Sheet::material, member>;
+template <auto... members>
+constexpr auto in_material = at<&Scene::sheet, &Sheet::material, members...>;
 template <auto member>
 constexpr auto in_wind = at<&Scene::sheet, &Sheet::wind, member>;
 template <auto member>
@@ -117,9 +225,19 @@ std::span<const SceneKey> scene_key_table() {
       {"grid.border_cells", "", "\"dual\" (half on borders) or \"whole\" (as the algorithms of the thesis print it)",
        at<&Scene::sheet, &Sheet::grid, &Grid::border_cells>, check::one_of<border_cells>},
 
+      {"material.fabric", "", "a measured cloth, see bench_integrators list fabrics: its density and moduli, which other keys change",
+       read_fabric, fabric_data},
       {"material.density", "kg/m²", "ρ", in_material<&Material::density>, check::positive},
       {"material.tension", "N/m", "k1, k2: one number for both, or [weft, warp]",
        in_material<&Material::tension>, check::non_negative},
+      {"material.weft_curve", "", "instead of k1, a curve of loading: list of [strain, N/m] from [0, 0]",
+       read_curve<&Material::weft_curve, &WeftWarp::weft>, curve_data<&Material::weft_curve, &StressCurve::loading>},
+      {"material.weft_unloading", "", "its curve of unloading: list of [part of the largest strain, part of its stress] to [1, 1]; what it begins with remains",
+       read_unloading<&Material::weft_curve>, curve_data<&Material::weft_curve, &StressCurve::unloading>},
+      {"material.warp_curve", "", "the same instead of k2",
+       read_curve<&Material::warp_curve, &WeftWarp::warp>, curve_data<&Material::warp_curve, &StressCurve::loading>},
+      {"material.warp_unloading", "", "and its curve of unloading",
+       read_unloading<&Material::warp_curve>, curve_data<&Material::warp_curve, &StressCurve::unloading>},
       {"material.damping", "N s/m", "d1, d2: viscous tension, one number for both, or [weft, warp]",
        in_material<&Material::damping>, check::non_negative},
       {"material.damping_form", "", "\"linear\" (treated implicitly, also damps transversally) or \"projected\"",
@@ -128,6 +246,13 @@ std::span<const SceneKey> scene_key_table() {
       {"material.shear_damping", "N s/m", "dG", in_material<&Material::shear_damping>, check::non_negative},
       {"material.shear_form", "", "\"conservative\" or \"printed\" (Algorithm 2 of the thesis)",
        in_material<&Material::shear_form>, check::one_of<shear_forms>},
+      {"material.quality", "1", "Q of tension and shear, the same throughout the band; 0: they do not relax",
+       in_material<&Material::relaxation, &Relaxation::quality>, check::non_negative},
+      {"material.band", "rad/s", "[lowest, highest]: where Q is as wished", read_band, band_data},
+      {"material.maxwell", "", "instead of Q, Maxwell elements of tension and shear: list of [rate in 1/s, part of the modulus]",
+       read_maxwell, maxwell_data},
+      {"material.series", "", "or Kelvin-Voigt elements in series with them (2.34): list of [k_j/d_j in 1/s, k_0/k_j]",
+       read_series, series_data},
       {"material.contraction", "N/m", "C12: transverse contraction, with C12² below k1 k2",
        in_material<&Material::contraction>, check::non_negative},
       {"material.contraction_damping", "N s/m", "d12", in_material<&Material::contraction_damping>, check::non_negative},

@@ -97,6 +97,14 @@ void check_together(const Scene& scene, const std::string& origin) {
   const auto fail = [&](std::string_view what) { throw SceneError(fmt::format("{}: {}", origin, what)); };
   if (m.contraction * m.contraction >= m.tension.weft * m.tension.warp && m.contraction > 0)
     fail("material.contraction: expected C12² below k1 k2, or the material would collapse");
+  const Relaxation& relaxation = m.relaxation;
+  if ((relaxation.quality > 0) + !relaxation.maxwell.empty() + !relaxation.series.empty() > 1)
+    fail("material.quality: expected one of quality, maxwell and series");
+  if (relaxation.quality > 0 && relaxation.spectrum().empty())
+    fail(fmt::format("material.quality: expected more than {:g} for so wide a band, or elements would have to feed energy",
+                     relaxation.quality));
+  if ((m.weft_curve.given() || m.warp_curve.given()) && !relaxation.spectrum().empty())
+    fail("material.weft_curve: expected no quality, maxwell or series beside it, curves do not relax");
   const bool bends = m.bend.any() || m.bend_damping.any();
   if (bends && m.bend_form == BendForm::membrane && !m.bend_projected)
     fail("material.bend_projected = false: expected true, the membrane acts along the normal only");

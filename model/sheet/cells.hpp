@@ -1,5 +1,8 @@
 #pragma once
 
+#include <array>
+#include <utility>
+
 #include "model/sheet/edges.hpp"
 
 namespace drape::model {
@@ -13,6 +16,12 @@ struct Cell {
   EdgeEnds left() const { return {corner[0][0], corner[0][1]}; }
   EdgeEnds right() const { return {corner[1][0], corner[1][1]}; }
 };
+
+/// The corners of a cell as pairs of one edge p along u and one edge q along v: the quadrants of its particles.
+inline std::array<std::pair<EdgeEnds, EdgeEnds>, 4> quadrants(const Cell& cell) {
+  return {
+      {{cell.lower(), cell.left()}, {cell.lower(), cell.right()}, {cell.upper(), cell.left()}, {cell.upper(), cell.right()}}};
+}
 
 /// All cells, line by line.
 inline std::vector<Cell> cells(const Grid& grid) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "model/memory/curve.hpp"
+#include "model/memory/spectrum.hpp"
 #include "model/sheet/grid.hpp"
 
 namespace drape::model {
@@ -35,15 +37,28 @@ enum class BendForm {
   printed_is_border,  ///< the same without forces across borders on border particles [Etzmuß 2002, 6.2.1]
 };
 
+/// How tension and shear relax, in one of three forms.
+struct Relaxation {
+  Spectrum maxwell;                        ///< Maxwell elements
+  std::vector<KelvinVoigtElement> series;  ///< Kelvin-Voigt elements in series with the modulus [Etzmuß 2002, (2.34)]
+  double quality = 0;                      ///< Q, the same throughout `band`; 0: not given
+  Band band = {1, 1000};                   ///< [rad/s]
+
+  /// The Maxwell elements of any of them; empty if nothing relaxes, or if the quality is too low for the band.
+  Spectrum spectrum() const;
+};
+
 /// Elastic moduli and their viscous counterparts (Kelvin–Voigt). Zero: the force does not exist.
 struct Material {
-  double density = 1;  ///< ρ [kg/m²]
-  WeftWarp tension;    ///< k1, k2 [N/m]
-  WeftWarp damping;    ///< d1, d2 [N s/m]
+  double density = 1;                  ///< ρ [kg/m²]
+  WeftWarp tension;                    ///< k1, k2 [N/m]; the first slopes of curves
+  StressCurve weft_curve, warp_curve;  ///< in the place of k1, k2
+  WeftWarp damping;                    ///< d1, d2 [N s/m]
   DampingForm damping_form = DampingForm::linear;
   double shear = 0;          ///< G [N/m]
   double shear_damping = 0;  ///< dG [N s/m]
   ShearForm shear_form = ShearForm::conservative;
+  Relaxation relaxation;
   double contraction = 0;          ///< C12 [N/m]
   double contraction_damping = 0;  ///< d12 [N s/m]
   WeftWarp bend;                   ///< B1, B2: [N/m] for the membrane, [N m] for the plate

@@ -24,6 +24,7 @@ solver::State prescribed_start(const solver::SplitOde& ode, const solver::State&
                                             start.x.rows(), start.v.rows(), ode.particles()));
   solver::State result = start;
   solver::prescribe(ode.pins, result.v);
+  if (ode.memory && result.z.size() == 0) result.z.setZero(ode.memory->variables());
   return result;
 }
 

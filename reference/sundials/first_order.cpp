@@ -65,10 +65,20 @@ void FirstOrderOde::scatter(const Eigen::VectorXd& unknowns, State& y) const {
 
 void FirstOrderOde::evaluate(double t, const State& y, Part part, Vectors& f) const {
   if (part != Part::linear) return (part == Part::whole ? ode_.force : ode_.explicit_force)(t, y.x, y.v, f);
-  solver::multiply(ode_.stiffness, y.x, f);
+  solver::multiply(ode_.memory ? ode_.memory->stiffness() : ode_.stiffness, y.x, f);
   if (ode_.damping.nonZeros() == 0) return;
   solver::multiply(ode_.damping, y.v, scratch_.damping);
   f += scratch_.damping;
+}
+
+/// Where it begins, forces are those of the state's own internal variables.
+void FirstOrderOde::derive_memory(double t, const State& y, Part part, Eigen::VectorXd& dz) const {
+  constexpr int any_order = 1;
+  ode_.memory->begin(any_order, t, y);
+  if (part == Part::linear)
+    dz.setZero(y.z.size());
+  else
+    ode_.memory->rate(y, dz);
 }
 
 void FirstOrderOde::derivative(double t, const State& y, State& dy, Part part) const {
@@ -76,6 +86,7 @@ void FirstOrderOde::derivative(double t, const State& y, State& dy, Part part) c
     dy.x.setZero();
   else
     dy.x = y.v;
+  if (ode_.memory) derive_memory(t, y, part, dy.z);
   evaluate(t, y, part, dy.v);
   dy.v.array() *= inverse_mass_.array();
   if (std::isfinite(dy.v.sum())) return;
@@ -85,8 +96,9 @@ void FirstOrderOde::derivative(double t, const State& y, State& dy, Part part) c
 }
 
 void FirstOrderOde::update_derivatives(double t, const State& y, Part part) const {
+  if (ode_.memory) ode_.memory->begin(1, t, y);
   if (part == Part::whole) return ode_.jacobian(t, y.x, y.v, scratch_.df_dx, scratch_.df_dv);
-  scratch_.df_dx = threefold(ode_.stiffness);
+  scratch_.df_dx = threefold(ode_.memory ? ode_.memory->stiffness() : ode_.stiffness);
   scratch_.df_dv = threefold(ode_.damping);
 }
 

@@ -9,17 +9,21 @@ enum class Part { whole, linear, remainder };
 
 /// The split equation of motion as  dy/dt = g(t, y)  for a general ODE solver.
 ///
-/// y = (positions [m], velocities [m/s]) of all coordinates, as forces read them: nothing is gathered or scattered. Pinned
-/// coordinates have no acceleration, so that they keep their prescribed velocities and move linearly, which every method
-/// reproduces to round-off; they are not unknowns. dx/dt = v belongs to the linear part. The ODE must outlive this object.
-/// Evaluations throw std::runtime_error if the result is not finite.
+/// y = (positions [m], velocities [m/s]) of all coordinates with the internal variables, as forces read them: nothing is
+/// gathered or scattered. Pinned coordinates have no acceleration, so that they keep their prescribed velocities and move
+/// linearly, which every method reproduces to round-off; they are not unknowns. dx/dt = v belongs to the linear part. The ODE
+/// must outlive this object. Evaluations throw std::runtime_error if the result is not finite.
 class FirstOrderOde {
  public:
   /// Throws std::invalid_argument if the state does not fit the ODE, or if all coordinates are pinned.
   FirstOrderOde(const solver::SplitOde& ode, const solver::State& start, double t0);
 
-  /// The unknowns, 2n: positions and velocities of the n free coordinates, in the order of their index 3i + c.
+  /// Positions and velocities of the n free coordinates, 2n, in the order of their index 3i + c: the unknowns of Newton's
+  /// matrix.
   int size() const { return 2 * static_cast<int>(coordinates_.free.size()); }
+
+  /// All unknowns: these and the internal variables.
+  int unknowns() const { return size() + static_cast<int>(start_.z.size()); }
 
   /// The start with the prescribed velocities.
   const solver::State& initial() const { return start_; }
@@ -38,7 +42,7 @@ class FirstOrderOde {
 
   const solver::SplitOde& ode() const { return ode_; }
 
-  /// The unknowns of a state.
+  /// The unknowns of a state but the internal variables.
   Eigen::VectorXd gather(const solver::State& y) const;
 
   /// Sets the unknowns of a state.
@@ -53,6 +57,7 @@ class FirstOrderOde {
   };
 
   void evaluate(double t, const solver::State& y, Part part, solver::Vectors& f) const;
+  void derive_memory(double t, const solver::State& y, Part part, Eigen::VectorXd& dz) const;
   void update_derivatives(double t, const solver::State& y, Part part) const;
 
   /// Hands all entries of ∂g/∂y to add(row, column, value), in the order in which they are stored.

@@ -38,6 +38,15 @@ void FirstOrderNewton::solve(double t, const State& y, const State& dy, double g
   z.x.setZero();
   z.v.setZero();
   ode_.scatter(unknowns, z);
+  solve_memory(y, gamma, r, z);
+}
+
+/// The internal variables follow the positions. What they do to the forces is left out: they are a small part.
+void FirstOrderNewton::solve_memory(const State& y, double gamma, const State& r, State& z) {
+  if (!ode_.ode().memory || part_ == Part::linear)
+    z.z = r.z;
+  else
+    ode_.ode().memory->respond(gamma, y, r.z, z);
 }
 
 void FirstOrderNewton::solve_reduced(double t, const State& y, const State& dy, const State& r, State& z) {
@@ -48,6 +57,7 @@ void FirstOrderNewton::solve_reduced(double t, const State& y, const State& dy, 
   right_ = mass.asDiagonal() * r.v + gamma * right_;
   z.v = reduced_->solve(right_);
   z.x = r.x + gamma * z.v;
+  solve_memory(y, gamma, r, z);
 }
 
 }  // namespace drape::reference::sundials_tools

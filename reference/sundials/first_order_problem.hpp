@@ -21,6 +21,7 @@ class FirstOrderNewton {
   void solve(double t, const solver::State& y, const solver::State& dy, double gamma, const solver::State& r, solver::State& z);
 
  private:
+  void solve_memory(const solver::State& y, double gamma, const solver::State& r, solver::State& z);
   void solve_reduced(double t, const solver::State& y, const solver::State& dy, const solver::State& r, solver::State& z);
 
   const FirstOrderOde& ode_;
@@ -60,7 +61,7 @@ struct FirstOrderProblem {
 
 /// A vector with the start of a first-order ODE.
 inline Owned<N_Vector> start_vector(const FirstOrderOde& ode, Session& session) {
-  return Owned<N_Vector>(require_created(make_state_vector({ode.initial(), {}, ode.size()}, session.context())));
+  return Owned<N_Vector>(require_created(make_state_vector({ode.initial(), {}, ode.unknowns()}, session.context())));
 }
 
 /// The absolute tolerances of (x, v), which other vectors are like.
@@ -68,6 +69,7 @@ inline Owned<N_Vector> absolute_tolerances(const Owned<N_Vector>& like, double d
   Owned<N_Vector> atol = clone(like);
   state(atol.get()).x.setConstant(options.rtol * options.size);
   state(atol.get()).v.setConstant(options.rtol * options.size / duration * options.tuning.velocity_weight);
+  state(atol.get()).z.setConstant(options.rtol);
   return atol;
 }
 

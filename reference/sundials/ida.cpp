@@ -300,6 +300,7 @@ Ida::Ida(ResidualForm& form, const solver::SplitOde& ode, double t0, double end,
 ConstrainedTrajectory ida(const solver::SplitOde& ode, const State& y0, double t0, std::span<const double> times,
                           const SolveOptions& options) {
   check(times, t0, options);
+  if (ode.memory) throw ReferenceError("IDA: expected forces without internal variables", "memory", t0);
   ResidualForm form(ode, y0, t0);
   Ida solver(form, ode, t0, times.back(), options);
   ConstrainedTrajectory result{{{times.begin(), times.end()}, {}}, {}};

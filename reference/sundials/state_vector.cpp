@@ -22,29 +22,35 @@ Array velocities(N_Vector vector) {
   auto& v = content(vector).state.v;
   return {v.data(), v.size()};
 }
+Array internal_variables(N_Vector vector) {
+  auto& z = content(vector).state.z;
+  return {z.data(), z.size()};
+}
 Array reactions(N_Vector vector) {
   auto& all = content(vector).reactions;
   return {all.data(), all.size()};
 }
 
-/// Calls operation(block of each vector) for positions, velocities and reactions.
+/// Calls operation(block of each vector) for positions, velocities, internal variables and reactions.
 template <class Operation, class... Vector>
 void each(const Operation& operation, Vector... vectors) {
   operation(positions(vectors)...);
   operation(velocities(vectors)...);
+  operation(internal_variables(vectors)...);
   operation(reactions(vectors)...);
 }
 
 /// The sum over the blocks of what reduce(block of each vector) returns.
 template <class Reduce, class... Vector>
 double total(const Reduce& reduce, Vector... vectors) {
-  return reduce(positions(vectors)...) + reduce(velocities(vectors)...) + reduce(reactions(vectors)...);
+  return reduce(positions(vectors)...) + reduce(velocities(vectors)...) + reduce(internal_variables(vectors)...) +
+         reduce(reactions(vectors)...);
 }
 
 /// Calls operation(segment) for all chunks of all blocks, where segment(vector) is that chunk of a vector.
 template <class Operation>
 void each_chunk(N_Vector like, const Operation& operation) {
-  for (Array (*const block)(N_Vector) : {positions, velocities, reactions}) {
+  for (Array (*const block)(N_Vector) : {positions, velocities, internal_variables, reactions}) {
     const Eigen::Index size = block(like).size();
     for (Eigen::Index first = 0; first < size; first += chunk)
       operation([=](N_Vector vector) { return block(vector).segment(first, std::min(chunk, size - first)); });

@@ -8,8 +8,9 @@
 
 namespace drape::reference::sundials_tools {
 
-/// What a vector of SUNDIALS holds here: N × 3 positions and velocities (or what corresponds to them: derivatives, residuals,
-/// weights), so that forces read and write it in place, and for IDA one reaction for each pinned coordinate.
+/// What a vector of SUNDIALS holds here: N × 3 positions and velocities and the internal variables (or what corresponds to
+/// them: derivatives, residuals, weights), so that forces read and write it in place, and for IDA one reaction for each pinned
+/// coordinate.
 struct StateVector {
   solver::State state;
   Eigen::VectorXd reactions = {};

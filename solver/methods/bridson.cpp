@@ -37,6 +37,7 @@ bool whole_bridson_step(Step& s, double substeps) {
     y.x += tau * y.v;
     ahead = y.v + 0.5 * delta;
     s.ode.force(s.t + k * tau, y.x, ahead, f);
+    s.pass(s.t + k * tau, y);
     if (limit_narrowed(s, bridson_step_limit, s.t + k * tau, ahead, alternates(s, f, weight))) return false;
     if (k == substeps) break;
     f.array() = tau * f.array() - delta.array().colwise() * s.ode.mass.array();

@@ -48,6 +48,7 @@ bool whole_rk4_step(Step& s, double substeps) {
   s.y1() = s.y0();
   for (double k = 0; k < substeps; ++k) {
     step(s.ode, s.t + k * tau, tau, s.y1());
+    s.pass(s.t + (k + 1) * tau, s.y1());
     if (limit_narrowed(s, rk4_step_limit, s.t + (k + 1) * tau, s.y1().v, false)) return false;
   }
   return true;

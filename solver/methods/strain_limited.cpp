@@ -55,6 +55,7 @@ bool whole_soft_step(Step& s, double substeps) {
     }
     y.v += (y.x - before) / tau;
     softened.force(s.ode, s.t + k * tau, y.x, y.v, f);
+    s.pass(s.t + k * tau, y);
     if (limit_narrowed(s, soft_step_limit, s.t + k * tau, y.v, alternates(s, f, weight))) return false;
     y.v.array() += 0.5 * tau * weight.array() * f.array();
   }

@@ -31,6 +31,7 @@ bool sub_steps(Step& s, double tau, double count) {
   for (double k = 1; k <= count; ++k) {
     advance(k == 1 ? 0.5 * tau : tau);
     s.ode.force(s.t + k * tau, s.y1().x, s.scratch.av, s.next.f);
+    s.pass(s.t + k * tau, s.y1());
     if (narrowed(s, s.t + k * tau, s.next.f)) return false;
   }
   s.y1().v.array() += (0.5 * tau) * s.scratch.ax.array() * s.next.f.array();
@@ -50,6 +51,7 @@ bool sub_steps_with_impacts(Step& s, double tau, double count) {
     y.v += (0.5 * tau) * a;                // the half of a0
     s.scratch.av = y.v + (0.5 * tau) * a;  // the velocity that a1 is evaluated with
     s.ode.force(s.t + k * tau, y.x, s.scratch.av, a);
+    s.pass(s.t + k * tau, y);
     if (narrowed(s, s.t + k * tau, a)) return false;
     a.array() *= s.scratch.ax.array();
     y.v += (0.5 * tau) * a;

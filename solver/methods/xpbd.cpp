@@ -23,6 +23,7 @@ void project_in_sub_steps(Step& s, void (Projection::*sweep)(Vectors&)) {
     for (int n = 0; n < s.options.sweeps; ++n) (projection.*sweep)(y.x);
     y.v = (y.x - before) / tau;
     prescribe(s.ode.pins, y.v);
+    s.pass(s.t + (k + 1) * tau, y);
   }
 }
 

@@ -30,6 +30,9 @@ class StageSolver {
   /// explicit.
   const Vectors& solve_damping(double gamma, const Vectors& r, StageResult& result);
 
+  /// K has changed.
+  void renew() { system_.renew(); }
+
   /// Whether the next stage is accelerated.
   bool accelerates() const { return accelerated_ && !system_.touches(); }
 

@@ -102,6 +102,12 @@ Outcome StageSystem::prepare(double gamma, double inertia, double different) {
   return near ? Outcome::success : make(gamma, gamma * gamma, inertia);
 }
 
+void StageSystem::renew() {
+  stiffness_ = array(Merged(ode_).k);
+  spring_ = thrice(ode_.stiffness.diagonal());
+  gamma_ = 0;
+}
+
 Outcome StageSystem::prepare_damping(double gamma) { return gamma == gamma_ ? Outcome::success : make(gamma, 0, 1); }
 
 Outcome StageSystem::make(double gamma, double springs, double inertia) {

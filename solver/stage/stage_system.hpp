@@ -30,6 +30,9 @@ class StageSystem {
   /// Assembles and factors M − γ D in place of A, for methods whose springs are explicit.
   Outcome prepare_damping(double gamma);
 
+  /// K has changed: A is assembled again before the next stage.
+  void renew();
+
   /// γ of A [s].
   double gamma() const { return gamma_; }
 

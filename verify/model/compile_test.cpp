@@ -33,7 +33,7 @@ std::map<std::string, std::int64_t> counts(const SplitOde& ode) {
 std::map<std::string, std::int64_t> work_of(const Cloth& cloth) {
   Vectors f;
   SparseMatrix dx, dv;
-  const auto& [x, v] = cloth.start;
+  const auto& [x, v, z] = cloth.start;
   for (int k = 0; k < 3; ++k) cloth.ode.force(0, x, v, f);
   for (int k = 0; k < 2; ++k) cloth.ode.explicit_force(0, x, v, f);
   cloth.ode.jacobian(0, x, v, dx, dv);
@@ -129,7 +129,7 @@ TEST(Compile, DescribesThePlanInOneLine) {
   scene.pins = {{.where = "corners", .particles = {}, .directions = {true, false, true}}};
   EXPECT_EQ(to_string(compile(scene).plan),
             "20 particles, 8 of 60 degrees of freedom pinned; forces: tension, damping, printed-shear, contraction, plate, "
-            "gravity; normals: yes; obstacles: 0; entries of K: 82, of D: 82");
+            "gravity; normals: yes; internal variables: 0; obstacles: 0; entries of K: 82, of D: 82");
   EXPECT_THAT(to_string(compile(Scene{}).plan), testing::HasSubstr("forces: none; normals: no"));
 }
 

@@ -61,7 +61,7 @@ class NodalLoad {
   const Vectors& at(double t) {
     if (t == time_) return load_;
     time_ = t;
-    const auto [x, v] = nodes_.state(t);
+    const auto [x, v, z] = nodes_.state(t);
     force_(t, x, v, load_);
     for (int i = 0; i < x.rows(); ++i) load_.row(i) = mass_[i] * nodes_.jet(i, t).acceleration.transpose() - load_.row(i);
     return load_;

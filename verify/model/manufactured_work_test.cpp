@@ -34,7 +34,7 @@ Eigen::MatrixXd fields(const Grid& grid, const Motion& motion) {
 
 /// Σ (f − m a) φ over the particles: the norm over all fields φ and directions [J].
 double work(const Problem& problem, const Grid& grid, const Motion& motion) {
-  const auto [x, v] = problem.start;
+  const auto [x, v, z] = problem.start;
   Vectors rest(x.rows(), 3);
   problem.ode.force(start_time, x, v, rest);
   const Nodes nodes(grid, surface(motion));
@@ -69,7 +69,7 @@ std::vector<Case> cases() {
     for (const Motion& motion : motions()) {
       const bool consistent = force.material.shear_form == ShearForm::conservative &&
                               force.material.bend_form < BendForm::printed && force.gravity.isZero() && !force.wind.blows() &&
-                              force.air == 0;
+                              force.air == 0 && !force.material.weft_curve.given();  // the continuum's stress is k ε
       if (consistent && acts(force.name, motion)) all.emplace_back(force.name, motion);
     }
   for (const Motion& motion : motions())

@@ -73,7 +73,8 @@ TEST(MeanForce, IsNotTheForceInTheMiddleUnlessTheEnergyIsQuadratic) {
 }
 
 TEST(MeanForce, DoesNotExistWithoutAnEnergy) {
-  const std::pair<std::string, std::string> without[] = {{"printed_shear", "printed-shear"},
+  const std::pair<std::string, std::string> without[] = {{"curves", "curves"},
+                                                         {"printed_shear", "printed-shear"},
                                                          {"membrane", "membrane"},
                                                          {"plate", "plate"},
                                                          {"printed_plate", "printed-plate"},

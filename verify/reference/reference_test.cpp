@@ -94,7 +94,7 @@ TEST(Reference, MovesPinnedCoordinatesExactly) {
   const auto trajectory = reference::cvode(problem.ode, problem.start, t0, times);
   for (std::size_t i = 0; i < times.size(); ++i) {
     const double t = times[i] - t0;
-    const auto& [x, v] = trajectory.states[i];
+    const auto& [x, v, z] = trajectory.states[i];
     EXPECT_EQ(x.row(1), Eigen::RowVector3d(0.5 * t, 0.3, 0.4));
     EXPECT_EQ(v.row(1), Eigen::RowVector3d(0.5, 0, 0));
     EXPECT_EQ(x.row(0).tail(2), Eigen::RowVector2d(0.2, 0.1 - 0.25 * t));

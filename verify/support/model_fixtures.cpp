@@ -14,6 +14,7 @@ std::vector<ForceCase> force_cases() {
   // clang-format off
   //                                                        energy   momentum angular dissipates rotation chains
   return {{"tension",             made_of(tension),           true,    true,    true,    true,     true,    true},
+          {"curves",              made_of(curves),            false,   true,    true,    true,     true,    true},
           {"linear_damping",      made_of(linear_damping),    false,   true,    true,    true,     false,   true},
           {"projected_damping",   made_of(projected_damping), false,   true,    true,    true,     true,    true},
           {"shear",               made_of(shear),             true,    true,    true,    true,     true,    false},

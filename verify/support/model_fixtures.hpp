@@ -26,6 +26,11 @@ using solver::Vectors;
 /// The parts of which materials are made. Weft and warp always differ, and the moduli give all forces about the same size on
 /// the grids below, so that none hides another.
 inline void tension(Material& m) { m.tension = {3, 2}; }
+inline void curves(Material& m) {
+  m.weft_curve = {model::Polyline({{0, 0}, {0.05, 0.2}, {0.4, 2.5}}), model::Polyline({{0.1, 0}, {0.8, 0.4}, {1, 1}})};
+  m.warp_curve = {model::Polyline({{0, 0}, {0.1, 0.2}, {0.3, 0.5}}), {}};
+  m.tension = {m.weft_curve.loading.slope(0), m.warp_curve.loading.slope(0)};
+}
 inline void linear_damping(Material& m) { m.damping = {0.7, 0.4}; }
 inline void projected_damping(Material& m) { linear_damping(m), m.damping_form = DampingForm::projected; }
 inline void shear(Material& m) { m.shear = 1.5, m.shear_damping = 0.6; }

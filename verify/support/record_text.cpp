@@ -38,7 +38,7 @@ std::string as_text(const results::RunRecord& run) {
   if (trajectory) {
     const auto& [nu, nv, times, states, stretch, constraint] = *trajectory;
     text += fmt::format("{} {} {} {}\n", nu, nv, times, constraint);
-    for (const auto& [x, v] : states) text += fmt::format("{} {}\n", vectors_as_text(x), vectors_as_text(v));
+    for (const solver::State& y : states) text += fmt::format("{} {}\n", vectors_as_text(y.x), vectors_as_text(y.v));
     for (const Eigen::VectorXd& strains : stretch) text += fmt::format("{}\n", fmt::join(strains, " "));
   }
   if (!error) return text;

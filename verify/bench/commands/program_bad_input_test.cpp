@@ -55,6 +55,8 @@ const std::vector<BadInput> bad_inputs = {
     {"NoValue", run_with("--step"), {"--step", "H1,H2"}},
     {"TwoUntils", run_with() + Words{"--until", "1"}, {"--until", "At Most 1"}},
 
+    {"FabricOfNoFile", {"fabric", "nowhere.json"}, {"nowhere.json"}},
+
     // Names.
     {"Kind", {"list", "colours"}, {"'colours'", "scenes, methods, studies"}},
     {"Scene", run_with("--scene", {"flag"}), {"'flag'", "hung-corners, hung-edge", ".toml"}},

@@ -40,6 +40,34 @@ Words all_methods() {
 }
 const Words methods = all_methods();
 
+TEST(ProgramFabric, MakesKeysOfAMaterialOfArcsim) {
+  const BenchIntegrators program;
+  program.write("denim.json", R"({"density": 0.324, "stretching": [[205.352005, 10.234077, 1013.88629, 53.387184], [1, 2, 3, 4],
+    [1, 2, 3, 4], [1, 2, 3, 4], [1, 2, 3, 4], [1, 2, 3, 4]],
+    "bending": [[6e-5, 1, 1, 1, 1], [7e-5, 1, 1, 1, 1], [9e-5, 1, 1, 1, 1]]})");
+  const std::string keys = program.output({"fabric", "denim.json"});
+  EXPECT_THAT(keys, HasSubstr("[material]\ndensity = 0.324  # kg/m²\ntension = [410.70401, 2027.77258]  # N/m\n"));
+  EXPECT_THAT(keys, HasSubstr("bend = [6e-05, 9e-05]  # N m\n"));
+}
+
+TEST(ProgramFabric, RefusesInOneLineWhatIsNoMaterial) {
+  const BenchIntegrators program;
+  const auto refused = [&](const std::string& json, const std::string& why) {
+    program.write("x.json", json);
+    const ProgramResult result = program.run({"fabric", "x.json"});
+    EXPECT_EQ(result.exit_code, 2) << json;
+    EXPECT_THAT(result.err, AllOf(HasSubstr("x.json: " + why), EndsWith("\n")));
+    EXPECT_EQ(std::ranges::count(result.err, '\n'), 1) << result.err;
+    EXPECT_EQ(result.out, "");
+  };
+  refused("{", "expected a JSON object with density, stretching and bending");
+  refused("[1]", "expected a JSON object");
+  refused("{}", "expected the key \"density\"");
+  refused(R"({"density": "1"})", "density: expected finite numbers");
+  refused(R"({"density": -1})", "density: expected a number above 0");
+  refused(R"({"density": 1, "stretching": [[1, 2, 3, 4]]})", "stretching: expected 6 rows of 4 numbers");
+}
+
 // --- Names ---------------------------------------------------------------------------------------------------------------
 
 TEST(ProgramList, HasTheNamesThatOtherProgramsRelyOn) {
@@ -54,7 +82,7 @@ TEST(ProgramList, HasTheNamesThatOtherProgramsRelyOn) {
 TEST(ProgramList, DescribesTheNamesOfAllKinds) {
   const BenchIntegrators program;
   const Words all = lines(program.output({"list"}));
-  for (const std::string kind : {"scenes", "methods", "studies"}) {
+  for (const std::string kind : {"scenes", "methods", "studies", "fabrics"}) {
     EXPECT_THAT(all, Contains(kind + ":"));
     for (const std::string& name : lines(program.output({"list", kind})))
       EXPECT_THAT(all, Contains(MatchesRegex("  " + name + "  +[^ ].+")));
@@ -101,13 +129,14 @@ TEST(ProgramHelp, OfTheOthersSaysWhatTheyTake) {
   const BenchIntegrators program;
   expect_all_in(program.output({"study", "--help"}),
                 {"study [OPTIONS] NAME", "--quick", "--repeat R", "--out FILE.h5", "--format table|csv|json", "hung-sheets"});
-  expect_all_in(program.output({"list", "--help"}), {"list [OPTIONS] [KIND]", "scenes, methods or studies"});
+  expect_all_in(program.output({"list", "--help"}), {"list [OPTIONS] [KIND]", "scenes, methods, studies or fabrics"});
 }
 
 /// All that reads like help, wherever it is printed.
 std::map<std::string, std::string> helps(const BenchIntegrators& program) {
   std::map<std::string, std::string> texts{{"list", program.output({"list"})}, {"", program.output({"--help"})}};
-  for (const std::string command : {"list", "run", "study", "inspect", "compare", "check", "report", "export", "score"})
+  for (const std::string command :
+       {"list", "run", "study", "inspect", "compare", "check", "report", "export", "fabric", "score"})
     texts[command + " --help"] = program.output({command, "--help"});
   return texts;
 }

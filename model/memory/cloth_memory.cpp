@@ -1,0 +1,73 @@
+#include "model/memory/cloth_memory.hpp"
+
+#include <utility>
+
+namespace drape::model {
+
+using solver::State;
+
+ClothMemory::ClothMemory(solver::Counters& work)
+    : updates_(work.counter("memory_updates", "updates of all internal variables, at ends of steps and of sub-steps")) {}
+
+void ClothMemory::add(std::shared_ptr<TermMemory> memory) {
+  const int first = variables_;
+  variables_ += memory->variables();
+  parts_.push_back({std::move(memory), first});
+}
+
+void ClothMemory::begin(int order, double t, const State& y) {
+  for (const Part& part : parts_) part.memory->begin(order, t, y, y.z.segment(part.first, part.memory->variables()));
+}
+
+void ClothMemory::pass(double t, const State& y) {
+  for (const Part& part : parts_) part.memory->pass(t, y, y.z.segment(part.first, part.memory->variables()));
+}
+
+void ClothMemory::carry(double t, State& y) {
+  ++updates_;
+  y.z.resize(variables_);
+  for (const Part& part : parts_) part.memory->carry(t, y, y.z.segment(part.first, part.memory->variables()));
+}
+
+void ClothMemory::rate(const State& y, Eigen::VectorXd& dz) const {
+  dz.resize(variables_);
+  for (const Part& part : parts_) {
+    const int count = part.memory->variables();
+    part.memory->rate(y, y.z.segment(part.first, count), dz.segment(part.first, count));
+  }
+}
+
+void ClothMemory::respond(double gamma, const State& y, const Eigen::VectorXd& r, State& d) const {
+  d.z.resize(variables_);
+  for (const Part& part : parts_) {
+    const int count = part.memory->variables();
+    part.memory->respond(gamma, y, r.segment(part.first, count), d, d.z.segment(part.first, count));
+  }
+}
+
+std::int64_t ClothMemory::stiffness_changes() const {
+  std::int64_t changes = 0;
+  for (const Part& part : parts_) changes += part.memory->stiffness_changes();
+  return changes;
+}
+
+const solver::SparseMatrix& ClothMemory::stiffness() {
+  const std::int64_t changes = stiffness_changes();
+  if (changes == changes_known_) return stiffness_;
+  changes_known_ = changes;
+  std::vector<Eigen::Triplet<double>> entries;
+  for (const Part& part : parts_) part.memory->add_stiffness(entries);
+  solver::SparseMatrix changing(constant_.rows(), constant_.cols());
+  changing.setFromTriplets(entries.begin(), entries.end());
+  stiffness_ = constant_ + changing;
+  return stiffness_;
+}
+
+double ClothMemory::energy(const State& y) const {
+  if (y.z.size() == 0) return 0;  // a motion from elsewhere
+  double energy = 0;
+  for (const Part& part : parts_) energy += part.memory->energy(y, y.z.segment(part.first, part.memory->variables()));
+  return energy;
+}
+
+}  // namespace drape::model

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "model/memory/term_memory.hpp"
+#include "solver/counters.hpp"
+
+namespace drape::model {
+
+/// The memories of all forces of a sheet, one after the other in z.
+class ClothMemory final : public solver::Memory {
+ public:
+  explicit ClothMemory(solver::Counters& work);
+
+  void add(std::shared_ptr<TermMemory> memory);
+
+  int variables() const override { return variables_; }
+  void begin(int order, double t, const solver::State& y) override;
+  void pass(double t, const solver::State& y) override;
+  void carry(double t, solver::State& y) override;
+  void rate(const solver::State& y, Eigen::VectorXd& dz) const override;
+  void respond(double gamma, const solver::State& y, const Eigen::VectorXd& r, solver::State& d) const override;
+  std::int64_t stiffness_changes() const override;
+  const solver::SparseMatrix& stiffness() override;
+  double energy(const solver::State& y) const override;
+
+  /// The part of K that never changes.
+  void set_stiffness(solver::SparseMatrix constant) { constant_ = std::move(constant); }
+
+ private:
+  struct Part {
+    std::shared_ptr<TermMemory> memory;
+    int first;  ///< of its variables
+  };
+
+  std::vector<Part> parts_;
+  int variables_ = 0;
+  solver::SparseMatrix constant_, stiffness_;
+  std::int64_t changes_known_ = -1;  ///< to `stiffness_`
+  std::int64_t& updates_;
+};
+
+}  // namespace drape::model

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace drape::model {
+
+/// A continuous piecewise affine function through points with increasing arguments. Beyond its ends it goes on with the slopes
+/// that it has there.
+class Polyline {
+ public:
+  using Point = std::array<double, 2>;
+
+  Polyline() = default;
+  explicit Polyline(std::vector<Point> points) : points_(std::move(points)) {}
+
+  const std::vector<Point>& points() const { return points_; }
+  bool empty() const { return points_.empty(); }
+
+  /// At least two points.
+  double value(double x) const;
+  double slope(double x) const;
+
+  /// From the first point to x.
+  double integral(double x) const;
+
+  bool operator==(const Polyline&) const = default;
+
+ private:
+  std::size_t piece(double x) const;
+
+  std::vector<Point> points_;
+};
+
+/// A measured curve of stress over strain [Etzmuß 2002, 2.1.3]: on its loading branch σ = L(ε) where the strain is the largest
+/// ever, ε_m; else on the unloading branch σ = L(ε_m) u(ε/ε_m), which joins it at ε_m and is taken in both directions. u
+/// vanishes up to the residual strain over ε_m. Compression follows the first slope of L. (The thesis does not say how branches
+/// join.)
+struct StressCurve {
+  Polyline loading;    ///< L [N/m], from (0, 0)
+  Polyline unloading;  ///< u, from (residual part, 0) to (1, 1); empty: what is loading is unloading as well
+
+  bool given() const { return !loading.empty(); }
+
+  double stress(double strain, double largest) const;
+
+  /// dσ/dε of the branch on which the strain is [N/m].
+  double slope(double strain, double largest) const;
+
+  /// What can be got back on the way to zero strain [J/m²].
+  double recoverable(double strain, double largest) const;
+
+  bool operator==(const StressCurve&) const = default;
+
+ private:
+  bool unloads(double strain, double largest) const { return !unloading.empty() && strain >= 0 && strain < largest; }
+};
+
+}  // namespace drape::model
