@@ -8,7 +8,7 @@ namespace drape::solver {
 
 /// What forces remember of the motion: internal variables z that belong to the state, dz/dt = g(x, v, z).
 ///
-/// The variables are no unknowns of a stage. They change where a step is accepted; within a step forces at (t, x, v) are those
+/// The variables are not unknowns of a stage. They change where a step is accepted; within a step forces at (t, x, v) are those
 /// of a motion that goes from the last accepted state to (x, v) on a polynomial path, along which z is found exactly. So within
 /// a step the force is a smooth function of t, x and v, and a method keeps its order if the path is as accurate as the method:
 /// linear in time up to order 2, the cubic with the velocities of both ends up to order 4, and beyond the quintic with

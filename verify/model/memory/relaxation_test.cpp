@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string_view>
 #include <unsupported/Eigen/MatrixFunctions>
 
 #include "model/cloth.hpp"
@@ -131,6 +132,26 @@ TEST_P(Remembering, HasTheDeclaredOrder) {
     EXPECT_TRUE(has_order(x, method.order, tolerance)) << "positions, unequal = " << unequal;
     EXPECT_TRUE(has_order(v, method.order, tolerance)) << "velocities, unequal = " << unequal;
     EXPECT_TRUE(has_order(z, method.order, tolerance)) << "internal variables, unequal = " << unequal;
+  }
+}
+
+/// A step of n sub-steps is n steps: also to what is remembered.
+TEST(Relaxation, IsRememberedFromSubStepToSubStep) {
+  for (const char* name : {"verlet", "rk4-substeps", "bridson", "xpbd"}) {
+    const Cloth whole = model::compile(chain()), parted = model::compile(chain());
+    solver::Options options = tight();
+    const bool projects = std::string_view(name) == "xpbd";
+    solver::Integrator one(whole.ode, solver::method(name), options, whole.start);
+    ASSERT_EQ(one.step(duration).outcome, Outcome::success) << name;
+    const auto count = projects ? options.sub_steps : whole.ode.work->counter("substeps", "");
+    ASSERT_GE(count, 3) << name;
+    options.sub_steps = 1;
+    solver::Integrator many(parted.ode, solver::method(name), options, parted.start);
+    for (int k = 0; k < count; ++k)
+      ASSERT_EQ(many.step(duration / static_cast<double>(count)).outcome, Outcome::success) << name;
+    EXPECT_LT((one.state().x - many.state().x).norm(), 1e-10) << name;
+    EXPECT_LT((one.state().z - many.state().z).norm(), 1e-10) << name;
+    EXPECT_GT(one.state().z.norm(), 1e-3) << name;
   }
 }
 
