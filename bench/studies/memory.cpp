@@ -198,7 +198,7 @@ struct MemoryCost {
   std::string method;
   std::int64_t variables = 0, updates = 0, cg = 0, builds = 0, memory_updates = 0;
   std::optional<double> error = {}, uncertainty = {};
-  std::string outcome;
+  std::string outcome = {};
   std::vector<double> times = {};
 };
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(MemoryCost, quality, method, variables, updates, cg, builds, memory_updates, error,
@@ -240,7 +240,7 @@ std::vector<MemoryCost> costs_of(double quality, bool quick, Checkpoint& checkpo
   for (const solver::Method& method : solver::thesis_methods()) {
     group.push_back({scene, "", &method, cost_step, {}});
     const results::RunRecord run = record(group.back());
-    MemoryCost row{quality, std::string(method.name), cloth.plan.internal_variables};
+    MemoryCost row{.quality = quality, .method = std::string(method.name), .variables = cloth.plan.internal_variables};
     row.updates = results::work_count(run, "updates");
     row.cg = results::work_count(run, "cg_iterations");
     row.builds = results::work_count(run, "matrix_builds");
