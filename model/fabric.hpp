@@ -17,10 +17,10 @@ struct Fabric {
 
   /// C11, C12, C22, C33 [N/m] of the energy ½ (C11 ε11² + 2 C12 ε11 ε22 + C22 ε22² + C33 ε12²) of Green's strain, which is to
   /// be doubled: at rest, and stretched by a sixth in directions of 0, 22.5, 45, 67.5 and 90 degrees from the weft.
-  std::array<std::array<double, 4>, 6> stretching;
+  std::array<std::array<double, 4>, 6> stretching = {};
 
   /// Bending stiffness [N m] along 0, 45 and 90 degrees from the weft, for five curvatures, the least first.
-  std::array<std::array<double, 5>, 3> bending;
+  std::array<std::array<double, 5>, 3> bending = {};
 };
 
 /// The fabrics of model/fabrics/, in the order of their names.
