@@ -1,7 +1,6 @@
 #pragma once
 
 #include <memory>
-#include <utility>
 #include <vector>
 
 #include "model/memory/term_memory.hpp"
@@ -27,7 +26,7 @@ class ClothMemory final : public solver::Memory {
   double energy(const solver::State& y) const override;
 
   /// The part of K that never changes.
-  void set_stiffness(solver::SparseMatrix constant) { constant_ = std::move(constant); }
+  void set_stiffness(const solver::SparseMatrix& constant) { constant_ = constant; }
 
  private:
   struct Part {
