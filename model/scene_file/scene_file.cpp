@@ -151,6 +151,8 @@ Scene parse_scene(std::string_view toml, std::string_view origin, std::span<cons
   const std::string file(origin);
   toml::table root = parse(toml, origin);
   Origins origins;
+  if (std::ranges::any_of(overrides, [](const Override& change) { return change.key == "material.fabric"; }))
+    root.erase("material");  // the file's moduli would change the fabric's
   for (const Override& change : overrides) {
     origins[change.key] = "--set " + base::quoted(change.key);
     check_known(change.key, origins[change.key]);

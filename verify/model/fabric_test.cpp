@@ -47,6 +47,15 @@ TEST(Fabric, IsTheMaterialThatOtherKeysChange) {
   EXPECT_EQ(to_toml(model::parse_scene(to_toml(scene), "again.toml")), to_toml(scene));
 }
 
+/// The file's own moduli would leave nothing of it.
+TEST(Fabric, ThatIsSetReplacesTheMaterialOfTheScene) {
+  const model::Override changes[] = {{"material.damping", "0.5"}, {"material.fabric", "denim"}};
+  const Scene scene = model::load_scene("hung-corners", changes);
+  EXPECT_NEAR(scene.sheet.material.tension.weft, 411, 0.5);
+  EXPECT_EQ(scene.sheet.material.density, 0.324);
+  EXPECT_EQ(scene.sheet.material.damping.weft, 0.5);
+}
+
 class AnyFabric : public testing::TestWithParam<Fabric> {};
 INSTANTIATE_TEST_SUITE_P(, AnyFabric, testing::ValuesIn(model::fabrics()), [](const auto& test) {
   std::string name = test.param.name;
