@@ -86,6 +86,11 @@ Integrator::Integrator(const SplitOde& ode, const Method& method, const Options&
     throw std::invalid_argument("method '" + std::string(method.name) + "': expected elastic forces with energies, not '" +
                                 ode.without_energy.front() + "'");
   const LinearCounters registered(*ode.work);  // so that explicit methods record zeros
+  if (ode.memory) {
+    ode.memory->begin(method.order, t0, state());
+    stiffness_changes_ = ode.memory->stiffness_changes();
+    own_->stiffness = ode.memory->stiffness();
+  }
   if (method.implicit()) {
     ContactResponse* const contacts = ode.contacts ? &contacts_.emplace(step_.ode) : nullptr;
     step_.stage = &stage_.emplace(step_.ode, options_, contacts);
@@ -94,12 +99,6 @@ Integrator::Integrator(const SplitOde& ode, const Method& method, const Options&
   }
   if (method.stages == Method::Stages::linearised) step_.linearised = &linearised_.emplace(step_.ode);
   if (method.stages == Method::Stages::exponential) step_.phi = &phi_.emplace(step_.ode);
-  if (ode.memory) {
-    ode.memory->begin(method.order, t0, state());
-    stiffness_changes_ = ode.memory->stiffness_changes();
-    own_->stiffness = ode.memory->stiffness();
-    if (stage_) stage_->renew();
-  }
   ode.work->counter("history_states", "states before the current one that the method keeps") = method.history - 1;
 }
 

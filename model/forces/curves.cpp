@@ -2,7 +2,7 @@
 
 #include "model/forces/term.hpp"
 #include "model/memory/curve.hpp"
-#include "model/sheet/edges.hpp"
+#include "model/sheet/cells.hpp"
 
 namespace drape::model {
 namespace {
@@ -33,7 +33,7 @@ class CurvedTension final : public TermMemory {
   void add_jacobian(const Vectors& x, const JacobianEntries& entries) const;
 
  private:
-  static Eigen::Vector3d along_edge(const Edge& edge, const Vectors& x) { return x.row(edge.j) - x.row(edge.i); }
+  static Eigen::Vector3d along_edge(const Edge& edge, const Vectors& x) { return difference(x, {edge.i, edge.j}); }
   static double strain(const Edge& edge, const Vectors& x) { return along_edge(edge, x).norm() / edge.length - 1; }
 
   const StressCurve& curve(const Edge& edge) const { return edge.weft ? weft_ : warp_; }
@@ -86,11 +86,7 @@ double CurvedTension::energy(const State& y, const Variables& z) const {
 void CurvedTension::add_stiffness(std::vector<Eigen::Triplet<double>>& entries) const {
   for (int e = 0; e < variables(); ++e) {
     const Edge& edge = edges_[e];
-    const double weight = slope_[e] * edge.width / edge.length;
-    entries.emplace_back(edge.i, edge.i, -weight);
-    entries.emplace_back(edge.j, edge.j, -weight);
-    entries.emplace_back(edge.i, edge.j, weight);
-    entries.emplace_back(edge.j, edge.i, weight);
+    add_spring(entries, edge, slope_[e] * edge.width / edge.length);
   }
 }
 

@@ -13,15 +13,17 @@ std::vector<Edge> edges(const Grid& grid) {
   return all;
 }
 
+void add_spring(std::vector<Eigen::Triplet<double>>& entries, const Edge& edge, double weight) {
+  entries.emplace_back(edge.i, edge.i, -weight);
+  entries.emplace_back(edge.j, edge.j, -weight);
+  entries.emplace_back(edge.i, edge.j, weight);
+  entries.emplace_back(edge.j, edge.i, weight);
+}
+
 SparseMatrix spring_matrix(const Grid& grid, const std::function<double(const Edge&)>& weight) {
   std::vector<Eigen::Triplet<double>> entries;
   for (const Edge& edge : edges(grid)) {
-    const double w = weight(edge);
-    if (w == 0) continue;
-    entries.emplace_back(edge.i, edge.i, -w);
-    entries.emplace_back(edge.j, edge.j, -w);
-    entries.emplace_back(edge.i, edge.j, w);
-    entries.emplace_back(edge.j, edge.i, w);
+    if (const double w = weight(edge); w != 0) add_spring(entries, edge, w);
   }
   SparseMatrix matrix(grid.particles(), grid.particles());
   matrix.setFromTriplets(entries.begin(), entries.end());

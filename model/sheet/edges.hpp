@@ -22,7 +22,10 @@ std::vector<Edge> edges(const Grid& grid);
 /// The value of a modulus along an edge.
 inline double along(const WeftWarp& modulus, const Edge& edge) { return edge.weft ? modulus.weft : modulus.warp; }
 
-/// The N × N matrix of springs on all edges of weight ≠ 0: the weight at (i, j) and (j, i), minus it on their diagonals.
+/// Adds the entries of a spring on an edge: the weight at (i, j) and (j, i), minus it on the diagonal.
+void add_spring(std::vector<Eigen::Triplet<double>>& entries, const Edge& edge, double weight);
+
+/// The N × N matrix of springs on all edges of weight ≠ 0.
 SparseMatrix spring_matrix(const Grid& grid, const std::function<double(const Edge&)>& weight);
 
 /// The ends of an edge vector x_end − x_begin.

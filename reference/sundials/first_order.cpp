@@ -63,9 +63,11 @@ void FirstOrderOde::scatter(const Eigen::VectorXd& unknowns, State& y) const {
   }
 }
 
+const SparseMatrix& FirstOrderOde::stiffness() const { return ode_.memory ? ode_.memory->stiffness() : ode_.stiffness; }
+
 void FirstOrderOde::evaluate(double t, const State& y, Part part, Vectors& f) const {
   if (part != Part::linear) return (part == Part::whole ? ode_.force : ode_.explicit_force)(t, y.x, y.v, f);
-  solver::multiply(ode_.memory ? ode_.memory->stiffness() : ode_.stiffness, y.x, f);
+  solver::multiply(stiffness(), y.x, f);
   if (ode_.damping.nonZeros() == 0) return;
   solver::multiply(ode_.damping, y.v, scratch_.damping);
   f += scratch_.damping;
@@ -98,7 +100,7 @@ void FirstOrderOde::derivative(double t, const State& y, State& dy, Part part) c
 void FirstOrderOde::update_derivatives(double t, const State& y, Part part) const {
   if (ode_.memory) ode_.memory->begin(1, t, y);
   if (part == Part::whole) return ode_.jacobian(t, y.x, y.v, scratch_.df_dx, scratch_.df_dv);
-  scratch_.df_dx = threefold(ode_.memory ? ode_.memory->stiffness() : ode_.stiffness);
+  scratch_.df_dx = threefold(stiffness());
   scratch_.df_dv = threefold(ode_.damping);
 }
 

@@ -56,6 +56,7 @@ class FirstOrderOde {
     WideSparseMatrix jacobian = {};
   };
 
+  const solver::SparseMatrix& stiffness() const;  ///< K of now
   void evaluate(double t, const solver::State& y, Part part, solver::Vectors& f) const;
   void derive_memory(double t, const solver::State& y, Part part, Eigen::VectorXd& dz) const;
   void update_derivatives(double t, const solver::State& y, Part part) const;
