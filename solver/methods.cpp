@@ -28,6 +28,7 @@ void ros3p(Step& s);
 void rodas3(Step& s);
 void ros34pw2(Step& s);
 void ros2_w(Step& s);
+void ros34pw2_w(Step& s);
 void explicit_euler(Step& s);
 void explicit_midpoint(Step& s);
 void rk4(Step& s);
@@ -191,6 +192,12 @@ constexpr Method method_rows[] = {
      .order = 2,
      .stages = Stages::linear,
      .step = ros2_w,
+     .meets_obstacles = false},
+    {.name = "ros34pw2-w",
+     .description = "ROS34PW2 with the constant matrix, frozen where hk/d is large",
+     .order = 3,
+     .stages = Stages::linear,
+     .step = ros34pw2_w,
      .meets_obstacles = false},
     {.name = "explicit-euler",
      .description = "explicit Euler (3.4)",

@@ -125,11 +125,13 @@ void rodas3(Step& s) { rosenbrock(s, "rodas3"); }
 void ros34pw2(Step& s) { rosenbrock(s, "ros34pw2"); }
 
 // With the constant K and D in the place of the Jacobian.
-void ros2_w(Step& s) {
-  const RosenbrockTableau& T = base::find_named(rosenbrock_tableaus(), "Rosenbrock method", "ros2");
+void with_constant_matrix(Step& s, std::string_view name) {
+  const RosenbrockTableau& T = base::find_named(rosenbrock_tableaus(), "Rosenbrock method", name);
   const double gamma = T.gamma * s.h;
   rosenbrock(s, T, false,
              [&s, gamma](const State& r, State& z) { return s.accept(s.stage->solve_increment(gamma, s.y0(), r, z)); });
 }
+void ros2_w(Step& s) { with_constant_matrix(s, "ros2"); }
+void ros34pw2_w(Step& s) { with_constant_matrix(s, "ros34pw2"); }
 
 }  // namespace drape::solver

@@ -54,13 +54,14 @@ TEST_P(Rest, IsTheClosedFormSolution) {
 }
 
 TEST_P(Rest, NeedsNoWork) {
+  constexpr int most_linear_stages = 4;  // which are solved whatever is left of them
   for (const double tolerance : {1e-6, 1e-12, 0.0}) {
     SCOPED_TRACE(tolerance);
     Integrator integrator(sheet.cloth.ode, method, tolerances(tolerance, tolerance), {sheet.rest, 0 * sheet.rest});
     for (int k = 0; k < 10; ++k) {
       const StageResult result = integrator.step(step);
       ASSERT_EQ(result.outcome, Outcome::success);
-      EXPECT_TRUE(method.sub_steps || result.updates <= 2) << result.updates;
+      EXPECT_TRUE(method.sub_steps || result.updates <= most_linear_stages) << result.updates;
     }
     EXPECT_LE(sheet.distance(integrator.state()), 1e-12);
   }

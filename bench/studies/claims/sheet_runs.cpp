@@ -54,6 +54,13 @@ double distance_at_end(const model::Scene& scene, const results::RunRecord& run,
   return run.succeeded() ? reference::rms_distance(run.final_state.x, x) / model::size(scene) : NAN;
 }
 
+double largest_accurate_step(const model::Scene& scene, const std::string& method, const solver::Vectors& x, double part) {
+  constexpr int most_steps = 10'000;
+  for (int n = 10; n <= most_steps; n *= 2)
+    if (distance_at_end(scene, run_by(scene, method, scene.end / n), x) <= part) return scene.end / n;
+  return NAN;
+}
+
 double work_of(const results::RunRecord& run, const char* kind) {
   return run.succeeded() ? static_cast<double>(results::work_count(run, kind)) : NAN;
 }

@@ -135,6 +135,20 @@ std::vector<ClaimCase> resting_costs_little() {
   return cases;
 }
 
+/// A sheet that swings until shortly after it has met a box, or would have.
+std::vector<ClaimCase> contact_limits_the_step() {
+  constexpr double visible = 1e-2;  // part of the size
+  const auto step = [](const std::string& method, bool meets) {
+    model::Scene scene = with("box_swing", {{"end.time", "1"}});
+    if (!meets) scene.obstacles.clear();
+    return largest_accurate_step(scene, method, fine_motion(scene).motion.states.back().x, visible);
+  };
+  std::vector<ClaimCase> cases;
+  for (const char* method : {"implicit-euler", "bdf2", "midpoint"})
+    cases.push_back({method, step(method, true) / step(method, false), 0, 0, 0.999});
+  return cases;
+}
+
 /// Passes of BDF(2)'s loop with 2 to 4 of them a step, over those with constant steps of the first length.
 std::vector<ClaimCase> control_keeps_the_loop_effective() {
   std::vector<ClaimCase> cases;
@@ -289,6 +303,8 @@ constexpr Claim of_sheets[] = {
      order_of_table_3_1, "bench/run study table-3.1"},
     {"C-31", of_2002, "3.4.4", "IMEX and implicit solutions can hardly be told apart", "distance of both Euler methods", "1",
      imex_looks_like_implicit},
+    {"C-32", of_2002, "6.3", "the step is limited by contact, not by the method",
+     "step that ends within 1e-2 of the size, over that without the box", "1", contact_limits_the_step},
     {"C-33", of_2002, "3.2", "methods of first order move too slowly", "lag, d = 0.5", "s", first_order_is_slow},
     {"C-33b", of_2002, "3.2", "methods of second order do not", "lag, d = 0.5", "s", second_order_is_not},
     {"E-28", of_2002, "3.4.4", "SBDF(2) and BDF(2) reduce the work", "CG iterations over those of the Euler method", "1",

@@ -137,6 +137,16 @@ TEST(Ledger, FindsThatControlByPassesSavesThemWithLittleDamping) {
   EXPECT_EQ(verdict_on("C-27"), "only if d = 5, d = 0.5");
 }
 
+TEST(Ledger, FindsThatContactShortensStepsOfMethodsOfSecondOrder) {
+  DRAPE_SLOW();
+  EXPECT_EQ(verdict_on("C-32"), "only if bdf2, midpoint");
+}
+
+TEST(Ledger, FindsThatExponentialStepsAreLongWhereDampingLimitsVerlet) {
+  DRAPE_SLOW();
+  EXPECT_EQ(verdict_on("F-16"), "only if d = 50, d = 5");
+}
+
 TEST(Ledger, FindsThatAlphaMethodsLoseWhatIsPrescribed) {
   for (const char* id : {"F-17", "F-17b"}) EXPECT_EQ(verdict_on(id), "met: confirmed") << id;
 }

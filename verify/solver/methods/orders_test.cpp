@@ -28,6 +28,7 @@ std::vector<int> refinements(const Method& method) {
   if (method.name == "esdirk4") return {66, 102, 150, 216};
   if (method.name == "epirk4s3a") return {288, 384, 512, 640};
   if (method.order == 4) return {96, 192, 288, 384};
+  if (method.name == "ros34pw2-w") return {900, 1200, 1600, 2400};
   return {150, 300, 600, 1200, 2400};
 }
 
