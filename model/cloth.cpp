@@ -206,6 +206,13 @@ Eigen::VectorXd masses(const Sheet& sheet) {
   return mass;
 }
 
+/// The sheet of a scene with its rest shape.
+Sheet sheet_of(const Scene& scene) {
+  Sheet sheet = scene.sheet;
+  if (scene.rest == RestShape::start) sheet.rest = start(scene).x;
+  return sheet;
+}
+
 int count_fixed(const std::vector<solver::Pin>& pins) {
   int count = 0;
   for (const solver::Pin& pin : pins) count += pin.fixed[0] + pin.fixed[1] + pin.fixed[2];
@@ -279,7 +286,7 @@ Cloth compile(const Scene& scene) {
   Cloth cloth;
   cloth.start = start(scene);
   solver::SplitOde& ode = cloth.ode;
-  const auto forces = std::make_shared<Forces>(scene.sheet, *ode.work, cloth.plan);
+  const auto forces = std::make_shared<Forces>(sheet_of(scene), *ode.work, cloth.plan);
   ode.mass = masses(scene.sheet);
   ode.pins = pins(scene);
   ode.stiffness = forces->stiffness();

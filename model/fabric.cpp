@@ -10,21 +10,6 @@
 
 namespace drape::model {
 
-namespace {
-
-template <std::size_t rows, std::size_t columns>
-std::array<std::array<double, columns>, rows> table(const Value& value) {
-  std::array<std::array<double, columns>, rows> all{};
-  const std::vector<Value> lines = value.list(rows);
-  for (std::size_t i = 0; i < rows; ++i) {
-    const std::vector<Value> numbers = lines[i].list(columns);
-    for (std::size_t k = 0; k < columns; ++k) all[i][k] = numbers[k].number();
-  }
-  return all;
-}
-
-}  // namespace
-
 Fabric read_fabric(std::string_view toml, std::string_view name, std::string_view origin) {
   toml::table root;
   try {
@@ -37,12 +22,23 @@ Fabric read_fabric(std::string_view toml, std::string_view name, std::string_vie
     if (node == nullptr) throw SceneError(std::string(origin) + ": expected the key '" + std::string(key) + "'");
     return Value(*node, std::string(key), std::string(origin));
   };
-  return {.name = std::string(name),
-          .description = value("description").text(),
-          .source = value("source").text(),
-          .density = value("density").positive(),
-          .stretching = table<6, 4>(value("stretching")),
-          .bending = table<3, 5>(value("bending"))};
+  Fabric fabric{
+      .name = std::string(name), .description = value("description").text(), .source = value("source").text(), .material = {}};
+  const double density = value("density").positive();
+  if (root.contains("stretching")) {
+    fabric.material =
+        material_of(density, {.stretching = value("stretching").numbers<6, 4>(), .bending = value("bending").numbers<3, 5>()});
+    return fabric;
+  }
+  Material& m = fabric.material;
+  m.density = density;
+  m.tension = value("tension").weft_warp(&Value::positive);
+  m.shear = value("shear").positive();
+  m.bend = value("bend").weft_warp(&Value::positive);
+  const WeftWarp hysteresis = value("bend_hysteresis").weft_warp(&Value::non_negative);
+  m.friction.bend = {hysteresis.weft / 2, hysteresis.warp / 2};
+  fabric.drape = value("drape").part();
+  return fabric;
 }
 
 std::span<const Fabric> fabrics() {
@@ -54,14 +50,15 @@ std::span<const Fabric> fabrics() {
   return all;
 }
 
-Material material_of(const Fabric& fabric) {
-  const auto twice = [&](int column) { return std::max(0.0, 2 * fabric.stretching[0][column]); };
+Material material_of(double density, const FabricTables& tables) {
+  const auto twice = [&](int column) { return std::max(0.0, 2 * tables.stretching[0][column]); };
   Material material;
-  material.density = fabric.density;
+  material.tables = tables;
+  material.density = density;
   material.tension = {twice(0), twice(2)};
   material.contraction = twice(1);
   material.shear = twice(3) / 4;
-  material.bend = {std::max(0.0, fabric.bending[0][0]), std::max(0.0, fabric.bending[2][0])};
+  material.bend = {std::max(0.0, tables.bending[0][0]), std::max(0.0, tables.bending[2][0])};
   return material;
 }
 

@@ -28,6 +28,11 @@ struct Pleats {
   double degrees = 0;  ///< θ, the steepest
 };
 
+enum class RestShape {
+  flat,
+  start,  ///< the shape that the sheet begins with, as far as bending knows: pleats stay
+};
+
 /// Where and how the sheet begins: flat or pleated, stretched, moving as a whole.
 struct Start {
   Plane plane = Plane::horizontal;
@@ -46,6 +51,7 @@ struct Scene {
   std::vector<ObstacleRule> obstacles;
   ContactRule contact;
   Start start;
+  RestShape rest = RestShape::flat;
   double end = 1;  ///< [s]
 };
 

@@ -30,12 +30,13 @@ class ArcsimMaterial {
     if (!json_.is_object()) fail("expected a JSON object with density, stretching and bending");
   }
 
-  model::Fabric fabric() const {
-    model::Fabric fabric{.name = {}, .description = {}, .source = {}, .density = number(member("density"), "density")};
-    if (!(fabric.density > 0)) fail("density: expected a number above 0");
-    read("stretching", fabric.stretching);
-    read("bending", fabric.bending);
-    return fabric;
+  model::Material material() const {
+    const double density = number(member("density"), "density");
+    if (!(density > 0)) fail("density: expected a number above 0");
+    model::FabricTables tables;
+    read("stretching", tables.stretching);
+    read("bending", tables.bending);
+    return model::material_of(density, tables);
   }
 
  private:
@@ -75,10 +76,13 @@ class ArcsimMaterial {
 
 void convert(const std::string& file) {
   model::Scene scene;
-  scene.sheet.material = material_of(ArcsimMaterial(file).fabric());
-  fmt::print("# small strains and curvatures of {}\n[material]\n", base::printable(file));
+  scene.sheet.material = ArcsimMaterial(file).material();
+  scene.sheet.material.law = model::StretchLaw::tables;
+  fmt::print("# {}: the moduli are those of small strains, law = \"linear\" takes them throughout\n[material]\n",
+             base::printable(file));
   for (const model::KeyValue& row : model::key_values(scene))
-    for (const std::string_view key : {"density", "tension", "shear", "contraction", "bend"})
+    for (const std::string_view key :
+         {"density", "tension", "shear", "contraction", "bend", "stretch_table", "bend_table", "law"})
       if (row.key == fmt::format("material.{}", key)) fmt::print("{} = {}  # {}\n", key, to_toml(row.value), row.unit);
 }
 

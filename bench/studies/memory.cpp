@@ -188,6 +188,24 @@ model::Scene relaxing_scene() {
   return scene;
 }
 
+/// The same sheet with friction between its yarns, and with curves that bend or have a loop: laws that turn where strains do.
+model::Scene rubbing_scene(model::FrictionKind law) {
+  model::Scene scene = smooth_scene();
+  scene.name = law == model::FrictionKind::dahl ? "dahl" : "jenkin";
+  scene.sheet.material.friction = {.law = law, .shear = 0.02, .shear_onset = 0.01, .bend = {1e-4, 1e-4}, .bend_onset = 0.5};
+  return scene;
+}
+
+model::Scene curved_scene(bool loops) {
+  model::Scene scene = smooth_scene();
+  scene.name = loops ? "loop" : "kink";
+  model::Material& m = scene.sheet.material;
+  const double k = m.tension.weft;
+  m.weft_curve.loading = model::Polyline({{0, 0}, {0.005, 0.005 * k}, {0.05, 0.14 * k}});
+  if (loops) m.weft_curve.unloading = model::Polyline({{0, 0}, {0.5, 0.4}, {1, 1}});
+  return scene;
+}
+
 // --- What it costs -----------------------------------------------------------------------------------------------------------
 
 constexpr double cost_step = 0.01;  ///< [s]
@@ -275,21 +293,28 @@ std::vector<MemoryCost> costs(bool quick, Checkpoint& checkpoint) {
 }  // namespace
 
 std::vector<Job> memory(const Question& question) {
-  return {job("memory-quality", 1, quality_fits,
-              [](const std::vector<QualityFit>& fits) {
-                return results::make_table("memory-quality",
-                                           "Maxwell elements for a quality that is the same throughout a band", quality_columns,
-                                           fits);
-              }),
-          job("memory-cycles", 1, cycles, cycle_table),
-          orders_on(relaxing_scene(), question.quick ? 1e6 : 4e6, converging_or(question.methods)),
-          job(
-              "memory-cost", static_cast<int>(std::size(cost_qualities)),
-              [quick = question.quick](Checkpoint& checkpoint) { return costs(quick, checkpoint); },
-              [](const std::vector<MemoryCost>& rows) {
-                return results::make_table("memory-cost", "What relaxing moduli cost on hung-corners, d = 0.5",
-                                           memory_cost_columns, rows);
-              })};
+  const double most_work = question.quick ? 1e6 : 4e6;
+  std::vector<Job> jobs{
+      job("memory-quality", 1, quality_fits,
+          [](const std::vector<QualityFit>& fits) {
+            return results::make_table("memory-quality", "Maxwell elements for a quality that is the same throughout a band",
+                                       quality_columns, fits);
+          }),
+      job("memory-cycles", 1, cycles, cycle_table), orders_on(relaxing_scene(), most_work, converging_or(question.methods))};
+  Methods few = question.methods;
+  if (few.empty())
+    for (const solver::Method& method : solver::thesis_methods()) few.push_back(&method);
+  for (const model::Scene& scene : {rubbing_scene(model::FrictionKind::dahl), rubbing_scene(model::FrictionKind::jenkin),
+                                    curved_scene(false), curved_scene(true)})
+    jobs.push_back(orders_on(scene, most_work, few));
+  jobs.push_back(job(
+      "memory-cost", static_cast<int>(std::size(cost_qualities)),
+      [quick = question.quick](Checkpoint& checkpoint) { return costs(quick, checkpoint); },
+      [](const std::vector<MemoryCost>& rows) {
+        return results::make_table("memory-cost", "What relaxing moduli cost on hung-corners, d = 0.5", memory_cost_columns,
+                                   rows);
+      }));
+  return jobs;
 }
 
 }  // namespace drape::bench

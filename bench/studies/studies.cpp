@@ -59,6 +59,11 @@ std::span<const Study> studies() {
        .description = "moduli that relax: the fit of a quality, the loss of a cycle, orders of all methods, what it costs",
        .answer = memory,
        .any_methods = true},
+      {.name = "fabrics",
+       .description =
+           "a laboratory: fabrics are stretched, sheared and bent to and fro, hang over an edge, are let go by all methods",
+       .answer = fabric_tests,
+       .any_methods = true},
       {.name = "scaling",
        .description =
            "time of a step and of a CG iteration from 20 x 20 to a million particles, beside the machine's bandwidth",

@@ -35,6 +35,14 @@ void for_each(const SparseMatrix& B, const Add& add) {
     for (SparseMatrix::InnerIterator b(B, i); b; ++b) add(i, static_cast<int>(b.col()), b.value());
 }
 
+/// <B x, N> of all particles; zero of a flat sheet.
+Eigen::VectorXd normal_part(const Grid& grid, const SparseMatrix& B, const Vectors& x) {
+  if (x.size() == 0) return Eigen::VectorXd::Zero(B.rows());
+  Vectors normals(x.rows(), 3);
+  Normals(grid).evaluate(x, normals);
+  return (B * x).cwiseProduct(normals).rowwise().sum();
+}
+
 /// B if it is symmetric; else its springs only: membranes are not symmetric on borders.
 SparseMatrix symmetric_part(const SparseMatrix& B) {
   if (B.isApprox(SparseMatrix(B.transpose()))) return B;
@@ -74,18 +82,19 @@ Term unprojected(LinearOperators operators) {
   return term;
 }
 
-Term projected(const Grid& grid, LinearOperators operators) {
+Term projected(const Grid& grid, LinearOperators operators, const Vectors& rest) {
   const auto evaluate = std::make_shared<Evaluator>(std::move(operators));
+  const Eigen::VectorXd at_rest = normal_part(grid, evaluate->operators.elastic, rest);
   Term term;
   term.needs_normals = true;
-  term.force = [evaluate](const Configuration& c, Vectors& f) {
+  term.force = [evaluate, at_rest](const Configuration& c, Vectors& f) {
     const Vectors& q = (*evaluate)(c);
-    for (Eigen::Index i = 0; i < q.rows(); ++i) f.row(i) += c.normals.row(i).dot(q.row(i)) * c.normals.row(i);
+    for (Eigen::Index i = 0; i < q.rows(); ++i) f.row(i) += (c.normals.row(i).dot(q.row(i)) - at_rest[i]) * c.normals.row(i);
   };
   term.active = true;
   term.without_energy = evaluate->operators.elastic.nonZeros() > 0;
   const LinearOperators convex{symmetric_part(evaluate->operators.elastic), symmetric_part(evaluate->operators.viscous)};
-  term.jacobian = [evaluate, convex, normals = Normals(grid)](const Configuration& c, const JacobianEntries& entries) {
+  term.jacobian = [evaluate, at_rest, convex, normals = Normals(grid)](const Configuration& c, const JacobianEntries& entries) {
     if (!entries.exact()) {
       if (entries.curvature == Curvature::tension) return;
       const auto NN = [&](int i, int j) -> Eigen::Matrix3d { return c.normals.row(i).transpose() * c.normals.row(j); };
@@ -98,7 +107,7 @@ Term projected(const Grid& grid, LinearOperators operators) {
     for_each(evaluate->operators.viscous, [&](int i, int j, double b) { entries.add_dv(i, j, b * NN(i)); });
     const Vectors& q = (*evaluate)(c);
     for (int i = 0; i < q.rows(); ++i) {
-      const Eigen::Matrix3d by_N = projection_by_normal(q.row(i), c.normals.row(i));
+      const Eigen::Matrix3d by_N = projection_by_normal(q.row(i), c.normals.row(i)) - at_rest[i] * Eigen::Matrix3d::Identity();
       for (const auto& [j, dN] : normals.derivative(c.x, i)) entries.add_dx(i, j, by_N * dN);
     }
   };

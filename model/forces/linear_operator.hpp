@@ -25,7 +25,7 @@ struct LinearOperators {
 /// The force B x + B_d v in all directions.
 Term unprojected(LinearOperators operators);
 
-/// The force <B x + B_d v, N> N along the vertex normals.
-Term projected(const Grid& grid, LinearOperators operators);
+/// The force <B x + B_d v, N> N along the vertex normals, less its elastic part at rest. `rest`: positions; empty: flat.
+Term projected(const Grid& grid, LinearOperators operators, const Vectors& rest);
 
 }  // namespace drape::model

@@ -41,7 +41,7 @@ SparseMatrix membrane_matrix(const Grid& grid, const WeftWarp& B) {
 std::optional<Term> make_membrane(const Sheet& sheet) {
   const Material& m = sheet.material;
   if ((!m.bend.any() && !m.bend_damping.any()) || m.bend_form != BendForm::membrane) return {};
-  return projected(sheet.grid, {membrane_matrix(sheet.grid, m.bend), membrane_matrix(sheet.grid, m.bend_damping)});
+  return projected(sheet.grid, {membrane_matrix(sheet.grid, m.bend), membrane_matrix(sheet.grid, m.bend_damping)}, sheet.rest);
 }
 
 }  // namespace drape::model

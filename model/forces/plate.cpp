@@ -37,7 +37,7 @@ std::optional<Term> make_plate(const Sheet& sheet) {
   const Material& m = sheet.material;
   if ((!m.bend.any() && !m.bend_damping.any()) || m.bend_form != BendForm::plate) return {};
   LinearOperators operators{plate_matrix(sheet.grid, m.bend), plate_matrix(sheet.grid, m.bend_damping)};
-  return m.bend_projected ? projected(sheet.grid, std::move(operators)) : unprojected(std::move(operators));
+  return m.bend_projected ? projected(sheet.grid, std::move(operators), sheet.rest) : unprojected(std::move(operators));
 }
 
 }  // namespace drape::model

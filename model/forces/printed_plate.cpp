@@ -43,8 +43,10 @@ std::optional<Term> make_printed_plate(const Sheet& sheet) {
   const Material& m = sheet.material;
   const bool is_border = m.bend_form == BendForm::printed_is_border;
   if ((!m.bend.any() && !m.bend_damping.any()) || (m.bend_form != BendForm::printed && !is_border)) return {};
-  return projected(sheet.grid, {printed_plate_matrix(sheet.grid, m.bend, is_border),
-                                printed_plate_matrix(sheet.grid, m.bend_damping, is_border)});
+  return projected(
+      sheet.grid,
+      {printed_plate_matrix(sheet.grid, m.bend, is_border), printed_plate_matrix(sheet.grid, m.bend_damping, is_border)},
+      sheet.rest);
 }
 
 }  // namespace drape::model

@@ -46,10 +46,11 @@ void list_quadrants(const std::vector<Cell>& all, double compliance, std::vector
 std::optional<Term> make_shear(const Sheet& sheet) {
   const Material& m = sheet.material;
   const Grid grid = sheet.grid;
-  if ((m.shear == 0 && m.shear_damping == 0) || m.shear_form != ShearForm::conservative) return {};
+  const double G = by_tables(m) ? 0 : m.shear;
+  if ((G == 0 && m.shear_damping == 0) || m.shear_form != ShearForm::conservative) return {};
   if (grid.nu < 2 || grid.nv < 2) return {};  // a chain has no angle
   const double area = grid.spacing_u() * grid.spacing_v();
-  const double kappa = m.shear / (4 * area), kappa_d = m.shear_damping / (4 * area);
+  const double kappa = G / (4 * area), kappa_d = m.shear_damping / (4 * area);
   const auto all = std::make_shared<const std::vector<Cell>>(cells(grid));
 
   Term term;

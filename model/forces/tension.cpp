@@ -11,7 +11,7 @@ namespace drape::model {
 std::optional<Term> make_tension(const Sheet& sheet) {
   const Material& m = sheet.material;
   const WeftWarp k{m.weft_curve.given() ? 0 : m.tension.weft, m.warp_curve.given() ? 0 : m.tension.warp};
-  if (!k.any()) return {};
+  if (!k.any() || by_tables(m)) return {};
   const auto all = std::make_shared<const std::vector<Edge>>(edges(sheet.grid));
 
   Term term;

@@ -9,6 +9,9 @@ std::optional<Term> make_linear_damping(const Sheet& sheet);
 std::optional<Term> make_projected_damping(const Sheet& sheet);
 std::optional<Term> make_shear(const Sheet& sheet);
 std::optional<Term> make_printed_shear(const Sheet& sheet);
+std::optional<Term> make_friction(const Sheet& sheet);
+std::optional<Term> make_rest_curvature(const Sheet& sheet);
+std::optional<Term> make_tables(const Sheet& sheet);
 std::optional<Term> make_relaxation(const Sheet& sheet);
 std::optional<Term> make_contraction(const Sheet& sheet);
 std::optional<Term> make_membrane(const Sheet& sheet);
@@ -21,7 +24,8 @@ std::optional<Term> make_air(const Sheet& sheet);
 std::span<const TermKind> term_kinds() {
   static constexpr TermKind table[] = {
       {.name = "tension", .description = "springs along weft and warp (2.20), Alg. 1", .make = make_tension},
-      {.name = "curves", .description = "tension by measured curves with branches, 2.1.3", .make = make_curves},
+      {.name = "curves", .description = "measured curves with branches, 2.1.3", .make = make_curves},
+      {.name = "tables", .description = "stretch and shear by a fabric's tables", .make = make_tables},
       {.name = "damping",
        .description = "linear damping d/l² (v_j − v_i) along weft and warp (3.18)",
        .make = make_linear_damping},
@@ -37,6 +41,8 @@ std::span<const TermKind> term_kinds() {
       {.name = "membrane", .description = "membrane bending (2.24) with its viscous part", .make = make_membrane},
       {.name = "plate", .description = "thin-plate bending (2.26) with its viscous part", .make = make_plate},
       {.name = "printed-plate", .description = "thin-plate bending as Algorithm 4 prints it", .make = make_printed_plate},
+      {.name = "rest-curvature", .description = "what a plate takes off that rests curved, 2.3.5", .make = make_rest_curvature},
+      {.name = "friction", .description = "friction between yarns in shear and bending", .make = make_friction},
       {.name = "gravity", .description = "weight", .make = make_gravity},
       {.name = "wind", .description = "wind, divided by the normals into drag and lift (2.35), (2.36)", .make = make_wind},
       {.name = "air", .description = "resistance of the air (2.37), against the motion", .make = make_air},

@@ -3,6 +3,8 @@
 #include <toml++/toml.h>
 
 #include <Eigen/Core>
+#include <array>
+#include <cstddef>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -35,6 +37,18 @@ class Value {
   std::vector<Value> list(std::size_t size) const;  ///< an array of `size` values
   std::vector<Value> list() const;                  ///< an array
   const toml::table& table() const;
+
+  /// An array of rows of numbers.
+  template <std::size_t rows, std::size_t columns>
+  std::array<std::array<double, columns>, rows> numbers() const {
+    std::array<std::array<double, columns>, rows> all{};
+    const std::vector<Value> lines = list(rows);
+    for (std::size_t i = 0; i < rows; ++i) {
+      const std::vector<Value> row = lines[i].list(columns);
+      for (std::size_t k = 0; k < columns; ++k) all[i][k] = row[k].number();
+    }
+    return all;
+  }
 
   /// The folder of the scene's file; of overrides and built-in scenes the working folder.
   std::filesystem::path folder() const;

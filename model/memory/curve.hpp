@@ -7,8 +7,8 @@
 
 namespace drape::model {
 
-/// A continuous piecewise affine function through points with increasing arguments. Beyond its ends it goes on with the slopes
-/// that it has there.
+/// A continuous function through points with increasing arguments: piecewise affine, or smooth and as monotonic as the points.
+/// Beyond its ends it goes on with the slopes that it has there.
 class Polyline {
  public:
   using Point = std::array<double, 2>;
@@ -19,9 +19,13 @@ class Polyline {
   const std::vector<Point>& points() const { return points_; }
   bool empty() const { return points_.empty(); }
 
+  /// The same points with cubic pieces and continuous slopes   [Fritsch, Butland 1984].
+  Polyline smoothed() const;
+
   /// At least two points.
   double value(double x) const;
   double slope(double x) const;
+  double chord_slope(double x) const;  ///< between the points about x
 
   /// From the first point to x.
   double integral(double x) const;
@@ -30,8 +34,10 @@ class Polyline {
 
  private:
   std::size_t piece(double x) const;
+  double integral_of_piece(std::size_t k, double x) const;
 
   std::vector<Point> points_;
+  std::vector<double> slopes_;  ///< at the points; empty: piecewise affine
 };
 
 /// A measured curve of stress over strain [Etzmuß 2002, 2.1.3]: on its loading branch σ = L(ε) where the strain is the largest
@@ -46,8 +52,11 @@ struct StressCurve {
 
   double stress(double strain, double largest) const;
 
-  /// dσ/dε of the branch on which the strain is [N/m].
+  /// dσ/dε of the branch on which the strain is [N/m], and that of the piece between two of its points.
   double slope(double strain, double largest) const;
+  double branch_slope(double strain, double largest) const;
+
+  StressCurve smoothed() const;
 
   /// What can be got back on the way to zero strain [J/m²].
   double recoverable(double strain, double largest) const;
@@ -55,6 +64,8 @@ struct StressCurve {
   bool operator==(const StressCurve&) const = default;
 
  private:
+  template <class Slope>
+  double slope_by(const Slope& slope_of, double strain, double largest) const;
   bool unloads(double strain, double largest) const { return !unloading.empty() && strain >= 0 && strain < largest; }
 };
 

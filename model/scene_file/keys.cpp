@@ -17,6 +17,10 @@ constexpr std::string_view damping_forms[] = {"linear", "projected"};
 constexpr std::string_view shear_forms[] = {"conservative", "printed"};
 constexpr std::string_view bend_forms[] = {"membrane", "plate", "printed", "printed-is-border"};
 constexpr std::string_view border_cells[] = {"dual", "whole"};
+constexpr std::string_view curve_forms[] = {"affine", "smooth"};
+constexpr std::string_view friction_kinds[] = {"dahl", "jenkin"};
+constexpr std::string_view stretch_laws[] = {"linear", "tables"};
+constexpr std::string_view rest_shapes[] = {"flat", "start"};
 constexpr std::string_view planes[] = {"horizontal", "vertical"};
 constexpr std::string_view responses[] = {"constraint", "reaction"};
 
@@ -81,8 +85,7 @@ void read_fabric(const Value& value, Scene& scene) {
   if (scene.fabric.empty()) return;
   std::vector<std::string_view> names;
   for (const Fabric& fabric : fabrics()) names.push_back(fabric.name);
-  const Fabric& fabric = fabrics()[value.one_of(names)];
-  scene.sheet.material = material_of(fabric);
+  scene.sheet.material = fabrics()[value.one_of(names)].material;
 }
 
 Data fabric_data(const Scene& scene) { return scene.fabric; }
@@ -121,15 +124,70 @@ Polyline curve(const Value& value, double first, double last_x) {
   return Polyline(std::move(points));
 }
 
-template <StressCurve Material::*which, double WeftWarp::*modulus>
+/// `modulus`: what the first slope replaces.
+template <StressCurve Material::*which, auto modulus>
 void read_curve(const Value& value, Scene& scene) {
   Material& m = scene.sheet.material;
   m.*which = {};
   if (value.list().empty()) return;
   (m.*which).loading = curve(value, 0, 0);
-  m.tension.*modulus = (m.*which).loading.slope(0);
-  if (!(m.tension.*modulus > 0)) value.fail("a first piece that rises");
+  modulus(m) = (m.*which).loading.slope(0);
+  if (!(modulus(m) > 0)) value.fail("a first piece that rises");
 }
+
+constexpr auto k1 = [](Material& m) -> double& { return m.tension.weft; };
+constexpr auto k2 = [](Material& m) -> double& { return m.tension.warp; };
+constexpr auto G = [](Material& m) -> double& { return m.shear; };
+constexpr auto B1 = [](Material& m) -> double& { return m.bend.weft; };
+constexpr auto B2 = [](Material& m) -> double& { return m.bend.warp; };
+
+/// Curves and friction of bending are moments of a plate.
+template <StressCurve Material::*which, auto modulus>
+void read_bend_curve(const Value& value, Scene& scene) {
+  read_curve<which, modulus>(value, scene);
+  if ((scene.sheet.material.*which).given() && scene.sheet.material.bend_form != BendForm::plate)
+    value.fail("material.bend_form \"plate\" with a curve of bending");
+}
+
+void read_shear_curve(const Value& value, Scene& scene) {
+  read_curve<&Material::shear_curve, G>(value, scene);
+  if (scene.sheet.material.shear_curve.given() && scene.sheet.material.shear_form != ShearForm::conservative)
+    value.fail("material.shear_form \"conservative\" with a curve of shear");
+}
+
+// --- Tables of a fabric ------------------------------------------------------------------------------------------------------
+
+void read_stretch_table(const Value& value, Scene& scene) {
+  scene.sheet.material.tables.stretching = {};
+  if (!value.list().empty()) scene.sheet.material.tables.stretching = value.numbers<6, 4>();
+}
+
+void read_bend_table(const Value& value, Scene& scene) {
+  scene.sheet.material.tables.bending = {};
+  if (!value.list().empty()) scene.sheet.material.tables.bending = value.numbers<3, 5>();
+}
+
+/// No rows if all numbers are 0.
+template <auto which>
+Data table_data(const Scene& scene) {
+  const auto& table = scene.sheet.material.tables.*which;
+  List rows;
+  if (table == std::remove_cvref_t<decltype(table)>{}) return rows;
+  for (const auto& row : table) rows.emplace_back(List(row.begin(), row.end()));
+  return rows;
+}
+
+void read_law(const Value& value, Scene& scene) {
+  Material& m = scene.sheet.material;
+  m.law = static_cast<StretchLaw>(value.one_of(stretch_laws));
+  if (!by_tables(m)) return;
+  if (m.tables.stretching == FabricTables{}.stretching)
+    value.fail("a material.fabric or a material.stretch_table with \"tables\"");
+  if (m.shear_form != ShearForm::conservative || m.weft_curve.given() || m.warp_curve.given() || m.shear_curve.given())
+    value.fail("no curves and no printed shear with \"tables\"");
+}
+
+Data law_data(const Scene& scene) { return std::string(stretch_laws[static_cast<int>(scene.sheet.material.law)]); }
 
 /// A loop that is passed the right way round loses energy.
 template <StressCurve Material::*which>
@@ -231,11 +289,11 @@ std::span<const SceneKey> scene_key_table() {
       {"material.tension", "N/m", "k1, k2: one number for both, or [weft, warp]",
        in_material<&Material::tension>, check::non_negative},
       {"material.weft_curve", "", "instead of k1, a curve of loading: list of [strain, N/m] from [0, 0]",
-       read_curve<&Material::weft_curve, &WeftWarp::weft>, curve_data<&Material::weft_curve, &StressCurve::loading>},
+       read_curve<&Material::weft_curve, k1>, curve_data<&Material::weft_curve, &StressCurve::loading>},
       {"material.weft_unloading", "", "its curve of unloading: list of [part of the largest strain, part of its stress] to [1, 1]; what it begins with remains",
        read_unloading<&Material::weft_curve>, curve_data<&Material::weft_curve, &StressCurve::unloading>},
       {"material.warp_curve", "", "the same instead of k2",
-       read_curve<&Material::warp_curve, &WeftWarp::warp>, curve_data<&Material::warp_curve, &StressCurve::loading>},
+       read_curve<&Material::warp_curve, k2>, curve_data<&Material::warp_curve, &StressCurve::loading>},
       {"material.warp_unloading", "", "and its curve of unloading",
        read_unloading<&Material::warp_curve>, curve_data<&Material::warp_curve, &StressCurve::unloading>},
       {"material.damping", "N s/m", "d1, d2: viscous tension, one number for both, or [weft, warp]",
@@ -246,6 +304,14 @@ std::span<const SceneKey> scene_key_table() {
       {"material.shear_damping", "N s/m", "dG", in_material<&Material::shear_damping>, check::non_negative},
       {"material.shear_form", "", "\"conservative\" or \"printed\" (Algorithm 2 of the thesis)",
        in_material<&Material::shear_form>, check::one_of<shear_forms>},
+      {"material.shear_curve", "", "instead of G, a curve of loading: list of [<s_u, s_v>, N/m] from [0, 0]",
+       read_shear_curve, curve_data<&Material::shear_curve, &StressCurve::loading>},
+      {"material.shear_unloading", "", "and its curve of unloading",
+       read_unloading<&Material::shear_curve>, curve_data<&Material::shear_curve, &StressCurve::unloading>},
+      {"material.shear_friction", "N/m", "HG: largest friction in shear, half the width of its hysteresis",
+       in_material<&Material::friction, &Friction::shear>, check::non_negative},
+      {"material.shear_friction_onset", "1", "shear <s_u, s_v> in which it develops",
+       in_material<&Material::friction, &Friction::shear_onset>, check::positive},
       {"material.quality", "1", "Q of tension and shear, the same throughout the band; 0: they do not relax",
        in_material<&Material::relaxation, &Relaxation::quality>, check::non_negative},
       {"material.band", "rad/s", "[lowest, highest]: where Q is as wished", read_band, band_data},
@@ -264,6 +330,28 @@ std::span<const SceneKey> scene_key_table() {
        in_material<&Material::bend_form>, check::one_of<bend_forms>},
       {"material.bend_projected", "", "plate only: forces along the vertex normal (as the thesis) or, if false, in all directions",
        in_material<&Material::bend_projected>, check::flag},
+      {"material.weft_bend_curve", "", "instead of B1, a curve of loading: list of [curvature in 1/m, N] from [0, 0]",
+       read_bend_curve<&Material::weft_bend_curve, B1>, curve_data<&Material::weft_bend_curve, &StressCurve::loading>},
+      {"material.weft_bend_unloading", "", "and its curve of unloading",
+       read_unloading<&Material::weft_bend_curve>, curve_data<&Material::weft_bend_curve, &StressCurve::unloading>},
+      {"material.warp_bend_curve", "", "the same instead of B2",
+       read_bend_curve<&Material::warp_bend_curve, B2>, curve_data<&Material::warp_bend_curve, &StressCurve::loading>},
+      {"material.warp_bend_unloading", "", "and its curve of unloading",
+       read_unloading<&Material::warp_bend_curve>, curve_data<&Material::warp_bend_curve, &StressCurve::unloading>},
+      {"material.curve_form", "", "\"affine\" pieces between the points of curves or \"smooth\" ones",
+       in_material<&Material::curve_form>, check::one_of<curve_forms>},
+      {"material.bend_friction", "N", "HB, largest friction in bending, half the width 2HB of its hysteresis: one number for both, or [weft, warp]",
+       in_material<&Material::friction, &Friction::bend>, check::non_negative},
+      {"material.bend_friction_onset", "1/m", "curvature in which it develops",
+       in_material<&Material::friction, &Friction::bend_onset>, check::positive},
+      {"material.friction_law", "", "\"dahl\" (approaches its limit exponentially) or \"jenkin\" (elastic up to its limit)",
+       in_material<&Material::friction, &Friction::law>, check::one_of<friction_kinds>},
+      {"material.stretch_table", "N/m", "C11, C12, C22, C33 of a fabric, half of them, in six rows: at rest, and stretched by a sixth along 0, 22.5, 45, 67.5 and 90 degrees",
+       read_stretch_table, table_data<&FabricTables::stretching>},
+      {"material.bend_table", "N m", "B along 0, 45 and 90 degrees, each for curvatures of 0, 10, 20, 30 and 40/m",
+       read_bend_table, table_data<&FabricTables::bending>},
+      {"material.law", "", "\"linear\" (by the moduli) or \"tables\" (by those of the fabric instead of k1, k2, C12, G; B beside them)",
+       read_law, law_data},
 
       {"forces.gravity", "m/s²", "g: [x, y, z]", in_sheet<&Sheet::gravity>, check::number},
       {"forces.wind", "N/m²", "w: [x, y, z]; the wind is (a + sin ωt) w", in_wind<&Wind::load>, check::number},
@@ -291,6 +379,9 @@ std::span<const SceneKey> scene_key_table() {
       {"start.pleats", "", "[count, degrees]: waves along the weft without strain, and how steep they are at t = 0",
        read_pleats, pleats_data},
       {"start.velocity", "m/s", "velocity: [x, y, z] of all particles at t = 0", in_start<&Start::velocity>, check::number},
+
+      {"rest.shape", "", "\"flat\" or \"start\": bending is at rest in the shape at t = 0",
+       at<&Scene::rest>, check::one_of<rest_shapes>},
 
       {"end.time", "s", "simulated time", at<&Scene::end>, check::positive},
   };

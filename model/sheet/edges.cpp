@@ -13,17 +13,17 @@ std::vector<Edge> edges(const Grid& grid) {
   return all;
 }
 
-void add_spring(std::vector<Eigen::Triplet<double>>& entries, const Edge& edge, double weight) {
-  entries.emplace_back(edge.i, edge.i, -weight);
-  entries.emplace_back(edge.j, edge.j, -weight);
-  entries.emplace_back(edge.i, edge.j, weight);
-  entries.emplace_back(edge.j, edge.i, weight);
+void add_spring(std::vector<Eigen::Triplet<double>>& entries, EdgeEnds edge, double weight) {
+  entries.emplace_back(edge.begin, edge.begin, -weight);
+  entries.emplace_back(edge.end, edge.end, -weight);
+  entries.emplace_back(edge.begin, edge.end, weight);
+  entries.emplace_back(edge.end, edge.begin, weight);
 }
 
 SparseMatrix spring_matrix(const Grid& grid, const std::function<double(const Edge&)>& weight) {
   std::vector<Eigen::Triplet<double>> entries;
   for (const Edge& edge : edges(grid)) {
-    if (const double w = weight(edge); w != 0) add_spring(entries, edge, w);
+    if (const double w = weight(edge); w != 0) add_spring(entries, {edge.i, edge.j}, w);
   }
   SparseMatrix matrix(grid.particles(), grid.particles());
   matrix.setFromTriplets(entries.begin(), entries.end());

@@ -22,16 +22,16 @@ std::vector<Edge> edges(const Grid& grid);
 /// The value of a modulus along an edge.
 inline double along(const WeftWarp& modulus, const Edge& edge) { return edge.weft ? modulus.weft : modulus.warp; }
 
-/// Adds the entries of a spring on an edge: the weight at (i, j) and (j, i), minus it on the diagonal.
-void add_spring(std::vector<Eigen::Triplet<double>>& entries, const Edge& edge, double weight);
-
-/// The N × N matrix of springs on all edges of weight ≠ 0.
-SparseMatrix spring_matrix(const Grid& grid, const std::function<double(const Edge&)>& weight);
-
 /// The ends of an edge vector x_end − x_begin.
 struct EdgeEnds {
   int begin, end;
 };
+
+/// Adds the entries of a spring between two particles: the weight beside the diagonal, minus it there.
+void add_spring(std::vector<Eigen::Triplet<double>>& entries, EdgeEnds edge, double weight);
+
+/// The N × N matrix of springs on all edges of weight ≠ 0.
+SparseMatrix spring_matrix(const Grid& grid, const std::function<double(const Edge&)>& weight);
 
 /// Adds the pull of an edge on its ends.
 inline void add_pull(Vectors& f, EdgeEnds edge, const Eigen::Vector3d& pull) {

@@ -3,17 +3,6 @@
 #include <algorithm>
 
 namespace drape::model {
-namespace {
-
-/// The matrix of a × ·.
-Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& a) {
-  Eigen::Matrix3d C;
-  C << 0, -a[2], a[1], a[2], 0, -a[0], -a[1], a[0], 0;
-  return C;
-}
-
-}  // namespace
-
 Normals::Neighbours Normals::neighbours(int i) const {
   const int a = i % grid_.nu, b = i / grid_.nu;
   return {grid_.index(std::max(a - 1, 0), b), grid_.index(std::min(a + 1, grid_.nu - 1), b), grid_.index(a, std::max(b - 1, 0)),

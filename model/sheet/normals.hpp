@@ -27,6 +27,13 @@ class Normals {
   Grid grid_;
 };
 
+/// The matrix of a × ·.
+inline Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& a) {
+  Eigen::Matrix3d C;
+  C << 0, -a[2], a[1], a[2], 0, -a[0], -a[1], a[0], 0;
+  return C;
+}
+
 /// The derivative of <q, N> N, a projection onto a normal, by that normal.
 inline Eigen::Matrix3d projection_by_normal(const Eigen::Vector3d& q, const Eigen::Vector3d& N) {
   return N.dot(q) * Eigen::Matrix3d::Identity() + N * q.transpose();

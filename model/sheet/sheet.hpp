@@ -37,6 +37,42 @@ enum class BendForm {
   printed_is_border,  ///< the same without forces across borders on border particles [Etzmuß 2002, 6.2.1]
 };
 
+enum class CurveForm {
+  affine,  ///< straight pieces between the points of a curve
+  smooth,  ///< cubic ones with continuous slopes
+};
+
+enum class FrictionKind {
+  dahl,    ///< approaches its limit exponentially
+  jenkin,  ///< elastic up to its limit: Coulomb's law beside a spring
+};
+
+/// Friction between yarns. Limits 0: there is none.
+struct Friction {
+  FrictionKind law = FrictionKind::dahl;
+  double shear = 0;           ///< largest stress [N/m]: half the width of the hysteresis, 2HG
+  double shear_onset = 0.01;  ///< shear in which it develops [1]
+  WeftWarp bend;              ///< largest moment by width [N]: HB, half of 2HB
+  double bend_onset = 5;      ///< curvature in which it develops [1/m]
+};
+
+/// What was measured of a fabric   [Wang, O'Brien, Ramamoorthi 2011].
+struct FabricTables {
+  /// C11, C12, C22, C33 [N/m] of the energy ½ (C11 ε11² + 2 C12 ε11 ε22 + C22 ε22² + C33 ε12²) of Green's strain, which is to
+  /// be doubled: at rest, and stretched by a sixth in directions of 0, 22.5, 45, 67.5 and 90 degrees from the weft.
+  std::array<std::array<double, 4>, 6> stretching = {};
+
+  /// Bending stiffness [N m] along 0, 45 and 90 degrees from the weft, for curvatures of 0, 10, 20, 30 and 40/m.
+  std::array<std::array<double, 5>, 3> bending = {};
+
+  bool operator==(const FabricTables&) const = default;
+};
+
+enum class StretchLaw {
+  linear,  ///< by the moduli
+  tables,  ///< by those of a fabric, whose moduli change with the strain and its direction
+};
+
 /// How tension and shear relax, in one of three forms.
 struct Relaxation {
   Spectrum maxwell;                        ///< Maxwell elements
@@ -50,10 +86,16 @@ struct Relaxation {
 
 /// Elastic moduli and their viscous counterparts (Kelvin–Voigt). Zero: the force does not exist.
 struct Material {
-  double density = 1;                  ///< ρ [kg/m²]
-  WeftWarp tension;                    ///< k1, k2 [N/m]; the first slopes of curves
-  StressCurve weft_curve, warp_curve;  ///< in the place of k1, k2
-  WeftWarp damping;                    ///< d1, d2 [N s/m]
+  double density = 1;                            ///< ρ [kg/m²]
+  WeftWarp tension;                              ///< k1, k2 [N/m]; the first slopes of curves
+  StressCurve weft_curve, warp_curve;            ///< in the place of k1, k2
+  StressCurve shear_curve;                       ///< [N/m] over <s_u, s_v>, in the place of G
+  StressCurve weft_bend_curve, warp_bend_curve;  ///< [N] over curvatures [1/m], in the place of B1, B2
+  CurveForm curve_form = CurveForm::affine;
+  Friction friction;
+  StretchLaw law = StretchLaw::linear;
+  FabricTables tables;  ///< zero: not given
+  WeftWarp damping;     ///< d1, d2 [N s/m]
   DampingForm damping_form = DampingForm::linear;
   double shear = 0;          ///< G [N/m]
   double shear_damping = 0;  ///< dG [N s/m]
@@ -66,6 +108,9 @@ struct Material {
   BendForm bend_form = BendForm::plate;
   bool bend_projected = true;  ///< plate only: forces along the vertex normal (as in the thesis), not in all directions
 };
+
+/// Whether tables are in the place of k1, k2, C12 and G.
+inline bool by_tables(const Material& material) { return material.law == StretchLaw::tables; }
 
 /// Wind from one direction, steady or oscillating [Etzmuß 2002, (2.35)–(2.36)]: (a + sin ωt) w; a surface takes the
 /// part along its normal times c_drag and the rest times c_lift.
@@ -86,7 +131,8 @@ struct Sheet {
   Material material;
   Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  ///< [m/s²]
   Wind wind = {};
-  double air = 0;  ///< c = c_w ρ_air of the air's resistance (2.37) [N s/m³]
+  double air = 0;             ///< c = c_w ρ_air of the air's resistance (2.37) [N s/m³]
+  solver::Vectors rest = {};  ///< positions that it would rest in without gravity, as far as bending knows; empty: flat
 };
 
 }  // namespace drape::model

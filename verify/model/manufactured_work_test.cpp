@@ -69,7 +69,8 @@ std::vector<Case> cases() {
     for (const Motion& motion : motions()) {
       const bool consistent = force.material.shear_form == ShearForm::conservative &&
                               force.material.bend_form < BendForm::printed && force.gravity.isZero() && !force.wind.blows() &&
-                              force.air == 0 && !force.material.weft_curve.given();  // the continuum's stress is k ε
+                              force.air == 0 && !ode_of(force, five_by_four()).memory &&
+                              !by_tables(force.material);  // the continuum is linear
       if (consistent && acts(force.name, motion)) all.emplace_back(force.name, motion);
     }
   for (const Motion& motion : motions())

@@ -66,7 +66,7 @@ TEST(MeanForce, IsNotTheForceInTheMiddleUnlessTheEnergyIsQuadratic) {
     const SplitOde ode = ode_of(force, grid);
     Vectors excess = at_rest(x0);
     ode.mean_excess(0, x0, x1, excess);
-    if (force.name.starts_with("all")) continue;
+    if (force.name.starts_with("all") || force.name == "bent_curves") continue;  // several terms
     const bool quadratic = force.name == "unprojected_plate" || force.name == "gravity" || !force.has_energy;
     EXPECT_EQ(largest(excess) == 0, quadratic) << force.name;
   }
@@ -74,6 +74,10 @@ TEST(MeanForce, IsNotTheForceInTheMiddleUnlessTheEnergyIsQuadratic) {
 
 TEST(MeanForce, DoesNotExistWithoutAnEnergy) {
   const std::pair<std::string, std::string> without[] = {{"curves", "curves"},
+                                                         {"bent_curves", "curves"},
+                                                         {"dahl", "friction"},
+                                                         {"jenkin", "friction"},
+                                                         {"tables", "tables"},
                                                          {"printed_shear", "printed-shear"},
                                                          {"membrane", "membrane"},
                                                          {"plate", "plate"},

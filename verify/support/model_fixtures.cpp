@@ -15,6 +15,10 @@ std::vector<ForceCase> force_cases() {
   //                                                        energy   momentum angular dissipates rotation chains
   return {{"tension",             made_of(tension),           true,    true,    true,    true,     true,    true},
           {"curves",              made_of(curves),            false,   true,    true,    true,     true,    true},
+          {"bent_curves",         made_of(bent_curves),       false,   true,    true,    true,     true,    false},
+          {"dahl",                made_of(dahl),              false,   true,    true,    true,     true,    false},
+          {"jenkin",              made_of(jenkin),            false,   true,    true,    true,     true,    false},
+          {"tables",              made_of(tables),            false,   true,    true,    true,     true,    false},
           {"linear_damping",      made_of(linear_damping),    false,   true,    true,    true,     false,   true},
           {"projected_damping",   made_of(projected_damping), false,   true,    true,    true,     true,    true},
           {"shear",               made_of(shear),             true,    true,    true,    true,     true,    false},

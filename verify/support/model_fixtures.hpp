@@ -31,6 +31,30 @@ inline void curves(Material& m) {
   m.warp_curve = {model::Polyline({{0, 0}, {0.1, 0.2}, {0.3, 0.5}}), {}};
   m.tension = {m.weft_curve.loading.slope(0), m.warp_curve.loading.slope(0)};
 }
+inline void bent_curves(Material& m) {
+  m.shear_curve = {model::Polyline({{0, 0}, {0.1, 0.15}, {0.5, 2}}), model::Polyline({{0.2, 0}, {0.7, 0.4}, {1, 1}})};
+  m.weft_bend_curve = {model::Polyline({{0, 0}, {1, 0.06}, {9, 0.2}}), {}};
+  m.warp_bend_curve = {model::Polyline({{0, 0}, {2, 0.08}, {9, 0.9}}), model::Polyline({{0, 0}, {0.5, 0.2}, {1, 1}})};
+  m.curve_form = model::CurveForm::smooth;
+  m.shear = m.shear_curve.loading.slope(0);
+  m.bend = {m.weft_bend_curve.loading.slope(0), m.warp_bend_curve.loading.slope(0)};
+  m.bend_projected = false;
+}
+inline void dahl(Material& m) { m.friction = {.shear = 0.3, .shear_onset = 0.2, .bend = {0.1, 0.2}, .bend_onset = 3}; }
+inline void jenkin(Material& m) { dahl(m), m.friction.law = model::FrictionKind::jenkin; }
+inline void tables(Material& m) {
+  m.tables.stretching = {{{2, 0.4, 1.5, 1.2},
+                          {2.5, 0.6, 1.4, 1.5},
+                          {2.2, 0.5, 1.8, 1.1},
+                          {2.9, -3, 1.7, 1.4},
+                          {2.4, 0.3, 2, 1.6},
+                          {3, 0.7, 1.9, 1.3}}};
+  m.tables.bending = {{{0.06, 0.05, 0.04, 0.03, 0.02}, {}, {0.04, 0.05, 0.06, 0.07, 0.08}}};
+  m.law = model::StretchLaw::tables;
+  m.tension = {4, 3};
+  m.bend = {0.06, 0.04};
+  m.bend_projected = false;
+}
 inline void linear_damping(Material& m) { m.damping = {0.7, 0.4}; }
 inline void projected_damping(Material& m) { linear_damping(m), m.damping_form = DampingForm::projected; }
 inline void shear(Material& m) { m.shear = 1.5, m.shear_damping = 0.6; }

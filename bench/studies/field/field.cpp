@@ -1,4 +1,4 @@
-#include <algorithm>
+#include <utility>
 
 #include "bench/studies/field/tables.hpp"
 #include "bench/studies/studies.hpp"
@@ -7,15 +7,16 @@
 /// best of some.
 namespace drape::bench {
 
-std::vector<Job> field_study(const Question& question) {
-  const std::vector<FieldSheet> list = field_sheets(question.quick);
-  const int parts = static_cast<int>(list.size() * all_or(question.methods).size());
-  const auto compute = [list, methods = question.methods](Checkpoint& checkpoint) {
+Job field_job(std::vector<FieldSheet> list, const Methods& methods) {
+  const int parts = static_cast<int>(list.size() * all_or(methods).size());
+  const auto compute = [list = std::move(list), methods](Checkpoint& checkpoint) {
     std::vector<SheetResult> sheets;
     for (const FieldSheet& sheet : list) sheets.push_back(run_sheet(sheet, methods, checkpoint));
     return sheets;
   };
-  return {job("field", parts, compute, field_tables)};
+  return job("field", parts, compute, field_tables);
 }
+
+std::vector<Job> field_study(const Question& question) { return {field_job(field_sheets(question.quick), question.methods)}; }
 
 }  // namespace drape::bench

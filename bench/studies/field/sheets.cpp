@@ -10,6 +10,7 @@
 #include "bench/runs/lag.hpp"
 #include "bench/runs/run.hpp"
 #include "bench/runs/samples.hpp"
+#include "model/fabric.hpp"
 #include "model/scene_file/scene_file.hpp"
 #include "reference/sundials/arkode.hpp"
 #include "solver/base/largest.hpp"
@@ -95,13 +96,20 @@ reference::Reference certified_or_explicit(const model::Scene& scene, const mode
 
 }  // namespace
 
+std::string FieldSheet::label() const { return fabric.empty() ? scene : fmt::format("{}, {}", scene, fabric); }
+
 std::string FieldSheet::name() const {
-  return damping ? fmt::format("{} d={:g} n={}", scene, *damping, n) : fmt::format("{} n={}", scene, n);
+  return damping ? fmt::format("{} d={:g} n={}", label(), *damping, n) : fmt::format("{} n={}", label(), n);
 }
 
 model::Scene FieldSheet::load() const {
   std::vector<model::Override> overrides{{"grid.n", fmt::format("{}", n)}, {"end.time", fmt::format("{}", end)}};
   if (damping) overrides.push_back({"material.damping", fmt::format("{}", *damping)});
+  if (!fabric.empty()) {
+    const auto found = std::ranges::find(model::fabrics(), fabric, &model::Fabric::name);
+    overrides.push_back({"material.fabric", fabric});
+    if (found->material.tables != model::FabricTables()) overrides.push_back({"material.law", "tables"});
+  }
   return model::load_scene(scene, overrides);
 }
 
@@ -120,6 +128,14 @@ std::vector<FieldSheet> field_sheets(bool quick) {
   add_others(all, 40, short_end);
   add_hung(all, "hung-corners", {50, 0.5}, 100, short_end);
   all.push_back({"peer-edge", std::nullopt, 100, short_end});
+  return all;
+}
+
+std::vector<FieldSheet> fabric_sheets(bool quick) {
+  std::vector<FieldSheet> all;
+  for (const char* fabric : {"t-shirt", "denim", "tablecloth", "cotton-broad"})
+    all.push_back({"hung-corners", std::nullopt, quick ? 5 : 20, quick ? short_end : medium_end, quick, fabric});
+  if (quick) all.resize(1);
   return all;
 }
 

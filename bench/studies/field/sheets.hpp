@@ -20,13 +20,18 @@ struct FieldSheet {
   int n;                          ///< particles a side
   double end;                     ///< [s]
   bool quick = false;             ///< fewer settings and repetitions
+  std::string fabric = {};        ///< whose material replaces the scene's, by its tables if it has any; empty: none
 
-  std::string name() const;  ///< "hung-corners d=0.5 n=20"
+  std::string label() const;  ///< "hung-corners" or "hung-corners, denim"
+  std::string name() const;   ///< "hung-corners d=0.5 n=20"
   model::Scene load() const;
 };
 
 /// Those of the study, small before large: a sheet on which settings are chosen comes before those that they are judged on.
 std::vector<FieldSheet> field_sheets(bool quick);
+
+/// Sheets of fabrics as they were measured, without damping.
+std::vector<FieldSheet> fabric_sheets(bool quick);
 
 /// How a sheet really moves. Without a reference `missing` says why, and there are no errors.
 struct FieldTruth {

@@ -19,7 +19,8 @@ Datum number_or_none(double value) { return std::isnan(value) ? Datum() : Datum(
 // --- Which sheet it is of --------------------------------------------------------------------------------------------------
 
 constexpr ColumnOf<SheetResult> field_sheet_columns[] = {
-    {"scene", "scene", "", "its name", Role::key, [](const SheetResult& s) { return to_datum(s.sheet.scene); }},
+    {"scene", "scene", "", "its name, and its fabric", Role::key,
+     [](const SheetResult& s) { return to_datum(s.sheet.label()); }},
     {"damping", "d", "N s/m", "linear damping", Role::key, field<&SheetResult::damping>},
     {"n", "n", "1", "particles a side", Role::key, [](const SheetResult& s) { return to_datum(s.sheet.n); }},
 };

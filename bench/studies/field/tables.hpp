@@ -9,4 +9,7 @@ namespace drape::bench {
 /// settings judged on other sheets, and the answer in short.
 std::vector<results::Table> field_tables(const std::vector<SheetResult>& sheets);
 
+/// Runs methods, or all, on sheets, and makes these tables.
+Job field_job(std::vector<FieldSheet> list, const Methods& methods);
+
 }  // namespace drape::bench

@@ -136,7 +136,8 @@ void expect_obstacles(const std::vector<model::ObstacleRule>& obstacles) {
 void expect_complete(const Scene& scene) {
   EXPECT_EQ(scene.name, "all");
   EXPECT_EQ(scene.description, "says \"everything\", with a \\ and a ü");
-  const auto& [grid, material, gravity, wind, air] = scene.sheet;
+  const auto& [grid, material, gravity, wind, air, rest] = scene.sheet;
+  EXPECT_EQ(rest.size(), 0) << "flat";
   EXPECT_THAT((std::array{grid.nu, grid.nv}), ElementsAre(5, 3));
   EXPECT_THAT((std::array{grid.size_u, grid.size_v}), ElementsAre(0.6, 0.4));
   EXPECT_EQ(material.density, 0.3);
@@ -258,7 +259,7 @@ TEST(SceneFile, HasARowForEveryKeyAndEveryEntryOfAList) {
   for (const model::KeyValue& row : model::key_values(parsed(complete))) keys.push_back(row.key);
   EXPECT_EQ(std::ranges::count(keys, "pins"), 2);
   EXPECT_EQ(std::ranges::count(keys, "obstacles"), 4);
-  const std::size_t empty = 6;  // curves and elements of relaxation
+  const std::size_t empty = 14;  // curves, tables and elements of relaxation
   EXPECT_EQ(keys.size(), model::scene_keys().size() + 1 + 3 - empty);
 }
 

@@ -1,0 +1,127 @@
+#include "model/forces/remembered_stresses.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace drape::model {
+
+using solver::State;
+
+void RememberedStresses::add(const Strain& strain, std::shared_ptr<const StressLaw> law, bool stiff) {
+  elements_.push_back({strain, std::move(law), stiff});
+}
+
+/// From the slope by the strain: over the square of the length.
+double RememberedStresses::Element::spring() const { return slope * strain.area() / (strain.length() * strain.length()); }
+
+void RememberedStresses::pass(double, const State& y, const Variables& z) {
+  bool changed = false;
+  for (int e = 0; e < variables(); ++e) {
+    Element& element = elements_[e];
+    element.from = element.strain.value(y.x);
+    element.z = z[e];
+    if (!element.stiff) continue;
+    const double slope = element.law->branch_slope(element.from, element.z);
+    changed = changed || slope != element.slope;
+    element.slope = slope;
+  }
+  changes_ += changed ? 1 : 0;
+}
+
+void RememberedStresses::carry(double, const State& y, MutableVariables z) {
+  for (int e = 0; e < variables(); ++e) {
+    const Element& element = elements_[e];
+    z[e] = element.law->carry(element.strain.value(y.x), element.from, element.z);
+  }
+}
+
+void RememberedStresses::rate(const State& y, const Variables& z, MutableVariables dz) const {
+  for (int e = 0; e < variables(); ++e) {
+    const Strain& strain = elements_[e].strain;
+    dz[e] = elements_[e].law->rate(strain.value(y.x), strain.rate(y.x, y.v), z[e]);
+  }
+}
+
+void RememberedStresses::respond(double gamma, const State& y, const Variables& r, const State& d, MutableVariables dz) const {
+  for (int e = 0; e < variables(); ++e) {
+    const Strain& strain = elements_[e].strain;
+    const double slope = elements_[e].law->variable_slope(strain.value(y.x), strain.rate(y.x, y.v), elements_[e].z);
+    dz[e] = r[e] + (slope == 0 ? 0 : gamma * slope * strain.rate(y.x, d.v));
+  }
+}
+
+double RememberedStresses::energy(const State& y, const Variables& z) const {
+  double energy = 0;
+  for (int e = 0; e < variables(); ++e)
+    energy += elements_[e].strain.area() * elements_[e].law->energy(elements_[e].strain.value(y.x), z[e]);
+  return energy;
+}
+
+void RememberedStresses::add_stiffness(std::vector<Eigen::Triplet<double>>& entries) const {
+  for (const Element& element : elements_)
+    if (element.stiff) add_spring(entries, element.strain.edge(), element.spring());
+}
+
+void RememberedStresses::add_springs(const Vectors& x, Vectors& f) const {
+  for (const Element& element : elements_)
+    if (element.stiff) add_pull(f, element.strain.edge(), element.spring() * difference(x, element.strain.edge()));
+}
+
+void RememberedStresses::add_rest(const Vectors& x, Vectors& f) const {
+  Strain::Gradient by;
+  for (const Element& element : elements_) {
+    const Strain& strain = element.strain;
+    const double pull = strain.area() * element.stress(strain.value(x, by)).value;
+    for (int j = 0; j < strain.count(); ++j) f.row(strain.particle(j)) -= pull * by[j];
+    if (element.stiff) add_pull(f, strain.edge(), -element.spring() * difference(x, strain.edge()));
+  }
+}
+
+void RememberedStresses::add_jacobian(const Vectors& x, const JacobianEntries& entries) const {
+  Strain::Gradient by;
+  Strain::Hessian second;
+  for (const Element& element : elements_) {
+    const Strain& strain = element.strain;
+    if (entries.curvature == Curvature::tension && !strain.couples_edge()) continue;
+    auto [stress, slope] = element.stress(strain.value(x, by));
+    if (!entries.exact()) {
+      slope = std::max(slope, 0.0);
+      stress = strain.couples_edge() ? std::max(stress, 0.0) : 0;  // the curvature of other strains is indefinite
+    }
+    if (stress != 0) strain.second_derivatives(x, second);
+    for (int j = 0; j < strain.count(); ++j)
+      for (int k = 0; k < strain.count(); ++k) {
+        Eigen::Matrix3d block = -strain.area() * slope * by[j] * by[k].transpose();
+        if (stress != 0) block -= strain.area() * stress * second[j][k];
+        entries.add_dx(strain.particle(j), strain.particle(k), block);
+      }
+  }
+}
+
+void add_shear(const Grid& grid, const std::shared_ptr<const StressLaw>& law, RememberedStresses& stresses) {
+  for (const Cell& cell : cells(grid))
+    for (const auto& [p, q] : quadrants(cell)) stresses.add(Strain::of_quadrant(grid, p, q), law);
+}
+
+void add_bending(const Grid& grid, const std::shared_ptr<const StressLaw>& weft, const std::shared_ptr<const StressLaw>& warp,
+                 RememberedStresses& stresses) {
+  if (grid.nu < 2 || grid.nv < 2) return;  // a chain has no normal
+  for (int b = 0; b < grid.nv; ++b)
+    for (int a = 0; a < grid.nu; ++a) {
+      if (weft && a > 0 && a < grid.nu - 1) stresses.add(Strain::of_curvature(grid, a, b, true), weft);
+      if (warp && b > 0 && b < grid.nv - 1) stresses.add(Strain::of_curvature(grid, a, b, false), warp);
+    }
+}
+
+std::optional<Term> remembering_term(std::shared_ptr<RememberedStresses> stresses) {
+  if (stresses->empty()) return {};
+  Term term;
+  term.memory = stresses;
+  term.without_energy = true;  // laws have one on each branch, which depends on what is remembered
+  term.springs = [=](const Vectors& x, Vectors& f) { stresses->add_springs(x, f); };
+  term.force = [=](const Configuration& c, Vectors& f) { stresses->add_rest(c.x, f); };
+  term.jacobian = [=](const Configuration& c, const JacobianEntries& entries) { stresses->add_jacobian(c.x, entries); };
+  return term;
+}
+
+}  // namespace drape::model

@@ -1,0 +1,70 @@
+#include <memory>
+#include <vector>
+
+#include "model/forces/term.hpp"
+#include "model/sheet/strain.hpp"
+
+namespace drape::model {
+namespace {
+
+/// A curvature of a sheet, and the moment that it has at rest [N].
+struct AtRest {
+  Strain curvature;
+  double value, moment;
+};
+
+std::vector<AtRest> curvatures_at_rest(const Sheet& sheet) {
+  const Grid& grid = sheet.grid;
+  const WeftWarp& B = sheet.material.bend;
+  std::vector<AtRest> all;
+  const auto add = [&](const Strain& curvature, double stiffness) {
+    const double value = curvature.value(sheet.rest);
+    if (stiffness * value != 0) all.push_back({curvature, value, stiffness * value});
+  };
+  for (int b = 0; b < grid.nv; ++b)
+    for (int a = 0; a < grid.nu; ++a) {
+      if (a > 0 && a < grid.nu - 1) add(Strain::of_curvature(grid, a, b, true), B.weft);
+      if (b > 0 && b < grid.nv - 1) add(Strain::of_curvature(grid, a, b, false), B.warp);
+    }
+  for (const Cell& cell : cells(grid)) add(Strain::of_twist(grid, cell), B.weft + B.warp);
+  return all;
+}
+
+}  // namespace
+
+/// A plate that rests curved has the energy ½ B (κ − κ_r)² of its normal curvatures [Etzmuß 2002, 2.3.5: II_s − II_r] instead
+/// of ½ B κ²: the difference ½ B κ_r² − B κ_r κ, the force B κ_r ∂κ/∂x.
+std::optional<Term> make_rest_curvature(const Sheet& sheet) {
+  const Material& m = sheet.material;
+  if (sheet.rest.size() == 0 || m.bend_form != BendForm::plate || m.bend_projected) return {};
+  const auto all = std::make_shared<const std::vector<AtRest>>(curvatures_at_rest(sheet));
+  if (all->empty()) return {};
+
+  Term term;
+  term.force = [=](const Configuration& c, Vectors& f) {
+    Strain::Gradient by;
+    for (const auto& [curvature, value, moment] : *all) {
+      curvature.value(c.x, by);
+      for (int j = 0; j < curvature.count(); ++j) f.row(curvature.particle(j)) += curvature.area() * moment * by[j];
+    }
+  };
+  term.energy = [=](const Vectors& x) {
+    double energy = 0;
+    for (const auto& [curvature, value, moment] : *all)
+      energy += curvature.area() * moment * (0.5 * value - curvature.value(x));
+    return energy;
+  };
+  term.jacobian = [=](const Configuration& c, const JacobianEntries& entries) {
+    if (!entries.exact()) return;  // indefinite
+    Strain::Hessian by;
+    for (const auto& [curvature, value, moment] : *all) {
+      curvature.second_derivatives(c.x, by);
+      for (int j = 0; j < curvature.count(); ++j)
+        for (int k = 0; k < curvature.count(); ++k)
+          entries.add_dx(curvature.particle(j), curvature.particle(k), curvature.area() * moment * by[j][k]);
+    }
+  };
+  return term;
+}
+
+}  // namespace drape::model

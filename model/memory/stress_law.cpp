@@ -1,0 +1,59 @@
+#include "model/memory/stress_law.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace drape::model {
+
+Stress CurveLaw::stress(double strain, double, double z) const {
+  const double s = sign(strain), size = s * strain, largest = std::max(z, size);
+  return {s * curve_.stress(size, largest) - linear_ * strain, curve_.slope(size, largest) - linear_};
+}
+
+double CurveLaw::carry(double strain, double, double z) const { return std::max(z, sign(strain) * strain); }
+
+double CurveLaw::rate(double strain, double strain_rate, double z) const {
+  const double s = sign(strain);
+  return s * strain < z ? 0 : std::max(0.0, s * strain_rate);
+}
+
+double CurveLaw::energy(double strain, double z) const {
+  return curve_.recoverable(sign(strain) * strain, z) - 0.5 * linear_ * strain * strain;
+}
+
+double CurveLaw::branch_slope(double strain, double z) const {
+  const double size = sign(strain) * strain;
+  return curve_.branch_slope(size, std::max(z, size)) - linear_;
+}
+
+double FrictionLaw::rate(double strain, double strain_rate, double z) const {
+  return variable_slope(strain, strain_rate, z) * strain_rate;
+}
+
+Stress JenkinLaw::stress(double strain, double from, double z) const {
+  const double slope = limit_ / onset_, free = z + slope * (strain - from);
+  return std::abs(free) < limit_ ? Stress{free, slope} : Stress{std::copysign(limit_, free), 0};
+}
+
+double JenkinLaw::variable_slope(double, double strain_rate, double z) const {
+  return std::abs(z) >= limit_ && z * strain_rate > 0 ? 0 : limit_ / onset_;
+}
+
+double JenkinLaw::energy(double, double z) const { return 0.5 * z * z * onset_ / limit_; }
+
+Stress DahlLaw::stress(double strain, double from, double z) const {
+  const double s = strain < from ? -1 : 1, left = (z - s * limit_) * std::exp(-s * (strain - from) / onset_);
+  return {s * limit_ + left, -s * left / onset_};
+}
+
+double DahlLaw::variable_slope(double, double strain_rate, double z) const {
+  return (limit_ - (strain_rate < 0 ? -z : z)) / onset_;
+}
+
+/// ∫ F dε on the way to no stress.
+double DahlLaw::energy(double, double z) const {
+  const double part = std::abs(z) / limit_;
+  return limit_ * onset_ * (part - std::log1p(part));
+}
+
+}  // namespace drape::model

@@ -1,0 +1,163 @@
+#include "model/sheet/strain.hpp"
+
+#include <algorithm>
+
+#include "model/sheet/normals.hpp"
+
+namespace drape::model {
+namespace {
+
+/// w less its part along N.
+Eigen::Vector3d tangential(const Eigen::Vector3d& w, const Eigen::Vector3d& N) { return w - w.dot(N) * N; }
+
+}  // namespace
+
+Strain Strain::of_edge(const Edge& edge) {
+  Strain strain;
+  strain.count_ = 2, strain.vectors_ = 1;
+  strain.area_ = edge.length * edge.width;
+  strain.size_ = edge.length;
+  strain.particles_ = {edge.i, edge.j};
+  strain.weights_[0] = {-1}, strain.weights_[1] = {1};
+  return strain;
+}
+
+Strain Strain::of_quadrant(const Grid& grid, EdgeEnds p, EdgeEnds q) {
+  Strain strain;
+  strain.kind_ = Kind::quadrant;
+  strain.vectors_ = 2;
+  strain.size_ = grid.spacing_u() * grid.spacing_v();
+  strain.area_ = strain.size_ / 4;
+  const auto add = [&](int particle, int vector, double weight) {
+    int j = 0;
+    while (j < strain.count_ && strain.particles_[j] != particle) ++j;
+    if (j == strain.count_) strain.particles_[strain.count_++] = particle;
+    strain.weights_[j][vector] = weight;
+  };
+  add(p.begin, 0, -1), add(p.end, 0, 1);
+  add(q.begin, 1, -1), add(q.end, 1, 1);
+  return strain;
+}
+
+Strain Strain::of_curvature(const Grid& grid, int a, int b, bool weft) {
+  Strain strain;
+  strain.kind_ = Kind::curvature;
+  strain.count_ = 5, strain.vectors_ = 3;
+  strain.area_ = grid.cell_area(a, b);
+  const int left = grid.index(std::max(a - 1, 0), b), right = grid.index(std::min(a + 1, grid.nu - 1), b);
+  const int lower = grid.index(a, std::max(b - 1, 0)), upper = grid.index(a, std::min(b + 1, grid.nv - 1));
+  const double l = weft ? grid.spacing_u() : grid.spacing_v(), w = 1 / (l * l);
+  // On a border the particle itself is one of the neighbours that span its normal.
+  strain.particles_ = {grid.index(a, b), left, right, lower, upper};
+  strain.weights_[0][2] = -2 * w;
+  strain.weights_[1] = {-1, 0, weft ? w : 0};
+  strain.weights_[2] = {1, 0, weft ? w : 0};
+  strain.weights_[3] = {0, -1, weft ? 0 : w};
+  strain.weights_[4] = {0, 1, weft ? 0 : w};
+  return strain;
+}
+
+Strain Strain::of_twist(const Grid& grid, const Cell& cell) {
+  Strain strain;
+  strain.kind_ = Kind::curvature;
+  strain.count_ = 4, strain.vectors_ = 3;
+  strain.area_ = grid.spacing_u() * grid.spacing_v();
+  for (const int a : {0, 1})
+    for (const int b : {0, 1}) {
+      strain.particles_[2 * a + b] = cell.corner[a][b];
+      strain.weights_[2 * a + b] = {a == 1 ? 1.0 : -1.0, b == 1 ? 1.0 : -1.0, (a == b ? 1 : -1) / strain.area_};
+    }
+  return strain;
+}
+
+Strain::Columns Strain::vectors(const Vectors& x) const {
+  Columns of;
+  for (int k = 0; k < vectors_; ++k) {
+    of[k].setZero();
+    for (int j = 0; j < count_; ++j)
+      if (weights_[j][k] != 0) of[k] += weights_[j][k] * x.row(particles_[j]).transpose();
+  }
+  return of;
+}
+
+double Strain::value(const Columns& of) const {
+  switch (kind_) {
+    case Kind::edge: return of[0].norm() / size_ - 1;
+    case Kind::quadrant: return of[0].dot(of[1]) / size_;
+    case Kind::curvature: break;
+  }
+  return of[0].cross(of[1]).normalized().dot(of[2]);
+}
+
+/// By each of the vectors. With c = a × b and ε = <w, c>/|c|: ∂ε/∂w = N, ∂ε/∂c = (w − ε N)/|c|.
+Strain::Columns Strain::derivatives(const Columns& of) const {
+  switch (kind_) {
+    case Kind::edge: return {of[0] / (of[0].norm() * size_)};
+    case Kind::quadrant: return {of[1] / size_, of[0] / size_};
+    case Kind::curvature: break;
+  }
+  const Eigen::Vector3d c = of[0].cross(of[1]), N = c.normalized();
+  const Eigen::Vector3d by_c = tangential(of[2], N) / c.norm();
+  return {of[1].cross(by_c), by_c.cross(of[0]), N};
+}
+
+double Strain::value(const Vectors& x) const { return value(vectors(x)); }
+
+double Strain::value(const Vectors& x, Gradient& by) const {
+  const Columns of = vectors(x), slopes = derivatives(of);
+  for (int j = 0; j < count_; ++j) {
+    by[j].setZero();
+    for (int k = 0; k < vectors_; ++k)
+      if (weights_[j][k] != 0) by[j] += weights_[j][k] * slopes[k];
+  }
+  return value(of);
+}
+
+double Strain::rate(const Vectors& x, const Vectors& v) const {
+  const Columns slopes = derivatives(vectors(x)), rates = vectors(v);
+  double rate = 0;
+  for (int k = 0; k < vectors_; ++k) rate += slopes[k].dot(rates[k]);
+  return rate;
+}
+
+void Strain::second_derivatives(const Vectors& x, Hessian& by) const {
+  std::array<std::array<Eigen::Matrix3d, most_vectors>, most_vectors> H;
+  for (auto& row : H) row.fill(Eigen::Matrix3d::Zero());
+  const Columns of = vectors(x);
+  const Eigen::Matrix3d I = Eigen::Matrix3d::Identity();
+  switch (kind_) {
+    case Kind::edge: {
+      const double r = of[0].norm();
+      const Eigen::Vector3d n = of[0] / r;
+      H[0][0] = (I - n * n.transpose()) / (r * size_);
+      break;
+    }
+    case Kind::quadrant: H[0][1] = H[1][0] = I / size_; break;
+    case Kind::curvature: {
+      // ∂²ε/∂c² = −(N w_tᵀ + w_t Nᵀ + ε P)/|c|², ∂²ε/∂w∂c = P/|c|, P = 1 − N Nᵀ, w_t = P w; d²c = 2 da × db.
+      const Eigen::Vector3d c = of[0].cross(of[1]), N = c.normalized(), w_t = tangential(of[2], N);
+      const double n = c.norm(), value_now = N.dot(of[2]);
+      const Eigen::Matrix3d P = I - N * N.transpose();
+      const Eigen::Matrix3d cc = -(N * w_t.transpose() + w_t * N.transpose() + value_now * P) / (n * n), wc = P / n;
+      const Eigen::Matrix3d by_a = -cross_matrix(of[1]), by_b = cross_matrix(of[0]);  // dc = by_a da + by_b db
+      H[0][0] = by_a.transpose() * cc * by_a;
+      H[1][1] = by_b.transpose() * cc * by_b;
+      H[0][1] = by_a.transpose() * cc * by_b - cross_matrix(w_t / n);
+      H[1][0] = H[0][1].transpose();
+      H[2][0] = wc * by_a;
+      H[2][1] = wc * by_b;
+      H[0][2] = H[2][0].transpose();
+      H[1][2] = H[2][1].transpose();
+      break;
+    }
+  }
+  for (int j = 0; j < count_; ++j)
+    for (int k = 0; k < count_; ++k) {
+      by[j][k].setZero();
+      for (int m = 0; m < vectors_; ++m)
+        for (int n = 0; n < vectors_; ++n)
+          if (const double weight = weights_[j][m] * weights_[k][n]; weight != 0) by[j][k] += weight * H[m][n];
+    }
+}
+
+}  // namespace drape::model

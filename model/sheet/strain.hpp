@@ -1,0 +1,65 @@
+#pragma once
+
+#include <array>
+
+#include "model/sheet/cells.hpp"
+
+namespace drape::model {
+
+/// A scalar strain ε of a few particles, with its derivatives. It is a function of up to three vectors a, b, w, each a sum of
+/// positions with constant weights.
+class Strain {
+ public:
+  static constexpr int most_particles = 5;
+
+  /// |p|/l − 1 of an edge.
+  static Strain of_edge(const Edge& edge);
+
+  /// <s_u, s_v> of a quadrant, the edges p and q of which share a corner.
+  static Strain of_quadrant(const Grid& grid, EdgeEnds p, EdgeEnds q);
+
+  /// The normal curvature <N, s_uu> or <N, s_vv> of particle (a, b), which is not on the ends of the line [1/m].
+  static Strain of_curvature(const Grid& grid, int a, int b, bool weft);
+
+  /// The twist <N, s_uv> of a cell [1/m].
+  static Strain of_twist(const Grid& grid, const Cell& cell);
+
+  double area() const { return area_; }  ///< that it stands for [m²]
+
+  /// Of an edge: whether it is one, its ends and its rest length [m].
+  bool couples_edge() const { return kind_ == Kind::edge; }
+  EdgeEnds edge() const { return {particles_[0], particles_[1]}; }
+  double length() const { return size_; }
+
+  int count() const { return count_; }
+  int particle(int j) const { return particles_[j]; }
+
+  double value(const Vectors& x) const;
+  double rate(const Vectors& x, const Vectors& v) const;
+
+  /// The value, and ∂ε/∂x_j for all particles.
+  using Gradient = std::array<Eigen::Vector3d, most_particles>;
+  double value(const Vectors& x, Gradient& by) const;
+
+  /// All blocks ∂²ε/∂x_j∂x_k.
+  using Hessian = std::array<std::array<Eigen::Matrix3d, most_particles>, most_particles>;
+  void second_derivatives(const Vectors& x, Hessian& by) const;
+
+ private:
+  enum class Kind { edge, quadrant, curvature };
+  static constexpr int most_vectors = 3;
+  using Columns = std::array<Eigen::Vector3d, most_vectors>;
+
+  Columns vectors(const Vectors& x) const;
+  double value(const Columns& of) const;
+  Columns derivatives(const Columns& of) const;
+
+  Kind kind_ = Kind::edge;
+  int count_ = 0, vectors_ = 0;
+  double area_ = 0;
+  double size_ = 1;  ///< length of an edge, area of a quadrant
+  std::array<int, most_particles> particles_{};
+  std::array<std::array<double, most_vectors>, most_particles> weights_{};
+};
+
+}  // namespace drape::model
