@@ -33,12 +33,14 @@ Moduli moduli(const FabricTables& tables, const Green& e) {
   const Eigen::Vector4d stretched = row(k + 1) + (place - k) * (row(k + 2) - row(k + 1));
 
   Moduli found{2 * (row(0) + weight * (stretched - row(0))), Eigen::Matrix<double, 4, 3>::Zero()};
-  if (weight > 0 && weight < 1 && radius > 0) {
-    const Eigen::RowVector3d radius_by = Eigen::RowVector3d(half, -half, 2 * across) / radius;
-    const Eigen::RowVector3d stretch_by = (Eigen::RowVector3d(1, 1, 0) + radius_by) / (2 * stretch);
+  if (weight > 0 && radius > 0) {
     const Eigen::RowVector3d turn_by = Eigen::RowVector3d(-across, across, 2 * half) / (2 * radius * radius);
-    found.by_strain = 2 / measured_stretch * (stretched - row(0)) * stretch_by;
-    found.by_strain += 2 * weight * std::copysign(1 / between_angles, turn) * (row(k + 2) - row(k + 1)) * turn_by;
+    found.by_strain = 2 * weight * std::copysign(1 / between_angles, turn) * (row(k + 2) - row(k + 1)) * turn_by;
+    if (weight < 1) {
+      const Eigen::RowVector3d radius_by = Eigen::RowVector3d(half, -half, 2 * across) / radius;
+      const Eigen::RowVector3d stretch_by = (Eigen::RowVector3d(1, 1, 0) + radius_by) / (2 * stretch);
+      found.by_strain += 2 / measured_stretch * (stretched - row(0)) * stretch_by;
+    }
   }
   for (int i = 0; i < 4; ++i)
     if (found.C[i] < 0) found.C[i] = 0, found.by_strain.row(i).setZero();

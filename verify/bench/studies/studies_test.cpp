@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <string>
 #include <variant>
 #include <vector>
@@ -490,6 +491,15 @@ TEST_F(ProgramStudies, LimitsAreThoseOfTheTheory) {
   EXPECT_THAT(numbers(all[0], "onset", "method", "imex-euler"), Each(testing::DoubleNear(2, 0.1)));
   EXPECT_THAT(numbers(all[0], "onset", "method", "sbdf2"), Each(testing::DoubleNear(4.0 / 3, 0.07)));
   EXPECT_THAT(numbers(all[0], "onset", "method", "imex-midpoint"), Each(testing::DoubleNear(1, 0.05)));
+}
+
+TEST_F(ProgramStudies, FabricsBendAsWasPublished) {
+  program.output({"study", "fabrics", "--quick", "--method", "verlet", "--out", "study.h5"});
+  std::map<std::string, std::vector<std::string>> judged;
+  for (const Table& table : results::read_tables(program.folder() / "study.h5")) judged[table.name] = verdicts(table);
+  EXPECT_THAT(judged["fabric-tests"], AllOf(SizeIs(2 * 4), Each("met: within 5 %"))) << "along weft and warp";
+  EXPECT_THAT(judged["cantilever"], AllOf(SizeIs(14), Each("met: within 1 %")));
+  EXPECT_TRUE(judged.contains("field-winners"));
 }
 
 TEST_F(ProgramStudies, ScalingTellsWhatWasChosenAndWhatAnIterationMoves) {

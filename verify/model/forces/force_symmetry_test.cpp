@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <utility>
 
@@ -80,6 +81,12 @@ TEST_P(SymmetryOf, WeftAndWarpAreAlike) {
   for (const auto modulus : {&Material::tension, &Material::damping, &Material::bend, &Material::bend_damping})
     other.material.*modulus = exchanged(force.material.*modulus);
   std::swap(other.material.weft_curve, other.material.warp_curve);
+  std::swap(other.material.weft_bend_curve, other.material.warp_bend_curve);
+  other.material.friction.bend = exchanged(force.material.friction.bend);
+  model::FabricTables& tables = other.material.tables;
+  for (auto& [C11, C12, C22, C33] : tables.stretching) std::swap(C11, C22);
+  std::reverse(tables.stretching.begin() + 1, tables.stretching.end());  // 0 to 90 degrees
+  std::reverse(tables.bending.begin(), tables.bending.end());
   const Grid flipped{grid.nv, grid.nu, grid.size_v, grid.size_u};
   const auto flip = [&](const Vectors& field) {
     Vectors result(field.rows(), 3);
