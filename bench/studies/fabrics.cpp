@@ -196,7 +196,7 @@ constexpr ColumnOf<Trial> trial_columns[] = {
      field<&Trial::residual>},
     {"published", "2HB/2B", "1/m", "residual curvature as published", Role::quantity,
      [](const Trial& row) { return row.shows_residual() ? results::to_datum(row.published) : results::Datum(); }},
-    {"judged", "verdict", "", "whether the residual curvature is within 5 % of what is published", Role::verdict,
+    {"verdict", "verdict", "", "whether the residual curvature is within 5 % of what is published", Role::verdict,
      [](const Trial& row) {
        if (!row.shows_residual()) return results::Datum();
        const bool agrees = std::abs(row.residual / row.published - 1) < residual_deviation;
@@ -295,7 +295,7 @@ constexpr ColumnOf<Cantilever> cantilever_columns[] = {
     {"exact", "closed form", "m", "w/8B (L² − 2 HB/w)²", Role::quantity, field<&Cantilever::exact>},
     {"error", "error", "1", "of the deflection, relatively", Role::error,
      [](const Cantilever& row) { return results::to_datum(row.error()); }},
-    {"judged", "verdict", "", "whether 40 cells are within 1 %", Role::verdict,
+    {"verdict", "verdict", "", "whether 40 cells are within 1 %", Role::verdict,
      [](const Cantilever& row) {
        if (row.cells != 40) return results::Datum();
        return results::to_datum(results::check(row.error() < cantilever_allowed, "within 1 %", "not within 1 %"));

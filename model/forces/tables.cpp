@@ -117,10 +117,10 @@ double TableForces::moment(int row, double curvature, double& slope) const {
   const int k = std::min(static_cast<int>(place), 3);
   const bool beyond = place >= 4;
   double now = beyond ? B[4] : B[k] + (place - k) * (B[k + 1] - B[k]);
-  double rise = beyond ? 0 : std::copysign((B[k + 1] - B[k]) / between_curvatures, curvature);
+  double rise = beyond ? 0 : (B[k + 1] - B[k]) / between_curvatures;
   if (now < 0) now = rise = 0;
   const double more = now - (row == 0 ? bend_.weft : bend_.warp);
-  slope = more + rise * curvature;
+  slope = more + rise * std::abs(curvature);
   return more * curvature;
 }
 

@@ -26,7 +26,7 @@ class Strain {
 
   double area() const { return area_; }  ///< that it stands for [m²]
 
-  /// Of an edge: whether it is one, its ends and its rest length [m].
+  /// Whether it is that of an edge; its ends and rest length [m].
   bool couples_edge() const { return kind_ == Kind::edge; }
   EdgeEnds edge() const { return {particles_[0], particles_[1]}; }
   double length() const { return size_; }

@@ -43,8 +43,8 @@ Eigen::MatrixXd differences(const std::function<Eigen::VectorXd(const Vectors&)>
 }
 
 /// Whether every entry is right to the tolerance, relative to the largest entry.
-AssertionResult agree(const Eigen::MatrixXd& numerical, const Eigen::MatrixXd& exact) {
-  if (largest(numerical - exact) <= tolerance * largest(numerical)) return AssertionSuccess();
+AssertionResult agree(const Eigen::MatrixXd& numerical, const Eigen::MatrixXd& exact, double allowed = tolerance) {
+  if (largest(numerical - exact) <= allowed * largest(numerical)) return AssertionSuccess();
   Eigen::Index row = 0, column = 0;
   (numerical - exact).cwiseAbs().maxCoeff<Eigen::PropagateNaN>(&row, &column);
   return AssertionFailure() << "(" << row << ", " << column << ") is " << exact(row, column) << ", by differences "
@@ -75,7 +75,10 @@ class SheetTest : public TestWithParam<Sheet> {
  protected:
   const Grid grid = GetParam().grid.grid;
   const SplitOde ode = ode_of(GetParam().force, grid);
-  const double step = relative_step * spacing(grid);
+  /// Laws that turn somewhere have derivatives of first order only, which steps must not cross: shorter ones round more.
+  const bool turns = ode.memory || by_tables(GetParam().force.material);
+  const double step = (turns ? 1e-6 : relative_step) * spacing(grid);
+  const double allowed = turns ? 1e-6 : tolerance;
 };
 
 class ForcesOf : public SheetTest {};
@@ -102,8 +105,8 @@ TEST_P(ForcesOf, HaveTheirDerivativesAsJacobians) {
   for (const unsigned seed : seeds) {
     const State y = deformed(grid, seed);
     const Jacobian jacobian(ode, y);
-    EXPECT_TRUE(agree(by_positions(ode, y, step), jacobian.dx)) << "∂f/∂x, seed " << seed;
-    EXPECT_TRUE(agree(by_velocities(ode, y, step), jacobian.dv)) << "∂f/∂v, seed " << seed;
+    EXPECT_TRUE(agree(by_positions(ode, y, step), jacobian.dx, allowed)) << "∂f/∂x, seed " << seed;
+    EXPECT_TRUE(agree(by_velocities(ode, y, step), jacobian.dv, allowed)) << "∂f/∂v, seed " << seed;
   }
 }
 

@@ -191,7 +191,7 @@ TEST(SheetWithHysteresis, MovesAsCvodeSays) {
   }
 }
 
-/// Of the thesis' two kinds of memory only curves of tension are in K.
+/// K has the slopes of tension, not those of shear and bending.
 TEST(SheetWithHysteresis, NeverRebuildsItsMatrix) {
   for (const auto& [name, scene] : sheets_with_memory()) {
     const Cloth cloth = model::compile(scene);
