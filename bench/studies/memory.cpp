@@ -188,7 +188,7 @@ model::Scene relaxing_scene() {
   return scene;
 }
 
-/// The same sheet with friction between its yarns, and with curves that bend or have a loop: laws that turn where strains do.
+/// The same sheet with friction between its yarns, and with curves that have a kink or a loop: slopes that jump.
 model::Scene rubbing_scene(model::FrictionKind law) {
   model::Scene scene = smooth_scene();
   scene.name = law == model::FrictionKind::dahl ? "dahl" : "jenkin";
@@ -302,8 +302,10 @@ std::vector<Job> memory(const Question& question) {
           }),
       job("memory-cycles", 1, cycles, cycle_table), orders_on(relaxing_scene(), most_work, converging_or(question.methods))};
   Methods few = question.methods;
-  if (few.empty())
+  if (few.empty()) {
     for (const solver::Method& method : solver::thesis_methods()) few.push_back(&method);
+    for (const char* method : {"bdf3", "esdirk3", "ros3p"}) few.push_back(&solver::method(method));
+  }
   for (const model::Scene& scene : {rubbing_scene(model::FrictionKind::dahl), rubbing_scene(model::FrictionKind::jenkin),
                                     curved_scene(false), curved_scene(true)})
     jobs.push_back(orders_on(scene, most_work, few));
