@@ -13,6 +13,10 @@ namespace {
 
 using Green = Eigen::Vector3d;  ///< ε11, ε22, ε12
 
+/// The piece between five places 0 to 4 that holds a place, the last beyond them; motions that explode come to places that are
+/// not finite.
+int piece(double place) { return place < 4 ? static_cast<int>(place) : 3; }
+
 /// C11, C12, C22, C33 of a state of strain with their derivatives by it.
 struct Moduli {
   Eigen::Vector4d C;
@@ -27,8 +31,8 @@ Moduli moduli(const FabricTables& tables, const Green& e) {
   const double radius = std::hypot(half, across), stretch = std::sqrt(mean + radius);
   const double weight = std::clamp((stretch - 1) / measured_stretch, 0.0, 1.0);
   const double turn = std::atan2(across, half) / 2;
-  const double place = std::min(std::abs(turn) / between_angles, 4.0);
-  const int k = std::min(static_cast<int>(place), 3);
+  const double place = std::abs(turn) / between_angles;
+  const int k = piece(place);
   const auto row = [&](int i) { return Eigen::Map<const Eigen::Vector4d>(tables.stretching[i].data()); };
   const Eigen::Vector4d stretched = row(k + 1) + (place - k) * (row(k + 2) - row(k + 1));
 
@@ -114,7 +118,7 @@ double TableForces::moment(int row, double curvature, double& slope) const {
   constexpr double between_curvatures = 10;  // [1/m]
   const double place = std::abs(curvature) / between_curvatures;
   const auto& B = tables_.bending[row];
-  const int k = std::min(static_cast<int>(place), 3);
+  const int k = piece(place);
   const bool beyond = place >= 4;
   double now = beyond ? B[4] : B[k] + (place - k) * (B[k + 1] - B[k]);
   double rise = beyond ? 0 : (B[k + 1] - B[k]) / between_curvatures;

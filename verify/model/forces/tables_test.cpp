@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "model/cloth.hpp"
@@ -99,6 +100,17 @@ TEST(Tables, BendWithTheStiffnessOfTheCurvature) {
     const Vectors by = (bent(kappa + step) - bent(kappa - step)) / (2 * step), x = bent(kappa);
     const double moment = -evaluate(cloth.ode.force, {x, at_rest(x)}).cwiseProduct(by).sum() / area;
     EXPECT_NEAR(moment, B * kappa, 1e-6 * std::abs(B * kappa)) << kappa;
+  }
+}
+
+/// Where explicit methods explode.
+TEST(Tables, SurviveStatesThatAreNotFinite) {
+  const SplitOde ode = model::compile(denim(grid)).ode;
+  SparseMatrix dx, dv;
+  for (const double size : {1e100, 1e200, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
+    const Vectors x = size * random_vectors(grid.particles(), 1, 7);
+    EXPECT_FALSE(largest(evaluate(ode.force, {x, at_rest(grid.parameters())})) < 1e100);
+    ode.jacobian(0, x, at_rest(grid.parameters()), dx, dv);
   }
 }
 
