@@ -1,6 +1,7 @@
 #include "model/forces/remembered_stresses.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace drape::model {
@@ -77,18 +78,21 @@ void RememberedStresses::add_rest(const Vectors& x, Vectors& f) const {
   }
 }
 
-void RememberedStresses::add_jacobian(const Vectors& x, const JacobianEntries& entries) const {
+/// Where the motion stands at the place that it has passed last, slopes are those of the side to which it goes.
+void RememberedStresses::add_jacobian(const Configuration& c, const JacobianEntries& entries) const {
   Strain::Gradient by;
   Strain::Hessian second;
   for (const Element& element : elements_) {
     const Strain& strain = element.strain;
     if (entries.curvature == Curvature::tension && !strain.couples_edge()) continue;
-    auto [stress, slope] = element.stress(strain.value(x, by));
+    double now = strain.value(c.x, by);
+    if (now == element.from) now = std::nextafter(now, std::copysign(HUGE_VAL, strain.rate(c.x, c.v)));
+    auto [stress, slope] = element.stress(now);
     if (!entries.exact()) {
       slope = std::max(slope, 0.0);
       stress = strain.couples_edge() ? std::max(stress, 0.0) : 0;  // the curvature of other strains is indefinite
     }
-    if (stress != 0) strain.second_derivatives(x, second);
+    if (stress != 0) strain.second_derivatives(c.x, second);
     for (int j = 0; j < strain.count(); ++j)
       for (int k = 0; k < strain.count(); ++k) {
         Eigen::Matrix3d block = -strain.area() * slope * by[j] * by[k].transpose();
@@ -120,7 +124,7 @@ std::optional<Term> remembering_term(std::shared_ptr<RememberedStresses> stresse
   term.without_energy = true;  // laws have one on each branch, which depends on what is remembered
   term.springs = [=](const Vectors& x, Vectors& f) { stresses->add_springs(x, f); };
   term.force = [=](const Configuration& c, Vectors& f) { stresses->add_rest(c.x, f); };
-  term.jacobian = [=](const Configuration& c, const JacobianEntries& entries) { stresses->add_jacobian(c.x, entries); };
+  term.jacobian = [=](const Configuration& c, const JacobianEntries& entries) { stresses->add_jacobian(c, entries); };
   return term;
 }
 

@@ -20,7 +20,7 @@ class RememberedStresses final : public TermMemory {
   /// Both parts, for the term.
   void add_springs(const Vectors& x, Vectors& f) const;
   void add_rest(const Vectors& x, Vectors& f) const;
-  void add_jacobian(const Vectors& x, const JacobianEntries& entries) const;
+  void add_jacobian(const Configuration& c, const JacobianEntries& entries) const;
 
   int variables() const override { return static_cast<int>(elements_.size()); }
   void begin(int, double, const solver::State& y, const Variables& z) override { pass(0, y, z); }

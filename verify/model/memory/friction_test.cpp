@@ -191,6 +191,32 @@ TEST(SheetWithHysteresis, MovesAsCvodeSays) {
   }
 }
 
+/// Where a sheet stands, its Jacobian is that of the side to which it moves: backwards the slopes of loops are others.
+TEST(SheetWithHysteresis, HasTheJacobianOfTheWayItGoes) {
+  for (const auto& [name, scene] : sheets_with_memory()) {
+    const Cloth cloth = model::compile(scene);
+    State y = cloth.start;
+    y.x += sheets::random_vectors(cloth.ode.particles(), 2e-3, 4);
+    cloth.ode.memory->begin(1, 0, cloth.start);
+    cloth.ode.memory->carry(0.1, y);
+    cloth.ode.memory->pass(0.1, y);
+    const Vectors way = sheets::random_vectors(cloth.ode.particles(), 1, 5);
+    for (const double sign : {1.0, -1.0}) {
+      constexpr double step = 1e-8;
+      const Vectors v = sign * way;
+      solver::SparseMatrix dx, dv;
+      cloth.ode.jacobian(0.1, y.x, v, dx, dv);
+      Vectors before, after, at_rest = Vectors::Zero(v.rows(), 3);
+      cloth.ode.force(0.1, y.x, at_rest, before);
+      cloth.ode.force(0.1, y.x + step * v, at_rest, after);
+      const Eigen::VectorXd change = Eigen::Map<const Eigen::VectorXd>(after.data(), after.size()) -
+                                     Eigen::Map<const Eigen::VectorXd>(before.data(), before.size());
+      const Eigen::VectorXd expected = dx * Eigen::Map<const Eigen::VectorXd>(v.data(), v.size());
+      EXPECT_LT((change / step - expected).norm(), 1e-4 * expected.norm()) << name << sign;
+    }
+  }
+}
+
 /// K has the slopes of tension, not those of shear and bending.
 TEST(SheetWithHysteresis, NeverRebuildsItsMatrix) {
   for (const auto& [name, scene] : sheets_with_memory()) {
