@@ -117,7 +117,7 @@ void add_bending(const Grid& grid, const std::shared_ptr<const StressLaw>& weft,
     }
 }
 
-std::optional<Term> remembering_term(std::shared_ptr<RememberedStresses> stresses) {
+std::optional<Term> remembering_term(const std::shared_ptr<RememberedStresses>& stresses) {
   if (stresses->empty()) return {};
   Term term;
   term.memory = stresses;

@@ -56,6 +56,6 @@ void add_bending(const Grid& grid, const std::shared_ptr<const StressLaw>& weft,
                  RememberedStresses& stresses);
 
 /// The term of these; nothing if there are none.
-std::optional<Term> remembering_term(std::shared_ptr<RememberedStresses> stresses);
+std::optional<Term> remembering_term(const std::shared_ptr<RememberedStresses>& stresses);
 
 }  // namespace drape::model

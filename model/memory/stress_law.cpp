@@ -31,29 +31,29 @@ double FrictionLaw::rate(double strain, double strain_rate, double z) const {
 }
 
 Stress JenkinLaw::stress(double strain, double from, double z) const {
-  const double slope = limit_ / onset_, free = z + slope * (strain - from);
-  return std::abs(free) < limit_ ? Stress{free, slope} : Stress{std::copysign(limit_, free), 0};
+  const double slope = limit() / onset(), free = z + slope * (strain - from);
+  return std::abs(free) < limit() ? Stress{free, slope} : Stress{std::copysign(limit(), free), 0};
 }
 
 double JenkinLaw::variable_slope(double, double strain_rate, double z) const {
-  return std::abs(z) >= limit_ && z * strain_rate > 0 ? 0 : limit_ / onset_;
+  return std::abs(z) >= limit() && z * strain_rate > 0 ? 0 : limit() / onset();
 }
 
-double JenkinLaw::energy(double, double z) const { return 0.5 * z * z * onset_ / limit_; }
+double JenkinLaw::energy(double, double z) const { return 0.5 * z * z * onset() / limit(); }
 
 Stress DahlLaw::stress(double strain, double from, double z) const {
-  const double s = strain < from ? -1 : 1, left = (z - s * limit_) * std::exp(-s * (strain - from) / onset_);
-  return {s * limit_ + left, -s * left / onset_};
+  const double s = strain < from ? -1 : 1, left = (z - s * limit()) * std::exp(-s * (strain - from) / onset());
+  return {s * limit() + left, -s * left / onset()};
 }
 
 double DahlLaw::variable_slope(double, double strain_rate, double z) const {
-  return (limit_ - (strain_rate < 0 ? -z : z)) / onset_;
+  return (limit() - (strain_rate < 0 ? -z : z)) / onset();
 }
 
 /// ∫ F dε on the way to no stress.
 double DahlLaw::energy(double, double z) const {
-  const double part = std::abs(z) / limit_;
-  return limit_ * onset_ * (part - std::log1p(part));
+  const double part = std::abs(z) / limit();
+  return limit() * onset() * (part - std::log1p(part));
 }
 
 }  // namespace drape::model

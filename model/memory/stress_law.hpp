@@ -65,6 +65,10 @@ class FrictionLaw : public StressLaw {
   double branch_slope(double, double) const final { return 0; }
 
  protected:
+  double limit() const { return limit_; }
+  double onset() const { return onset_; }
+
+ private:
   double limit_, onset_;
 };
 
