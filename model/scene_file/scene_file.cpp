@@ -105,6 +105,10 @@ void check_together(const Scene& scene, const std::string& origin) {
                      relaxation.quality));
   if ((m.weft_curve.given() || m.warp_curve.given()) && !relaxation.spectrum().empty())
     fail("material.weft_curve: expected no quality, maxwell or series beside it, curves do not relax");
+  if ((by_tables(m) || m.shear_curve.given()) && !relaxation.spectrum().empty())
+    fail(fmt::format("material.{}: expected no quality, maxwell or series beside it, only moduli relax",
+                     by_tables(m) ? "law" : "shear_curve"));
+  if (by_tables(m) && (grid.nu < 2 || grid.nv < 2)) fail("material.law: expected \"linear\", a chain has no quadrants");
   const bool bends = m.bend.any() || m.bend_damping.any();
   if (bends && m.bend_form == BendForm::membrane && !m.bend_projected)
     fail("material.bend_projected = false: expected true, the membrane acts along the normal only");

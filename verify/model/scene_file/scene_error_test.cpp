@@ -78,7 +78,7 @@ const std::vector<BadScene> bad_scenes = {
     {"unknown_word", "material.bend_form = 'disk'", "a.toml:2: material.bend_form = 'disk': expected one of \"membrane\", \"plate\", \"printed\""},
     {"number_for_a_word", "start.plane = 3", "a.toml:2: start.plane = 3: expected one of \"horizontal\", \"vertical\""},
 
-    {"unknown_fabric", "material.fabric = 'felt'", "a.toml:2: material.fabric = 'felt': expected one of \"blanket\", \"denim\", "},
+    {"unknown_fabric", "material.fabric = 'felt'", "a.toml:2: material.fabric = 'felt': expected one of \"blanket\", \"cotton-broad\", \"denim\", "},
     {"curve_of_one_point", "material.weft_curve = [[0, 0]]", "a.toml:2: material.weft_curve = [ [ 0, 0 ] ]: expected at least two points, the first [0, 0]"},
     {"curve_that_begins_elsewhere", "material.weft_curve = [[0, 1], [0.1, 2]]", "a.toml:2: material.weft_curve = "},
     {"unsorted_curve", "material.warp_curve = [[0, 0], [0.5, 3], [0.25, 4]]",
@@ -97,6 +97,19 @@ const std::vector<BadScene> bad_scenes = {
     {"two_kinds_of_relaxation", "material = {maxwell = [[1, 0.5]], quality = 10}", "a.toml: material.quality: expected one of quality, maxwell and series"},
     {"quality_too_low", "material = {quality = 0.3, band = [1, 1e6]}", "a.toml: material.quality: expected more than 0.3 for so wide a band"},
     {"band_of_one_frequency", "material.band = [5, 5]", "a.toml:2: material.band = [ 5, 5 ]: expected [lowest, highest]"},
+
+    {"tables_of_nothing", "material.law = 'tables'", "a.toml:2: material.law = 'tables': expected a material.fabric or a material.stretch_table"},
+    {"tables_with_a_curve", "material = {fabric = 'denim', shear_curve = [[0, 0], [1, 1]], law = 'tables'}", "a.toml:2: material.law = 'tables': expected no curves"},
+    {"tables_that_relax", "material = {fabric = 'denim', law = 'tables', quality = 10}", "a.toml: material.law: expected no quality, maxwell or series beside it"},
+    {"shear_curve_that_relaxes", "material = {shear_curve = [[0, 0], [1, 1]], quality = 10}", "a.toml: material.shear_curve: expected no quality, maxwell or series beside it"},
+    {"tables_of_a_chain", "material = {fabric = 'denim', law = 'tables', bend_projected = false}\ngrid.n = [5, 1]", "a.toml: material.law: expected \"linear\", a chain has no quadrants"},
+    {"table_of_five_rows", "material.stretch_table = [[1, 2, 3, 4], [1, 2, 3, 4], [1, 2, 3, 4], [1, 2, 3, 4], [1, 2, 3, 4]]", "a.toml:2: material.stretch_table = "},
+    {"bend_curve_of_a_membrane", "material = {bend_form = 'membrane', weft_bend_curve = [[0, 0], [1, 1]]}", "a.toml:2: material.weft_bend_curve = [ [ 0, 0 ], [ 1, 1 ] ]: expected material.bend_form \"plate\""},
+    {"shear_curve_as_printed", "material = {shear_form = 'printed', shear_curve = [[0, 0], [1, 1]]}", "a.toml:2: material.shear_curve = [ [ 0, 0 ], [ 1, 1 ] ]: expected material.shear_form \"conservative\""},
+    {"friction_that_feeds", "material.shear_friction = -1", "a.toml:2: material.shear_friction = -1: expected a number of at least 0"},
+    {"friction_at_once", "material.bend_friction_onset = 0", "a.toml:2: material.bend_friction_onset = 0: expected a number above 0"},
+    {"unknown_friction", "material.friction_law = 'coulomb'", "a.toml:2: material.friction_law = 'coulomb': expected one of \"dahl\", \"jenkin\""},
+    {"unknown_rest", "rest.shape = 'round'", "a.toml:2: rest.shape = 'round': expected one of \"flat\", \"start\""},
 
     {"one_particle", "[grid]\nn = 1", "a.toml:3: grid.n = 1: expected at least 2 particles"},
     {"one_by_one", "[grid]\nn = [1, 1]", "a.toml:3: grid.n = [ 1, 1 ]: expected at least 2 particles"},
