@@ -97,11 +97,11 @@ void add_mean_excess(double elastic, const std::array<Averaged, 2>& pair, const 
 /// E = Σ_cells C12 l_u l_v ½(ε_lower + ε_upper) ½(ε_left + ε_right). Algorithm 5 as printed is half a cell off.
 std::optional<Term> make_contraction(const Sheet& sheet) {
   const Material& m = sheet.material;
-  const double C12 = by_tables(m) ? 0 : m.contraction;
-  if (C12 == 0 && m.contraction_damping == 0) return {};
+  const double elastic = by_tables(m) ? 0 : m.contraction;
+  if (elastic == 0 && m.contraction_damping == 0) return {};
   if (sheet.grid.nu < 2 || sheet.grid.nv < 2) return {};  // a chain has no cells
   const double lu = sheet.grid.spacing_u(), lv = sheet.grid.spacing_v();
-  const CellLaw law{.contraction = C12 / 4, .contraction_rate = m.contraction_damping / 4};
+  const CellLaw law{.contraction = elastic / 4, .contraction_rate = m.contraction_damping / 4};
   const Moduli moduli{law.contraction * lu * lv, law.contraction_rate * lu * lv};
   const auto all = std::make_shared<const std::vector<Cell>>(cells(sheet.grid));
 

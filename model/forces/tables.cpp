@@ -18,14 +18,14 @@ using Green = Eigen::Vector3d;  ///< ε11, ε22, ε12
 int piece(double place) { return place < 4 ? static_cast<int>(place) : 3; }
 
 /// C11, C12, C22, C33 of a state of strain with their derivatives by it.
-struct Moduli {
+struct MeasuredModuli {
   Eigen::Vector4d C;
   Eigen::Matrix<double, 4, 3> by_strain;
 };
 
 /// Between the rows of the table, linear in the larger principal stretch and in the angle of its direction; what is negative
 /// counts as 0, beyond the measured stretch moduli are constant, and all are doubled.
-Moduli moduli(const FabricTables& tables, const Green& e) {
+MeasuredModuli moduli(const FabricTables& tables, const Green& e) {
   constexpr double measured_stretch = 1.0 / 6, between_angles = std::numbers::pi / 8;
   const double mean = 1 + e[0] + e[1], half = e[0] - e[1], across = 2 * e[2];  // of 1 + 2 ε
   const double radius = std::hypot(half, across), stretch = std::sqrt(mean + radius);
@@ -36,7 +36,7 @@ Moduli moduli(const FabricTables& tables, const Green& e) {
   const auto row = [&](int i) { return Eigen::Map<const Eigen::Vector4d>(tables.stretching[i].data()); };
   const Eigen::Vector4d stretched = row(k + 1) + (place - k) * (row(k + 2) - row(k + 1));
 
-  Moduli found{2 * (row(0) + weight * (stretched - row(0))), Eigen::Matrix<double, 4, 3>::Zero()};
+  MeasuredModuli found{2 * (row(0) + weight * (stretched - row(0))), Eigen::Matrix<double, 4, 3>::Zero()};
   if (weight > 0 && radius > 0) {
     const Eigen::RowVector3d turn_by = Eigen::RowVector3d(-across, across, 2 * half) / (2 * radius * radius);
     found.by_strain = 2 * weight * std::copysign(1 / between_angles, turn) * (row(k + 2) - row(k + 1)) * turn_by;
