@@ -206,10 +206,10 @@ Eigen::VectorXd masses(const Sheet& sheet) {
   return mass;
 }
 
-/// The sheet of a scene with its rest shape.
-Sheet sheet_of(const Scene& scene) {
+/// The sheet of a scene with its rest shape. `start`: positions at t = 0.
+Sheet sheet_of(const Scene& scene, const Vectors& start) {
   Sheet sheet = scene.sheet;
-  if (scene.rest == RestShape::start) sheet.rest = start(scene).x;
+  if (scene.rest == RestShape::start) sheet.rest = start;
   return sheet;
 }
 
@@ -286,7 +286,7 @@ Cloth compile(const Scene& scene) {
   Cloth cloth;
   cloth.start = start(scene);
   solver::SplitOde& ode = cloth.ode;
-  const auto forces = std::make_shared<Forces>(sheet_of(scene), *ode.work, cloth.plan);
+  const auto forces = std::make_shared<Forces>(sheet_of(scene, cloth.start.x), *ode.work, cloth.plan);
   ode.mass = masses(scene.sheet);
   ode.pins = pins(scene);
   ode.stiffness = forces->stiffness();

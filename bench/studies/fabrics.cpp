@@ -36,6 +36,7 @@ struct Instrument {
   const char* name;
   double largest;
   bool to_both_sides;
+  double model::WeftWarp::*bends;  ///< direction along which it bends; null: it does not
   Vectors (*positions)(const Grid& grid, double strain);
 };
 
@@ -60,23 +61,23 @@ Vectors bent(const Grid& grid, double kappa, bool weft) {
 }
 
 constexpr Instrument instruments[] = {
-    {"stretch along the weft", 0.05, false,
+    {"stretch along the weft", 0.05, false, nullptr,
      [](const Grid& g, double e) {
        return affine(g, {1 + e, 0, 0}, {0, 1, 0});
      }},
-    {"stretch along the warp", 0.05, false,
+    {"stretch along the warp", 0.05, false, nullptr,
      [](const Grid& g, double e) {
        return affine(g, {1, 0, 0}, {0, 1 + e, 0});
      }},
-    {"shear", 0.14, true,
+    {"shear", 0.14, true, nullptr,
      [](const Grid& g, double e) {
        return affine(g, {1, 0, 0}, {std::sin(e), std::cos(e), 0});
      }},
-    {"bending along the weft", 250, true, [](const Grid& g, double kappa) { return bent(g, kappa, true); }},
-    {"bending along the warp", 250, true, [](const Grid& g, double kappa) { return bent(g, kappa, false); }},
+    {"bending along the weft", 250, true, &model::WeftWarp::weft,
+     [](const Grid& g, double kappa) { return bent(g, kappa, true); }},
+    {"bending along the warp", 250, true, &model::WeftWarp::warp,
+     [](const Grid& g, double kappa) { return bent(g, kappa, false); }},
 };
-
-bool bends(const Instrument& instrument) { return instrument.largest > 1; }
 
 struct LoopPoint {
   std::string fabric, test;
@@ -113,7 +114,7 @@ class Sample {
   Sample(const Fabric& fabric, const Instrument& instrument)
       : scene_(sample_of(fabric)), instrument_(instrument), cloth_(model::compile(scene_)), y_(cloth_.start) {
     const Grid& grid = scene_.sheet.grid;
-    area_ = grid.size_u * grid.size_v * (bends(instrument) ? 1 - 1.0 / (grid.nu - 1) : 1);
+    area_ = grid.size_u * grid.size_v * (instrument.bends != nullptr ? 1 - 1.0 / (grid.nu - 1) : 1);
     if (cloth_.ode.memory) cloth_.ode.memory->begin(1, 0, y_);
   }
 
@@ -169,8 +170,8 @@ Trial trial(const Fabric& fabric, const Instrument& instrument) {
   constexpr double round_off = 1e-9;  // of elastic samples, with their positions' differences
   if (std::abs(result.loss) < round_off * std::abs(result.secant) * most * most) result.loss = 0;
   if (std::abs(result.residual) < round_off * most) result.residual = 0;
-  const model::WeftWarp &B = fabric.material.bend, &HB = fabric.material.friction.bend;
-  if (bends(instrument)) result.published = HB.weft / B.weft;
+  const model::Material& m = fabric.material;
+  if (instrument.bends != nullptr) result.published = m.friction.bend.*instrument.bends / m.bend.*instrument.bends;
   return result;
 }
 
@@ -211,13 +212,14 @@ constexpr ColumnOf<LoopPoint> loop_columns[] = {
     {"stress", "stress", "", "N/m, of bending a moment by width [N]", Role::quantity, field<&LoopPoint::stress>},
 };
 
-results::Table loop_table(const std::vector<Trial>& trials) {
+std::vector<results::Table> trial_tables(const std::vector<Trial>& trials) {
   std::vector<LoopPoint> points;
   for (const Trial& one : trials) points.insert(points.end(), one.loop.begin(), one.loop.end());
-  results::Table table = results::make_table("fabric-loops", "Stress over strain of fabrics, to and fro", loop_columns, points);
-  draw(table, results::Figure::over_time,
+  results::Table loops = results::make_table("fabric-loops", "Stress over strain of fabrics, to and fro", loop_columns, points);
+  draw(loops, results::Figure::over_time,
        {{Part::figure, "test"}, {Part::curve, "fabric"}, {Part::x, "strain"}, {Part::y, "stress"}});
-  return table;
+  return {results::make_table("fabric-tests", "Fabrics that are stretched, sheared and bent", trial_columns, trials),
+          std::move(loops)};
 }
 
 // --- Cantilever --------------------------------------------------------------------------------------------------------------
@@ -305,11 +307,7 @@ constexpr ColumnOf<Cantilever> cantilever_columns[] = {
 }  // namespace
 
 std::vector<Job> fabric_tests(const Question& question) {
-  return {job("fabric-tests", 1, trials,
-              [](const std::vector<Trial>& rows) {
-                return results::make_table("fabric-tests", "Fabrics that are stretched, sheared and bent", trial_columns, rows);
-              }),
-          job("fabric-loops", 1, trials, loop_table),
+  return {job("fabric-tests", 1, trials, trial_tables),
           job("cantilever", 1, cantilevers,
               [](const std::vector<Cantilever>& rows) {
                 return results::make_table("cantilever", "Strips of fabrics that hang over an edge, against the closed form",

@@ -72,8 +72,7 @@ void RememberedStresses::add_rest(const Vectors& x, Vectors& f) const {
   Strain::Gradient by;
   for (const Element& element : elements_) {
     const Strain& strain = element.strain;
-    const double pull = strain.area() * element.stress(strain.value(x, by)).value;
-    for (int j = 0; j < strain.count(); ++j) f.row(strain.particle(j)) -= pull * by[j];
+    strain.add_force(element.stress(strain.value(x, by)).value, by, f);
     if (element.stiff) add_pull(f, strain.edge(), -element.spring() * difference(x, strain.edge()));
   }
 }
@@ -81,7 +80,6 @@ void RememberedStresses::add_rest(const Vectors& x, Vectors& f) const {
 /// Where the motion stands at the place that it has passed last, slopes are those of the side to which it goes.
 void RememberedStresses::add_jacobian(const Configuration& c, const JacobianEntries& entries) const {
   Strain::Gradient by;
-  Strain::Hessian second;
   for (const Element& element : elements_) {
     const Strain& strain = element.strain;
     if (entries.curvature == Curvature::tension && !strain.couples_edge()) continue;
@@ -92,13 +90,7 @@ void RememberedStresses::add_jacobian(const Configuration& c, const JacobianEntr
       slope = std::max(slope, 0.0);
       stress = strain.couples_edge() ? std::max(stress, 0.0) : 0;  // the curvature of other strains is indefinite
     }
-    if (stress != 0) strain.second_derivatives(c.x, second);
-    for (int j = 0; j < strain.count(); ++j)
-      for (int k = 0; k < strain.count(); ++k) {
-        Eigen::Matrix3d block = -strain.area() * slope * by[j] * by[k].transpose();
-        if (stress != 0) block -= strain.area() * stress * second[j][k];
-        entries.add_dx(strain.particle(j), strain.particle(k), block);
-      }
+    strain.add_jacobian(c.x, stress, slope, by, entries.add_dx);
   }
 }
 
@@ -109,12 +101,8 @@ void add_shear(const Grid& grid, const std::shared_ptr<const StressLaw>& law, Re
 
 void add_bending(const Grid& grid, const std::shared_ptr<const StressLaw>& weft, const std::shared_ptr<const StressLaw>& warp,
                  RememberedStresses& stresses) {
-  if (grid.nu < 2 || grid.nv < 2) return;  // a chain has no normal
-  for (int b = 0; b < grid.nv; ++b)
-    for (int a = 0; a < grid.nu; ++a) {
-      if (weft && a > 0 && a < grid.nu - 1) stresses.add(Strain::of_curvature(grid, a, b, true), weft);
-      if (warp && b > 0 && b < grid.nv - 1) stresses.add(Strain::of_curvature(grid, a, b, false), warp);
-    }
+  for (const LineCurvature& curvature : line_curvatures(grid))
+    if (const auto& law = curvature.weft ? weft : warp) stresses.add(curvature.strain, law);
 }
 
 std::optional<Term> remembering_term(const std::shared_ptr<RememberedStresses>& stresses) {

@@ -21,11 +21,7 @@ std::vector<AtRest> curvatures_at_rest(const Sheet& sheet) {
     const double value = curvature.value(sheet.rest);
     if (stiffness * value != 0) all.push_back({curvature, value, stiffness * value});
   };
-  for (int b = 0; b < grid.nv; ++b)
-    for (int a = 0; a < grid.nu; ++a) {
-      if (a > 0 && a < grid.nu - 1) add(Strain::of_curvature(grid, a, b, true), B.weft);
-      if (b > 0 && b < grid.nv - 1) add(Strain::of_curvature(grid, a, b, false), B.warp);
-    }
+  for (const auto& [curvature, weft] : line_curvatures(grid)) add(curvature, weft ? B.weft : B.warp);
   for (const Cell& cell : cells(grid)) add(Strain::of_twist(grid, cell), B.weft + B.warp);
   return all;
 }
@@ -45,7 +41,7 @@ std::optional<Term> make_rest_curvature(const Sheet& sheet) {
     Strain::Gradient by;
     for (const auto& [curvature, value, moment] : *all) {
       curvature.value(c.x, by);
-      for (int j = 0; j < curvature.count(); ++j) f.row(curvature.particle(j)) += curvature.area() * moment * by[j];
+      curvature.add_force(-moment, by, f);
     }
   };
   term.energy = [=](const Vectors& x) {
@@ -56,12 +52,10 @@ std::optional<Term> make_rest_curvature(const Sheet& sheet) {
   };
   term.jacobian = [=](const Configuration& c, const JacobianEntries& entries) {
     if (!entries.exact()) return;  // indefinite
-    Strain::Hessian by;
+    Strain::Gradient by;
     for (const auto& [curvature, value, moment] : *all) {
-      curvature.second_derivatives(c.x, by);
-      for (int j = 0; j < curvature.count(); ++j)
-        for (int k = 0; k < curvature.count(); ++k)
-          entries.add_dx(curvature.particle(j), curvature.particle(k), curvature.area() * moment * by[j][k]);
+      curvature.value(c.x, by);
+      curvature.add_jacobian(c.x, -moment, 0, by, entries.add_dx);
     }
   };
   return term;

@@ -17,7 +17,7 @@ using Green = Eigen::Vector3d;  ///< ε11, ε22, ε12
 /// not finite.
 int piece(double place) { return place < 4 ? static_cast<int>(place) : 3; }
 
-/// C11, C12, C22, C33 of a state of strain with their derivatives by it.
+/// C11, C12, C22, C33 of a state of strain; their derivatives by it, 0 unless they are asked for.
 struct MeasuredModuli {
   Eigen::Vector4d C;
   Eigen::Matrix<double, 4, 3> by_strain;
@@ -25,7 +25,7 @@ struct MeasuredModuli {
 
 /// Between the rows of the table, linear in the larger principal stretch and in the angle of its direction; what is negative
 /// counts as 0, beyond the measured stretch moduli are constant, and all are doubled.
-MeasuredModuli moduli(const FabricTables& tables, const Green& e) {
+MeasuredModuli moduli(const FabricTables& tables, const Green& e, bool derivatives) {
   constexpr double measured_stretch = 1.0 / 6, between_angles = std::numbers::pi / 8;
   const double mean = 1 + e[0] + e[1], half = e[0] - e[1], across = 2 * e[2];  // of 1 + 2 ε
   const double radius = std::hypot(half, across), stretch = std::sqrt(mean + radius);
@@ -37,7 +37,7 @@ MeasuredModuli moduli(const FabricTables& tables, const Green& e) {
   const Eigen::Vector4d stretched = row(k + 1) + (place - k) * (row(k + 2) - row(k + 1));
 
   MeasuredModuli found{2 * (row(0) + weight * (stretched - row(0))), Eigen::Matrix<double, 4, 3>::Zero()};
-  if (weight > 0 && radius > 0) {
+  if (derivatives && weight > 0 && radius > 0) {
     const Eigen::RowVector3d turn_by = Eigen::RowVector3d(-across, across, 2 * half) / (2 * radius * radius);
     found.by_strain = 2 * weight * std::copysign(1 / between_angles, turn) * (row(k + 2) - row(k + 1)) * turn_by;
     if (weight < 1) {
@@ -59,7 +59,7 @@ struct Stresses {
 };
 
 Stresses stresses(const FabricTables& tables, const Green& e, bool exact) {
-  const auto [C, by] = moduli(tables, e);
+  const auto [C, by] = moduli(tables, e, exact);
   Stresses found{{C[0] * e[0] + C[1] * e[1], C[2] * e[1] + C[1] * e[0], C[3] * e[2]}, Eigen::Matrix3d::Zero()};
   found.by_strain.diagonal() << C[0], C[2], C[3];
   if (!exact) return found;  // a symmetric positive part
@@ -79,12 +79,7 @@ class TableForces {
   void add_jacobian(const Vectors& x, const JacobianEntries& entries) const;
 
  private:
-  /// What bends beside the plate, whose B is that of no curvature.
-  struct Bending {
-    Strain curvature;
-    int row;  ///< of the table
-  };
-  double moment(int row, double curvature, double& slope) const;
+  double moment(bool weft, double curvature, double& slope) const;
   Green strain(const Eigen::Vector3d& s_u, const Eigen::Vector3d& s_v) const {
     return {(s_u.squaredNorm() - 1) / 2, (s_v.squaredNorm() - 1) / 2, s_u.dot(s_v) / 2};
   }
@@ -94,7 +89,7 @@ class TableForces {
   double lu_, lv_;
   std::vector<Edge> edges_;
   std::vector<Cell> cells_;
-  std::vector<Bending> bendings_;
+  std::vector<LineCurvature> bendings_;  ///< beside the plate, whose B is that of no curvature
 };
 
 TableForces::TableForces(const Sheet& sheet)
@@ -106,24 +101,20 @@ TableForces::TableForces(const Sheet& sheet)
       edges_(edges(sheet.grid)),
       cells_(cells(sheet.grid)) {
   if (sheet.material.bend_form != BendForm::plate) return;
-  for (int b = 0; b < sheet.grid.nv; ++b)
-    for (int a = 0; a < sheet.grid.nu; ++a) {
-      if (a > 0 && a < sheet.grid.nu - 1) bendings_.push_back({Strain::of_curvature(sheet.grid, a, b, true), 0});
-      if (b > 0 && b < sheet.grid.nv - 1) bendings_.push_back({Strain::of_curvature(sheet.grid, a, b, false), 2});
-    }
+  bendings_ = line_curvatures(sheet.grid);
 }
 
 /// (B(κ) − B) κ with its derivative: B(κ) is linear between the curvatures of the table and constant beyond.
-double TableForces::moment(int row, double curvature, double& slope) const {
+double TableForces::moment(bool weft, double curvature, double& slope) const {
   constexpr double between_curvatures = 10;  // [1/m]
   const double place = std::abs(curvature) / between_curvatures;
-  const auto& B = tables_.bending[row];
+  const auto& B = tables_.bending[weft ? 0 : 2];
   const int k = piece(place);
   const bool beyond = place >= 4;
   double now = beyond ? B[4] : B[k] + (place - k) * (B[k + 1] - B[k]);
   double rise = beyond ? 0 : (B[k + 1] - B[k]) / between_curvatures;
   if (now < 0) now = rise = 0;
-  const double more = now - (row == 0 ? bend_.weft : bend_.warp);
+  const double more = now - (weft ? bend_.weft : bend_.warp);
   slope = more + rise * std::abs(curvature);
   return more * curvature;
 }
@@ -141,10 +132,7 @@ void TableForces::add_rest(const Vectors& x, Vectors& f) const {
     add_pull(f, {edge.i, edge.j}, -along(spring_, edge) * edge.width / edge.length * difference(x, {edge.i, edge.j}));
   Strain::Gradient by;
   double slope = 0;
-  for (const auto& [curvature, row] : bendings_) {
-    const double M = curvature.area() * moment(row, curvature.value(x, by), slope);
-    for (int j = 0; j < curvature.count(); ++j) f.row(curvature.particle(j)) -= M * by[j];
-  }
+  for (const auto& [curvature, weft] : bendings_) curvature.add_force(moment(weft, curvature.value(x, by), slope), by, f);
 }
 
 void TableForces::add_jacobian(const Vectors& x, const JacobianEntries& entries) const {
@@ -169,20 +157,10 @@ void TableForces::add_jacobian(const Vectors& x, const JacobianEntries& entries)
     }
   if (!shear) return;
   Strain::Gradient by;
-  Strain::Hessian second;
-  for (const auto& [curvature, row] : bendings_) {
-    double slope = 0;
-    const double M = moment(row, curvature.value(x, by), slope);
-    if (exact)
-      curvature.second_derivatives(x, second);
-    else
-      slope = std::max(slope, 0.0);
-    for (int j = 0; j < curvature.count(); ++j)
-      for (int k = 0; k < curvature.count(); ++k) {
-        Eigen::Matrix3d block = -curvature.area() * slope * by[j] * by[k].transpose();
-        if (exact) block -= curvature.area() * M * second[j][k];
-        dx(curvature.particle(j), curvature.particle(k), block);
-      }
+  double slope = 0;
+  for (const auto& [curvature, weft] : bendings_) {
+    const double M = moment(weft, curvature.value(x, by), slope);
+    curvature.add_jacobian(x, exact ? M : 0, exact ? slope : std::max(slope, 0.0), by, dx);
   }
 }
 

@@ -14,8 +14,6 @@ std::size_t Polyline::piece(double x) const {
 Polyline Polyline::smoothed() const {
   Polyline smooth = *this;
   if (points_.size() < 2) return smooth;
-  const auto length = [&](std::size_t k) { return points_[k + 1][0] - points_[k][0]; };
-  const auto chord = [&](std::size_t k) { return (points_[k + 1][1] - points_[k][1]) / length(k); };
   const std::size_t last = points_.size() - 1;
   smooth.slopes_.assign(points_.size(), 0);
   smooth.slopes_.front() = chord(0);
@@ -27,18 +25,16 @@ Polyline Polyline::smoothed() const {
   return smooth;
 }
 
-double Polyline::chord_slope(double x) const {
-  const std::size_t k = piece(x);
-  return (points_[k + 1][1] - points_[k][1]) / (points_[k + 1][0] - points_[k][0]);
-}
+double Polyline::chord_slope(double x) const { return chord(piece(x)); }
 
 // A cubic piece is y0 + l (m0 s + (3 c − 2 m0 − m1) s² + (m0 + m1 − 2 c) s³) with s from 0 to 1, the length l and the chord's
 // slope c.
 
 double Polyline::slope(double x) const {
-  if (slopes_.empty()) return chord_slope(x);
   const std::size_t k = piece(x);
-  const double s = (x - points_[k][0]) / (points_[k + 1][0] - points_[k][0]), c = chord_slope(x);
+  const double c = chord(k);
+  if (slopes_.empty()) return c;
+  const double s = (x - points_[k][0]) / length(k);
   const double m0 = slopes_[k], m1 = slopes_[k + 1];
   if (s <= 0) return m0;
   return s >= 1 ? m1 : m0 + s * (2 * (3 * c - 2 * m0 - m1) + s * 3 * (m0 + m1 - 2 * c));
@@ -46,7 +42,7 @@ double Polyline::slope(double x) const {
 
 double Polyline::value(double x) const {
   const std::size_t k = piece(x);
-  const double l = points_[k + 1][0] - points_[k][0], along = x - points_[k][0], c = chord_slope(x);
+  const double l = length(k), along = x - points_[k][0], c = chord(k);
   if (slopes_.empty()) return points_[k][1] + c * along;
   const double s = along / l, m0 = slopes_[k], m1 = slopes_[k + 1];
   if (s <= 0) return points_[k][1] + m0 * along;
@@ -56,9 +52,7 @@ double Polyline::value(double x) const {
 
 /// From the beginning of piece k, which holds x or is followed by it.
 double Polyline::integral_of_piece(std::size_t k, double x) const {
-  const double along = x - points_[k][0];
-  const double l = points_[k + 1][0] - points_[k][0], s = along / l;
-  const double c = (points_[k + 1][1] - points_[k][1]) / l;
+  const double l = length(k), along = x - points_[k][0], s = along / l, c = chord(k);
   if (slopes_.empty() || s <= 0) return along * (points_[k][1] + 0.5 * (slopes_.empty() ? c : slopes_[k]) * along);
   const double m0 = slopes_[k], m1 = slopes_[k + 1];
   if (s > 1) return integral_of_piece(k, points_[k + 1][0]) + (along - l) * (points_[k + 1][1] + 0.5 * m1 * (along - l));

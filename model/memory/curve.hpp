@@ -34,6 +34,8 @@ class Polyline {
 
  private:
   std::size_t piece(double x) const;
+  double length(std::size_t k) const { return points_[k + 1][0] - points_[k][0]; }
+  double chord(std::size_t k) const { return (points_[k + 1][1] - points_[k][1]) / length(k); }  ///< slope of a piece
   double integral_of_piece(std::size_t k, double x) const;
 
   std::vector<Point> points_;

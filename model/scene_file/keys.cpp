@@ -157,14 +157,15 @@ void read_shear_curve(const Value& value, Scene& scene) {
 
 // --- Tables of a fabric ------------------------------------------------------------------------------------------------------
 
-void read_stretch_table(const Value& value, Scene& scene) {
-  scene.sheet.material.tables.stretching = {};
-  if (!value.list().empty()) scene.sheet.material.tables.stretching = value.numbers<6, 4>();
+template <std::size_t rows, std::size_t columns>
+void read_rows(const Value& value, std::array<std::array<double, columns>, rows>& table) {
+  table = {};
+  if (!value.list().empty()) table = value.numbers<rows, columns>();
 }
 
-void read_bend_table(const Value& value, Scene& scene) {
-  scene.sheet.material.tables.bending = {};
-  if (!value.list().empty()) scene.sheet.material.tables.bending = value.numbers<3, 5>();
+template <auto which>
+void read_numbers(const Value& value, Scene& scene) {
+  read_rows(value, scene.sheet.material.tables.*which);
 }
 
 /// No rows if all numbers are 0.
@@ -347,9 +348,9 @@ std::span<const SceneKey> scene_key_table() {
       {"material.friction_law", "", "\"dahl\" (approaches its limit exponentially) or \"jenkin\" (elastic up to its limit)",
        in_material<&Material::friction, &Friction::law>, check::one_of<friction_kinds>},
       {"material.stretch_table", "N/m", "C11, C12, C22, C33 of a fabric, half of them, in six rows: at rest, and stretched by a sixth along 0, 22.5, 45, 67.5 and 90 degrees",
-       read_stretch_table, table_data<&FabricTables::stretching>},
+       read_numbers<&FabricTables::stretching>, table_data<&FabricTables::stretching>},
       {"material.bend_table", "N m", "B along 0, 45 and 90 degrees, each for curvatures of 0, 10, 20, 30 and 40/m",
-       read_bend_table, table_data<&FabricTables::bending>},
+       read_numbers<&FabricTables::bending>, table_data<&FabricTables::bending>},
       {"material.law", "", "\"linear\" (by the moduli) or \"tables\" (by those of the fabric instead of k1, k2, C12, G; B beside them)",
        read_law, law_data},
 

@@ -109,6 +109,8 @@ void check_together(const Scene& scene, const std::string& origin) {
     fail(fmt::format("material.{}: expected no quality, maxwell or series beside it, only moduli relax",
                      by_tables(m) ? "law" : "shear_curve"));
   if (by_tables(m) && (grid.nu < 2 || grid.nv < 2)) fail("material.law: expected \"linear\", a chain has no quadrants");
+  if (scene.rest != RestShape::flat && (grid.nu < 2 || grid.nv < 2))
+    fail("rest.shape: expected \"flat\", the curvature of a chain has no normal");
   const bool bends = m.bend.any() || m.bend_damping.any();
   if (bends && m.bend_form == BendForm::membrane && !m.bend_projected)
     fail("material.bend_projected = false: expected true, the membrane acts along the normal only");

@@ -160,4 +160,15 @@ void Strain::second_derivatives(const Vectors& x, Hessian& by) const {
     }
 }
 
+std::vector<LineCurvature> line_curvatures(const Grid& grid) {
+  std::vector<LineCurvature> all;
+  if (grid.nu < 2 || grid.nv < 2) return all;
+  for (int b = 0; b < grid.nv; ++b)
+    for (int a = 0; a < grid.nu; ++a) {
+      if (a > 0 && a < grid.nu - 1) all.push_back({Strain::of_curvature(grid, a, b, true), true});
+      if (b > 0 && b < grid.nv - 1) all.push_back({Strain::of_curvature(grid, a, b, false), false});
+    }
+  return all;
+}
+
 }  // namespace drape::model

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include "model/sheet/cells.hpp"
 
@@ -45,6 +46,24 @@ class Strain {
   using Hessian = std::array<std::array<Eigen::Matrix3d, most_particles>, most_particles>;
   void second_derivatives(const Vectors& x, Hessian& by) const;
 
+  /// Adds the force −A σ ∂ε/∂x of a stress σ, and the blocks of its Jacobian, −A (dσ/dε ∂ε/∂x ∂ε/∂xᵀ + σ ∂²ε/∂x²). `by`: the
+  /// gradient.
+  void add_force(double stress, const Gradient& by, Vectors& f) const {
+    const double pull = area_ * stress;
+    for (int j = 0; j < count_; ++j) f.row(particles_[j]) -= pull * by[j];
+  }
+  template <class Add>
+  void add_jacobian(const Vectors& x, double stress, double slope, const Gradient& by, const Add& add) const {
+    Hessian second;
+    if (stress != 0) second_derivatives(x, second);
+    for (int j = 0; j < count_; ++j)
+      for (int k = 0; k < count_; ++k) {
+        Eigen::Matrix3d block = -area_ * slope * by[j] * by[k].transpose();
+        if (stress != 0) block -= area_ * stress * second[j][k];
+        add(particles_[j], particles_[k], block);
+      }
+  }
+
  private:
   enum class Kind { edge, quadrant, curvature };
   static constexpr int most_vectors = 3;
@@ -61,5 +80,14 @@ class Strain {
   std::array<int, most_particles> particles_{};
   std::array<std::array<double, most_vectors>, most_particles> weights_{};
 };
+
+/// A curvature along weft or warp.
+struct LineCurvature {
+  Strain strain;
+  bool weft;
+};
+
+/// Those of all particles that have one, particle by particle; none on a chain, which has no normals.
+std::vector<LineCurvature> line_curvatures(const Grid& grid);
 
 }  // namespace drape::model

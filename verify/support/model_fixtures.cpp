@@ -1,6 +1,7 @@
 #include "verify/support/model_fixtures.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 
 namespace drape::verify::sheets {
@@ -70,6 +71,17 @@ std::vector<Sheet> sheets_where(const std::function<bool(const Sheet&)>& holds) 
 }
 
 std::string name_of(const testing::TestParamInfo<Sheet>& test) { return test.param.force.name + "_on_" + test.param.grid.name; }
+
+Vectors cylinder(const Grid& grid, double kappa) {
+  Vectors x = grid.parameters();
+  const double l = grid.spacing_u(), angle = 2 * std::asin(kappa * l / 2);
+  for (int b = 0; b < grid.nv; ++b)
+    for (int a = 1; a < grid.nu; ++a) {
+      const double turn = angle * (a - 0.5);
+      x.row(grid.index(a, b)) = x.row(grid.index(a - 1, b)) + l * Eigen::RowVector3d(std::cos(turn), 0, std::sin(turn));
+    }
+  return x;
+}
 
 double spacing(const Grid& grid) { return std::min(grid.spacing_u(), grid.spacing_v()); }
 

@@ -122,6 +122,9 @@ std::vector<Sheet> sheets_where(const std::function<bool(const Sheet&)>& holds);
 /// Name of a value-parameterised test.
 std::string name_of(const testing::TestParamInfo<Sheet>& test);
 
+/// A sheet that is bent along the weft to a cylinder of this curvature [1/m], with its edges for chords.
+Vectors cylinder(const Grid& grid, double kappa);
+
 /// The smaller spacing, the length by which displacements are measured.
 double spacing(const Grid& grid);
 

@@ -52,17 +52,6 @@ TEST(RestCurvature, HoldsPleatsWithoutForce) {
   }
 }
 
-Vectors cylinder(const Grid& grid, double kappa) {
-  Vectors x = grid.parameters();
-  const double l = grid.spacing_u(), angle = 2 * std::asin(kappa * l / 2);
-  for (int b = 0; b < grid.nv; ++b)
-    for (int a = 1; a < grid.nu; ++a) {
-      const double turn = angle * (a - 0.5);
-      x.row(grid.index(a, b)) = x.row(grid.index(a - 1, b)) + l * Eigen::RowVector3d(std::cos(turn), 0, std::sin(turn));
-    }
-  return x;
-}
-
 Scene curled(double kappa) {
   Scene scene;
   scene.sheet.grid = {.nu = 9, .nv = 4, .size_u = 0.2, .size_v = 0.1};

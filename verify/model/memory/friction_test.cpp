@@ -281,23 +281,13 @@ TEST(Friction, KeepsTheCurvatureOfKawabatasTest) {
   m.damping = {0.1, 0.1};
   m.friction = {.law = FrictionKind::jenkin, .bend = {HB, 0}, .bend_onset = 2};
   const Cloth cloth = model::compile(scene);
-  const model::Grid& grid = scene.sheet.grid;
-  const auto bent = [&](double kappa) {
-    State y = cloth.start;
-    const double l = grid.spacing_u(), angle = 2 * std::asin(kappa * l / 2);
-    for (int b = 0; b < grid.nv; ++b)
-      for (int a = 1; a < grid.nu; ++a) {
-        const double turn = angle * (a - 0.5);
-        y.x.row(grid.index(a, b)) = y.x.row(grid.index(a - 1, b)) + l * Eigen::RowVector3d(std::cos(turn), 0, std::sin(turn));
-      }
-    return y;
-  };
-  State y = bent(80);
+  State y = cloth.start;
+  y.x = sheets::cylinder(scene.sheet.grid, 80);
   cloth.ode.memory->begin(1, 0, cloth.start);
   cloth.ode.memory->carry(1e-3, y);
   solver::Integrator integrator(cloth.ode, solver::method("implicit-euler"), {}, y);
   ASSERT_EQ(integrate(integrator, 50, 1e-2).outcome, Outcome::success);
-  const double kappa = model::Strain::of_curvature(grid, 4, 1, true).value(integrator.state().x);
+  const double kappa = model::Strain::of_curvature(scene.sheet.grid, 4, 1, true).value(integrator.state().x);
   EXPECT_NEAR(kappa, HB / B, 0.02 * HB / B);
 }
 

@@ -109,6 +109,7 @@ const std::vector<BadScene> bad_scenes = {
     {"friction_that_feeds", "material.shear_friction = -1", "a.toml:2: material.shear_friction = -1: expected a number of at least 0"},
     {"friction_at_once", "material.bend_friction_onset = 0", "a.toml:2: material.bend_friction_onset = 0: expected a number above 0"},
     {"unknown_friction", "material.friction_law = 'coulomb'", "a.toml:2: material.friction_law = 'coulomb': expected one of \"dahl\", \"jenkin\""},
+    {"chain_that_rests_curved", "rest.shape = 'start'\ngrid.n = [5, 1]", "a.toml: rest.shape: expected \"flat\", the curvature of a chain has no normal"},
     {"unknown_rest", "rest.shape = 'round'", "a.toml:2: rest.shape = 'round': expected one of \"flat\", \"start\""},
 
     {"one_particle", "[grid]\nn = 1", "a.toml:3: grid.n = 1: expected at least 2 particles"},

@@ -21,11 +21,7 @@ std::vector<Strain> strains(const Grid& grid) {
     for (const auto& [p, q] : quadrants(cell)) all.push_back(Strain::of_quadrant(grid, p, q));
     all.push_back(Strain::of_twist(grid, cell));
   }
-  for (int b = 0; b < grid.nv; ++b)
-    for (int a = 0; a < grid.nu; ++a) {
-      if (a > 0 && a < grid.nu - 1) all.push_back(Strain::of_curvature(grid, a, b, true));
-      if (b > 0 && b < grid.nv - 1) all.push_back(Strain::of_curvature(grid, a, b, false));
-    }
+  for (const model::LineCurvature& curvature : line_curvatures(grid)) all.push_back(curvature.strain);
   return all;
 }
 
