@@ -12,7 +12,7 @@ namespace drape::model {
 /// What exists in a compiled scene, decided once: the rest costs nothing.
 struct Plan {
   std::vector<std::string> terms;           ///< forces with nonzero coefficients
-  std::vector<std::string> without_energy;  ///< those that are elastic without being the gradient of an energy
+  std::vector<std::string> without_energy;  ///< those that are elastic and have no mean force: no energy, or a difficult one
   bool normals = false;                     ///< whether any of them asks for normals
   int particles = 0;
   int pinned_dofs = 0;  ///< of 3N

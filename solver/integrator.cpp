@@ -83,7 +83,7 @@ Integrator::Integrator(const SplitOde& ode, const Method& method, const Options&
     throw std::invalid_argument("method '" + std::string(method.name) +
                                 "': expected a method that responds to obstacles, which this scene has");
   if (method.needs_energies && !ode.without_energy.empty())
-    throw std::invalid_argument("method '" + std::string(method.name) + "': expected elastic forces with energies, not '" +
+    throw std::invalid_argument("method '" + std::string(method.name) + "': expected elastic forces with mean forces, not '" +
                                 ode.without_energy.front() + "'");
   const LinearCounters registered(*ode.work);  // so that explicit methods record zeros
   if (ode.memory) {

@@ -80,7 +80,7 @@ struct SplitOde {
   /// nothing, as where energies are quadratic.
   std::function<void(double t, const Vectors& x0, const Vectors& x1, Vectors& f)> mean_excess;
 
-  /// Names of the elastic forces that are not the gradient of an energy, and have no such mean.
+  /// Names of the elastic forces that have no such mean, as where they are not the gradient of an energy.
   std::vector<std::string> without_energy;
 
   /// ∂f/∂x and ∂f/∂v of the whole force, 3N × 3N; coordinate c of particle i has the index 3i + c.

@@ -54,7 +54,7 @@ solver::StepControl step_control(const std::vector<int>& bounds) {
 
 std::string for_obstacles() { return names_of(solver::methods(), std::mem_fn(&solver::Method::meets_obstacles)); }
 
-/// The elastic forces without an energy that keep the method from the scene; empty if none does.
+/// The elastic forces without a mean force that keep the method from the scene; empty if none does.
 std::string in_the_way(const solver::Method& method, const model::Scene& scene) {
   return method.needs_energies ? fmt::format("{}", fmt::join(model::forces_without_energy(scene.sheet), ", ")) : "";
 }
@@ -94,7 +94,7 @@ Group run_group(const RunArguments& a) {
       throw std::invalid_argument(fmt::format("--passes: method '{}': expected one of the stage solvers {}, not {}", name,
                                               ending_after_passes(), spec.options.stage->name));
     if (const std::string forces = in_the_way(*spec.method, scene); !forces.empty())
-      throw std::invalid_argument(fmt::format("method '{}': expected elastic forces with energies, not {}", name, forces));
+      throw std::invalid_argument(fmt::format("method '{}': expected elastic forces with mean forces, not {}", name, forces));
     for (const double h : a.steps) {
       spec.step = h;
       group.push_back(spec);

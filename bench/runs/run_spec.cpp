@@ -97,7 +97,7 @@ std::string reason_against(const solver::Method& method, const model::Scene& sce
   if (!scene.obstacles.empty() && !method.meets_obstacles) return "meets no obstacles";
   if (method.needs_energies)
     if (const auto forces = model::forces_without_energy(scene.sheet); !forces.empty())
-      return fmt::format("needs energies of {}", fmt::join(forces, ", "));
+      return fmt::format("needs mean forces of {}", fmt::join(forces, ", "));
   return "";
 }
 

@@ -37,6 +37,7 @@ std::optional<Term> make_rest_curvature(const Sheet& sheet) {
   if (all->empty()) return {};
 
   Term term;
+  term.without_energy = true;  // it has one, but no mean force
   term.force = [=](const Configuration& c, Vectors& f) {
     Strain::Gradient by;
     for (const auto& [curvature, value, moment] : *all) {

@@ -9,6 +9,7 @@ std::optional<Term> make_linear_damping(const Sheet& sheet);
 std::optional<Term> make_projected_damping(const Sheet& sheet);
 std::optional<Term> make_shear(const Sheet& sheet);
 std::optional<Term> make_printed_shear(const Sheet& sheet);
+std::optional<Term> make_survey_shear(const Sheet& sheet);
 std::optional<Term> make_friction(const Sheet& sheet);
 std::optional<Term> make_rest_curvature(const Sheet& sheet);
 std::optional<Term> make_tables(const Sheet& sheet);
@@ -34,6 +35,9 @@ std::span<const TermKind> term_kinds() {
        .make = make_projected_damping},
       {.name = "shear", .description = "conservative shear W = ½ G <s_u, s_v>² with its viscous part", .make = make_shear},
       {.name = "printed-shear", .description = "shear as Algorithm 2 prints it", .make = make_printed_shear},
+      {.name = "survey-shear",
+       .description = "shear of the models in 2.1.2: diagonals, triangles, hinges, Baraff and Witkin",
+       .make = make_survey_shear},
       {.name = "relaxation",
        .description = "what Maxwell elements forget of tension and shear, 2.4.2",
        .make = make_relaxation},

@@ -57,7 +57,7 @@ struct Term {
 
   GridLaw active_law;           ///< part of `law` that neither has an energy nor only dissipates
   bool active = false;          ///< whether `force` neither has an energy nor only dissipates
-  bool without_energy = false;  ///< whether it has an elastic part that is not the gradient of `energy`
+  bool without_energy = false;  ///< whether it has an elastic part that has no mean force, as where it has no `energy`
 
   /// Adds the compliant constraints that stand for all of `law` except `unconstrained_law`; absent: none, they stand for
   /// nothing.

@@ -14,7 +14,7 @@ namespace drape::model {
 namespace {
 
 constexpr std::string_view damping_forms[] = {"linear", "projected"};
-constexpr std::string_view shear_forms[] = {"conservative", "printed"};
+constexpr std::string_view shear_forms[] = {"conservative", "printed", "diagonals", "triangles", "hinges", "baraff-witkin"};
 constexpr std::string_view bend_forms[] = {"membrane", "plate", "printed", "printed-is-border"};
 constexpr std::string_view border_cells[] = {"dual", "whole"};
 constexpr std::string_view curve_forms[] = {"affine", "smooth"};
@@ -185,7 +185,7 @@ void read_law(const Value& value, Scene& scene) {
   if (m.tables.stretching == FabricTables{}.stretching)
     value.fail("a material.fabric or a material.stretch_table with \"tables\"");
   if (m.shear_form != ShearForm::conservative || m.weft_curve.given() || m.warp_curve.given() || m.shear_curve.given())
-    value.fail("no curves and no printed shear with \"tables\"");
+    value.fail("no curves and no other form of shear with \"tables\"");
 }
 
 Data law_data(const Scene& scene) { return std::string(stretch_laws[static_cast<int>(scene.sheet.material.law)]); }
@@ -303,7 +303,7 @@ std::span<const SceneKey> scene_key_table() {
        in_material<&Material::damping_form>, check::one_of<damping_forms>},
       {"material.shear", "N/m", "G", in_material<&Material::shear>, check::non_negative},
       {"material.shear_damping", "N s/m", "dG", in_material<&Material::shear_damping>, check::non_negative},
-      {"material.shear_form", "", "\"conservative\" or \"printed\" (Algorithm 2 of the thesis)",
+      {"material.shear_form", "", "\"conservative\", \"printed\" (Algorithm 2 of the thesis), \"diagonals\", \"triangles\", \"hinges\" or \"baraff-witkin\"",
        in_material<&Material::shear_form>, check::one_of<shear_forms>},
       {"material.shear_curve", "", "instead of G, a curve of loading: list of [<s_u, s_v>, N/m] from [0, 0]",
        read_shear_curve, curve_data<&Material::shear_curve, &StressCurve::loading>},

@@ -97,6 +97,8 @@ void check_together(const Scene& scene, const std::string& origin) {
   const auto fail = [&](std::string_view what) { throw SceneError(fmt::format("{}: {}", origin, what)); };
   if (m.contraction * m.contraction >= m.tension.weft * m.tension.warp && m.contraction > 0)
     fail("material.contraction: expected C12² below k1 k2, or the material would collapse");
+  if (m.shear_damping > 0 && m.shear_form > ShearForm::printed)
+    fail("material.shear_damping: expected 0 beside a material.shear_form of the survey, which has no viscous part");
   const Relaxation& relaxation = m.relaxation;
   if ((relaxation.quality > 0) + !relaxation.maxwell.empty() + !relaxation.series.empty() > 1)
     fail("material.quality: expected one of quality, maxwell and series");

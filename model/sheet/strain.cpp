@@ -1,6 +1,7 @@
 #include "model/sheet/strain.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "model/sheet/normals.hpp"
 
@@ -9,6 +10,20 @@ namespace {
 
 /// w less its part along N.
 Eigen::Vector3d tangential(const Eigen::Vector3d& w, const Eigen::Vector3d& N) { return w - w.dot(N) * N; }
+
+/// The cosine c = <p, q>/(|p| |q|) of the angle between two vectors, with its derivatives.
+struct Angle {
+  double c, sine;
+  Eigen::Vector3d p, q;  ///< of length 1
+  double p_length, q_length;
+  Eigen::Vector3d by_p, by_q;
+
+  Angle(const Eigen::Vector3d& whole_p, const Eigen::Vector3d& whole_q) : p_length(whole_p.norm()), q_length(whole_q.norm()) {
+    p = whole_p / p_length, q = whole_q / q_length;
+    c = p.dot(q), sine = p.cross(q).norm();
+    by_p = (q - c * p) / p_length, by_q = (p - c * q) / q_length;
+  }
+};
 
 }  // namespace
 
@@ -36,6 +51,12 @@ Strain Strain::of_quadrant(const Grid& grid, EdgeEnds p, EdgeEnds q) {
   };
   add(p.begin, 0, -1), add(p.end, 0, 1);
   add(q.begin, 1, -1), add(q.end, 1, 1);
+  return strain;
+}
+
+Strain Strain::of_angle(const Grid& grid, EdgeEnds p, EdgeEnds q) {
+  Strain strain = of_quadrant(grid, p, q);
+  strain.kind_ = Kind::angle;
   return strain;
 }
 
@@ -84,6 +105,7 @@ double Strain::value(const Columns& of) const {
   switch (kind_) {
     case Kind::edge: return of[0].norm() / size_ - 1;
     case Kind::quadrant: return of[0].dot(of[1]) / size_;
+    case Kind::angle: return std::asin(of[0].normalized().dot(of[1].normalized()));
     case Kind::curvature: break;
   }
   return of[0].cross(of[1]).normalized().dot(of[2]);
@@ -94,6 +116,10 @@ Strain::Columns Strain::derivatives(const Columns& of) const {
   switch (kind_) {
     case Kind::edge: return {of[0] / (of[0].norm() * size_)};
     case Kind::quadrant: return {of[1] / size_, of[0] / size_};
+    case Kind::angle: {
+      const Angle angle(of[0], of[1]);
+      return {angle.by_p / angle.sine, angle.by_q / angle.sine};
+    }
     case Kind::curvature: break;
   }
   const Eigen::Vector3d c = of[0].cross(of[1]), N = c.normalized();
@@ -133,6 +159,21 @@ void Strain::second_derivatives(const Vectors& x, Hessian& by) const {
       break;
     }
     case Kind::quadrant: H[0][1] = H[1][0] = I / size_; break;
+    case Kind::angle: {
+      // dε = dc/s and d²ε = d²c/s + c dc dcᵀ/s³, with s the sine.
+      const Angle angle(of[0], of[1]);
+      const double c = angle.c, s = angle.sine, bent = c / (s * s * s);
+      const Eigen::Matrix3d across_p = I - angle.p * angle.p.transpose(), across_q = I - angle.q * angle.q.transpose();
+      const auto twice = [&](const Eigen::Vector3d& n, double r, const Eigen::Vector3d& by, const Eigen::Matrix3d& across) {
+        const Eigen::Matrix3d of_c = -(n * by.transpose() + by * n.transpose()) / r - c / (r * r) * across;
+        return Eigen::Matrix3d(of_c / s + bent * by * by.transpose());
+      };
+      H[0][0] = twice(angle.p, angle.p_length, angle.by_p, across_p);
+      H[1][1] = twice(angle.q, angle.q_length, angle.by_q, across_q);
+      H[0][1] = across_p * across_q / (angle.p_length * angle.q_length * s) + bent * angle.by_p * angle.by_q.transpose();
+      H[1][0] = H[0][1].transpose();
+      break;
+    }
     case Kind::curvature: {
       // ∂²ε/∂c² = −(N w_tᵀ + w_t Nᵀ + ε P)/|c|², ∂²ε/∂w∂c = P/|c|, P = 1 − N Nᵀ, w_t = P w; d²c = 2 da × db.
       const Eigen::Vector3d c = of[0].cross(of[1]), N = c.normalized(), w_t = tangential(of[2], N);

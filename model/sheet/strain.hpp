@@ -19,6 +19,9 @@ class Strain {
   /// <s_u, s_v> of a quadrant, the edges p and q of which share a corner.
   static Strain of_quadrant(const Grid& grid, EdgeEnds p, EdgeEnds q);
 
+  /// The angle between the edges p and q less than a right one, asin <p, q>/(|p| |q|).
+  static Strain of_angle(const Grid& grid, EdgeEnds p, EdgeEnds q);
+
   /// The normal curvature <N, s_uu> or <N, s_vv> of particle (a, b), which is not on the ends of the line [1/m].
   static Strain of_curvature(const Grid& grid, int a, int b, bool weft);
 
@@ -65,7 +68,7 @@ class Strain {
   }
 
  private:
-  enum class Kind { edge, quadrant, curvature };
+  enum class Kind { edge, quadrant, angle, curvature };
   static constexpr int most_vectors = 3;
   using Columns = std::array<Eigen::Vector3d, most_vectors>;
 

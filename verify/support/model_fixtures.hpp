@@ -59,6 +59,10 @@ inline void linear_damping(Material& m) { m.damping = {0.7, 0.4}; }
 inline void projected_damping(Material& m) { linear_damping(m), m.damping_form = DampingForm::projected; }
 inline void shear(Material& m) { m.shear = 1.5, m.shear_damping = 0.6; }
 inline void printed_shear(Material& m) { shear(m), m.shear_form = ShearForm::printed; }
+inline void diagonals(Material& m) { m.shear = 1.5, m.shear_form = ShearForm::diagonals; }
+inline void triangles(Material& m) { m.shear = 1.5, m.shear_form = ShearForm::triangles; }
+inline void hinges(Material& m) { m.shear = 1.5, m.shear_form = ShearForm::hinges; }
+inline void baraff_witkin(Material& m) { m.shear = 1.5, m.shear_form = ShearForm::baraff_witkin; }
 inline void contraction(Material& m) { m.contraction = 1.1, m.contraction_damping = 0.3; }
 inline void membrane(Material& m) { m.bend = {0.9, 0.6}, m.bend_damping = {0.2, 0.3}, m.bend_form = BendForm::membrane; }
 inline void plate(Material& m) { m.bend = {0.06, 0.04}, m.bend_damping = {0.01, 0.02}; }

@@ -200,11 +200,105 @@ std::vector<ClaimCase> algorithm_5_is_of_second_order() {
           order_case("in cells, as here", fan, contraction, Place::inside, second)};
 }
 
+// --- The models of the survey, and an objective continuum ------------------------------------------------------------------
+
+/// Energy of a homogeneous strain of a flat sheet without tension.
+double strained_energy(const model::Cloth& cloth, const Eigen::Matrix2d& strain) {
+  solver::Vectors x = cloth.start.x;
+  x.leftCols<2>() += (cloth.start.x.leftCols<2>() * strain.transpose()).eval();
+  return cloth.ode.potential_energy(0, x);
+}
+
+/// C12 over G of a form of shear.
+ClaimCase contraction_of(const char* form, double lower, double upper) {
+  constexpr double e = 1e-4;
+  const auto measured = [&](int n) {
+    const model::Cloth cloth = sheet_of(n, {{"material.shear", "1"}, {"material.shear_form", form}});
+    const auto energy = [&](double weft, double warp, double shear) {
+      return strained_energy(cloth, e * Eigen::Matrix2d{{weft, shear / 2}, {shear / 2, warp}});
+    };
+    const double C12 = (energy(1, 1, 0) - energy(1, -1, 0) - energy(-1, 1, 0) + energy(-1, -1, 0)) / 4;
+    return C12 / (energy(0, 0, 1) + energy(0, 0, -1));
+  };
+  return {form, measured(20), std::abs(measured(20) - measured(10)) + 1e-6, lower, upper};
+}
+
+std::vector<ClaimCase> springs_contract() {
+  constexpr double equal = 0.01;
+  return {contraction_of("diagonals", 1 - equal, 1 + equal), contraction_of("triangles", 1 - equal, 1 + equal),
+          contraction_of("conservative", 1 - equal, 1 + equal)};
+}
+
+/// How the shear modulus of a form grows with the spacing if the constant of its source stays: l to the power of this. The
+/// constant over the modulus is that of forces/survey_shear.cpp, square cells.
+ClaimCase growth_with_spacing(const char* form, double (*constant_by_modulus)(double l)) {
+  const auto modulus = [&](int n) {
+    const double l = side / (n - 1);
+    const std::string G = fmt::format("{:.17g}", 1 / constant_by_modulus(l));
+    const model::Cloth cloth = sheet_of(n, {{"material.shear", G}, {"material.shear_form", form}});
+    constexpr double e = 1e-4;
+    return 2 * strained_energy(cloth, e * Eigen::Matrix2d{{0, 0.5}, {0.5, 0}}) / (e * e * side * side);
+  };
+  return {form, std::log2(modulus(11) / modulus(21)),
+          std::abs(std::log2(modulus(11) * modulus(41) / modulus(21) / modulus(21))), -0.1, 0.1};
+}
+
+std::vector<ClaimCase> constants_are_those_of_the_cloth() {
+  return {growth_with_spacing("diagonals", [](double) { return 1.0; }),
+          growth_with_spacing("hinges", [](double l) { return l * l / 4; }),
+          growth_with_spacing("baraff-witkin", [](double l) { return 2 / (l * l); })};
+}
+
+/// Forces per area of a St. Venant-Kirchhoff continuum with k1 = k2 = 1 and G, and those of the particles, over the strains.
+/// Displacements are of second degree, so that differences of what is linear are exact: what is left is the strains squared.
+std::vector<ClaimCase> tension_differs_by_squares() {
+  constexpr double G = 0.5;
+  using Displacement = Eigen::Vector2d (*)(double u, double v);
+  const auto order = [&](const char* where, Displacement displacement) {
+    const auto difference = [&](double size) {
+      constexpr double d = 1e-3;  // of the differences below, which are exact up to the fourth power of the strains
+      const auto position = [&](double u, double v) {
+        return Eigen::Vector2d(Eigen::Vector2d(u, v) + size * displacement(u, v));
+      };
+      const auto stress = [&](double u, double v) {
+        Eigen::Matrix2d F;
+        F.col(0) = (position(u + d, v) - position(u - d, v)) / (2 * d);
+        F.col(1) = (position(u, v + d) - position(u, v - d)) / (2 * d);
+        const Eigen::Matrix2d E = (F.transpose() * F - Eigen::Matrix2d::Identity()) / 2;
+        return Eigen::Matrix2d(F * Eigen::Matrix2d{{E(0, 0), 2 * G * E(0, 1)}, {2 * G * E(0, 1), E(1, 1)}});
+      };
+      constexpr int n = 21, middle = n / 2;
+      const model::Cloth cloth = sheet_of(n, {{"material.tension", "1"}, {"material.shear", fmt::format("{}", G)}});
+      solver::Vectors x = cloth.start.x, f = x;
+      for (Eigen::Index i = 0; i < x.rows(); ++i)
+        x.row(i).head<2>() = position(cloth.start.x(i, 0), cloth.start.x(i, 1)).transpose();
+      cloth.ode.force(0, x, cloth.start.v, f);
+      const int i = middle + n * middle;
+      const double u = cloth.start.x(i, 0), v = cloth.start.x(i, 1);
+      const Eigen::Vector2d exact =
+          (stress(u + d, v) - stress(u - d, v)).col(0) / (2 * d) + (stress(u, v + d) - stress(u, v - d)).col(1) / (2 * d);
+      return (f.row(i).head<2>().transpose() / cloth.ode.mass[i] - exact).norm();
+    };
+    const double before = std::log2(difference(0.02) / difference(0.01)),
+                 after = std::log2(difference(0.01) / difference(0.005));
+    return ClaimCase{where, after, std::abs(after - before), 1.9, unbounded};
+  };
+  return {order("stretch", [](double u, double v) { return Eigen::Vector2d(u * u / 2 + u, v * v / 2 + v); }),
+          order("shear", [](double u, double v) { return Eigen::Vector2d(v * v / 2 + v, u * u / 2); }),
+          order("both", [](double u, double v) { return Eigen::Vector2d(u * u / 2 + u * v, v * v / 2 + u * v); })};
+}
+
 constexpr Claim of_forces[] = {
     {"P-03", "Etzmuß 2002", "2.5", "Algorithm 3 discretises the membrane, borders included", "order of the force per area", "1",
      algorithm_3_is_consistent},
     {"P-05", "Etzmuß 2002", "2.5", "Algorithm 5 discretises (2.22), to second order as the other forces",
      "order of the force per area", "1", algorithm_5_is_of_second_order},
+    {"C-18", "Etzmuß 2002", "2.3.3", "the error of div_γ is quadratic in the strains",
+     "order of the difference from a continuum in the strains", "1", tension_differs_by_squares},
+    {"C-20", "Etzmuß 2002", "2.1.2, 2.3.3", "diagonal springs couple shear and transverse contraction", "C12 over G", "1",
+     springs_contract},
+    {"C-20b", "Etzmuß 2002", "2.3.4", "constants of springs, hinges and triangles are those of the cloth on every mesh",
+     "power of the spacing by which the shear modulus grows", "1", constants_are_those_of_the_cloth},
     {"C-21", "Etzmuß 2002", "2.3.5", "no forces due to the off-diagonal f are needed",
      "membrane forces over those of a cylinder", "1", no_twist_is_needed},
     {"C-23b", "Etzmuß 2002", "2.3.5", "the whole curvature would counteract shear, the normal curvature does not",

@@ -1,5 +1,6 @@
 // Sheets that rest curved: what is at rest, what it takes to unroll them, and that they return.
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,6 +16,8 @@ namespace {
 
 using namespace sheets;
 using model::BendForm;
+using testing::ElementsAre;
+using testing::IsEmpty;
 
 Material material() {
   Material m;
@@ -108,6 +111,14 @@ TEST(RestCurvature, HasTheForceAndTheJacobianOfItsEnergy) {
     Eigen::VectorXd::Map(exact.data(), exact.size()) = Eigen::VectorXd(dx.col(i));
     EXPECT_LT((column - exact).norm(), 1e-5 * largest(dx)) << i;
   }
+}
+
+/// It has an energy, but no force between two states that keeps it.
+TEST(RestCurvature, IsNotForMethodsThatNeedMeanForces) {
+  Scene scene = scene_of(force_case("unprojected_plate"), five_by_four());
+  EXPECT_THAT(model::compile(scene).ode.without_energy, IsEmpty());
+  scene.sheet.rest = cylinder(scene.sheet.grid, 3);
+  EXPECT_THAT(model::compile(scene).ode.without_energy, ElementsAre("rest-curvature"));
 }
 
 TEST(RestCurvature, IsAKeyOfAScene) {

@@ -106,6 +106,7 @@ const std::vector<BadScene> bad_scenes = {
     {"table_of_five_rows", "material.stretch_table = [[1, 2, 3, 4], [1, 2, 3, 4], [1, 2, 3, 4], [1, 2, 3, 4], [1, 2, 3, 4]]", "a.toml:2: material.stretch_table = "},
     {"bend_curve_of_a_membrane", "material = {bend_form = 'membrane', weft_bend_curve = [[0, 0], [1, 1]]}", "a.toml:2: material.weft_bend_curve = [ [ 0, 0 ], [ 1, 1 ] ]: expected material.bend_form \"plate\""},
     {"shear_curve_as_printed", "material = {shear_form = 'printed', shear_curve = [[0, 0], [1, 1]]}", "a.toml:2: material.shear_curve = [ [ 0, 0 ], [ 1, 1 ] ]: expected material.shear_form \"conservative\""},
+    {"viscous_survey", "material = {shear_damping = 1, shear_form = 'hinges'}", "a.toml: material.shear_damping: expected 0 beside a material.shear_form of the survey"},
     {"friction_that_feeds", "material.shear_friction = -1", "a.toml:2: material.shear_friction = -1: expected a number of at least 0"},
     {"friction_at_once", "material.bend_friction_onset = 0", "a.toml:2: material.bend_friction_onset = 0: expected a number above 0"},
     {"unknown_friction", "material.friction_law = 'coulomb'", "a.toml:2: material.friction_law = 'coulomb': expected one of \"dahl\", \"jenkin\""},

@@ -18,7 +18,10 @@ std::vector<Strain> strains(const Grid& grid) {
   std::vector<Strain> all;
   for (const model::Edge& edge : edges(grid)) all.push_back(Strain::of_edge(edge));
   for (const model::Cell& cell : cells(grid)) {
-    for (const auto& [p, q] : quadrants(cell)) all.push_back(Strain::of_quadrant(grid, p, q));
+    for (const auto& [p, q] : quadrants(cell)) {
+      all.push_back(Strain::of_quadrant(grid, p, q));
+      all.push_back(Strain::of_angle(grid, p, q));
+    }
     all.push_back(Strain::of_twist(grid, cell));
   }
   for (const model::LineCurvature& curvature : line_curvatures(grid)) all.push_back(curvature.strain);
@@ -69,6 +72,8 @@ TEST(Strain, IsThatOfSimpleShapes) {
     EXPECT_NEAR(Strain::of_edge(edge).value(x), edge.weft ? 0.2 : std::hypot(1, 0.3) - 1, 1e-14);
   for (const model::Cell& cell : cells(grid))
     for (const auto& [p, q] : quadrants(cell)) EXPECT_NEAR(Strain::of_quadrant(grid, p, q).value(x), 1.2 * 0.3, 1e-14);
+  for (const model::Cell& cell : cells(grid))
+    for (const auto& [p, q] : quadrants(cell)) EXPECT_NEAR(Strain::of_angle(grid, p, q).value(x), std::atan(0.3), 1e-14);
 
   for (const bool weft : {true, false}) {
     constexpr double angle = 0.3;  // between edges
