@@ -24,8 +24,8 @@ constexpr std::array<std::string_view, 12> part_names{"none",  "figure", "curve"
                                                       "lower", "upper",  "colour", "outline", "detail", "caption"};
 
 /// In the order of Figure.
-constexpr std::array<std::string_view, 6> figure_names{"none",      "convergence", "work-precision",
-                                                       "stability", "over time",   "map"};
+constexpr std::array<std::string_view, 7> figure_names{"none",      "convergence", "work-precision", "stability",
+                                                       "over time", "map",         "curves"};
 
 template <class Value>
 std::optional<Value> named(const auto& names, std::string_view name) {

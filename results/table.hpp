@@ -72,7 +72,7 @@ struct Column {
 };
 
 /// What the report draws of a table besides the table itself.
-enum class Figure { none, convergence, work_precision, stability, over_time, map };
+enum class Figure { none, convergence, work_precision, stability, over_time, map, curves };
 
 /// The figure as files name it, for example "work-precision".
 std::string_view to_string(Figure figure);

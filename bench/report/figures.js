@@ -404,6 +404,40 @@ function overTimeFigure(file, table) {
   }];
 }
 
+/** A curve through the rows of each kind, in their order: loops as well. */
+function curvesFigures(file, table) {
+  const [x, y, curve] = ["x", "y", "curve"].map((part) => partOf(table, part)), figure = figureOf(table);
+  return [...groupBy(rowsOf(table), figure)].map(([title, rows]) => {
+    const kinds = [...groupBy(rows, (row) => row[curve.name])];
+    const make = (width, colours) => {
+      const curves = kinds.map(([name, of]) => ({
+                                 type: "scatter",
+                                 mode: "lines",
+                                 name,
+                                 x: of.map((row) => row[x.name]),
+                                 y: of.map((row) => row[y.name]),
+                                 hovertemplate: `${name}<br>%{x:.4g}: %{y:.4g}<extra></extra>`,
+                                 line: lineStyle(name)
+                               }));
+      return {
+        data: labelled(curves, width, along),
+        layout: {
+          ...baseLayout(width, colours, kinds.length),
+          xaxis: axis(axisTitle(x), colours),
+          yaxis: axis(axisTitle(y), colours)
+        }
+      };
+    };
+    return {
+      file,
+      make,
+      title: `${table.description}: ${title}`,
+      says: `${explained(x)}. ${explained(y)}.${moreCurves(kinds.length)}`,
+      columns: () => columnsWhere(table, (row) => figure(row) === title)
+    };
+  });
+}
+
 const stabilityWords = {
   title: "Stability",
   says: "Each cell is a run, its colour what became of it; thick lines go round what linear theory predicts to fail.",
@@ -422,7 +456,8 @@ const figureMakers = {
   "work-precision": trialsFigure,
   "stability": (file, table) => mapFigures(file, table, stabilityWords),
   "map": (file, table) => mapFigures(file, table, winnersWords),
-  "over time": overTimeFigure
+  "over time": overTimeFigure,
+  "curves": curvesFigures
 };
 
 /** All figures of a table; none if it is only to be read. */

@@ -68,7 +68,10 @@ export const looks = {
     "multigrid": ["star", "longdash"],
     "mic0": ["x", "longdash"]
   },
-  "other_colours": ["#17BECF", "#BCBD22", "#E377C2", "#8D6E63", "#26A69A", "#EF6C00", "#5C6BC0", "#9CCC65"],
+  "other_colours": [
+    "#17BECF", "#E377C2", "#8D6E63", "#9CCC65", "#EF6C00", "#5C6BC0", "#BCBD22", "#26A69A", "#C62828", "#7B1FA2",
+    "#0277BD", "#558B2F", "#F9A825", "#455A64", "#AD1457", "#6D4C41"
+  ],
   "other_marks": [
     ["triangle-down", "dash"], ["pentagon", "dot"], ["hexagon", "dashdot"], ["star-diamond", "longdash"],
     ["hourglass", "dash"]

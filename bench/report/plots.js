@@ -3,18 +3,24 @@
 import {commandLine, csvLink, element, fileName, files} from "./data.js";
 import {looks} from "./looks.js";
 
-/** A number that depends on nothing but the text. */
-const hashed = (text) => [...text].reduce((sum, letter) => (31 * sum + letter.codePointAt(0)) % 1000003, 7);
+/** Takes from a list in turn: the next for each text that it has not seen. */
+function dealer(list) {
+  const dealt = new Map();
+  return (text) => {
+    if (!dealt.has(text)) dealt.set(text, list[dealt.size % list.length]);
+    return dealt.get(text);
+  };
+}
+const otherColour = dealer(looks.other_colours), otherMark = dealer(looks.other_marks);
 
 /**
  * The look of a method with its solvers, "bdf2/newton/cholesky", or of a package: {color, symbol, dash}. What looks.js
- * does not know also has a look of its own.
+ * does not know also has a look of its own on this page.
  */
 export function style(name) {
   const [method, ...solvers] = name.split("/"), solver = solvers.join("/");
-  const other = (list, text) => list[hashed(text) % list.length];
-  const [symbol, dash] = looks.solvers[solver] ?? other(looks.other_marks, solver);
-  return {color: looks.methods[method] ?? other(looks.other_colours, method), symbol, dash};
+  const [symbol, dash] = looks.solvers[solver] ?? otherMark(solver);
+  return {color: looks.methods[method] ?? otherColour(method), symbol, dash};
 }
 
 /** The look of a curve without marks. */

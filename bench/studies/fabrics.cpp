@@ -208,18 +208,40 @@ constexpr ColumnOf<Trial> trial_columns[] = {
 constexpr ColumnOf<LoopPoint> loop_columns[] = {
     {"test", "test", "", "what is done to it", Role::key, field<&LoopPoint::test>},
     {"fabric", "fabric", "", "see bench/run list fabrics", Role::key, field<&LoopPoint::fabric>},
-    {"strain", "strain", "", "of bending a curvature [1/m]", Role::quantity, field<&LoopPoint::strain>},
-    {"stress", "stress", "", "N/m, of bending a moment by width [N]", Role::quantity, field<&LoopPoint::stress>},
+    {"strain", "strain", "1", "of shear the angle", Role::quantity, field<&LoopPoint::strain>},
+    {"stress", "stress", "N/m", "work by strain and area", Role::quantity, field<&LoopPoint::stress>},
 };
 
+constexpr ColumnOf<LoopPoint> bent_columns[] = {
+    loop_columns[0],
+    loop_columns[1],
+    {"curvature", "κ", "1/m", "curvature", Role::quantity, field<&LoopPoint::strain>},
+    {"moment", "moment", "N", "moment by width", Role::quantity, field<&LoopPoint::stress>},
+};
+
+/// One of the two: what is stretched and sheared has other units than what is bent.
+results::Table loop_table(const char* name, const char* title, const ColumnOf<LoopPoint> (&columns)[4],
+                          const std::vector<LoopPoint>& points) {
+  results::Table table = results::make_table(name, title, columns, points);
+  draw(table, results::Figure::curves,
+       {{Part::figure, columns[0].name},
+        {Part::curve, columns[1].name},
+        {Part::x, columns[2].name},
+        {Part::y, columns[3].name}});
+  return table;
+}
+
 std::vector<results::Table> trial_tables(const std::vector<Trial>& trials) {
-  std::vector<LoopPoint> points;
-  for (const Trial& one : trials) points.insert(points.end(), one.loop.begin(), one.loop.end());
-  results::Table loops = results::make_table("fabric-loops", "Stress over strain of fabrics, to and fro", loop_columns, points);
-  draw(loops, results::Figure::over_time,
-       {{Part::figure, "test"}, {Part::curve, "fabric"}, {Part::x, "strain"}, {Part::y, "stress"}});
+  std::vector<LoopPoint> flat, bent;
+  for (const Trial& one : trials)
+    for (const Instrument& instrument : instruments)
+      if (one.test == instrument.name) {
+        std::vector<LoopPoint>& points = instrument.bends != nullptr ? bent : flat;
+        points.insert(points.end(), one.loop.begin(), one.loop.end());
+      }
   return {results::make_table("fabric-tests", "Fabrics that are stretched, sheared and bent", trial_columns, trials),
-          std::move(loops)};
+          loop_table("fabric-loops", "Stress over strain of fabrics, to and fro", loop_columns, flat),
+          loop_table("fabric-bending-loops", "Moment over curvature of fabrics, to and fro", bent_columns, bent)};
 }
 
 // --- Cantilever --------------------------------------------------------------------------------------------------------------

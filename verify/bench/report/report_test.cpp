@@ -167,6 +167,18 @@ Table over_time() {
   return table;
 }
 
+/// Two cloths that are pulled, sheared, and let go.
+Table loops() {
+  Table table{"loops",
+              "Stress over strain",
+              {column("test", "", Role::key, {"pulled", "pulled", "pulled", "sheared", "sheared", "sheared"}),
+               column("cloth", "", Role::key, {"wool", "silk", "wool", "wool", "silk", "silk"}),
+               column("strain", "1", Role::quantity, {0.0, 0.0, 0.1, 0.0, 0.2, 0.0}),
+               column("stress", "N/m", Role::quantity, {0.0, 0.0, 3.0, 0.0, 2.0, -1.0})}};
+  draw(table, Figure::curves, {{Part::figure, "test"}, {Part::curve, "cloth"}, {Part::x, "strain"}, {Part::y, "stress"}});
+  return table;
+}
+
 /// A sheet on a box that rises, beside other obstacles.
 std::string scene_on_box(const std::string& name, const std::string& others) {
   return fmt::format(R"(name = "{}"
@@ -252,10 +264,10 @@ void expect_marks_in_every_figure(const json& seen) {
     EXPECT_GT(marks, 0) << title;
     titles += title + "\n";
   }
-  for (const char* title :
-       {"Distance from", "Work–precision of runs: hung-corners", "Energy: hung-corners", "Updates: hung-corners",
-        "Convergence: sheet", "Work–precision: All that was tried on sheet", "Stability: n = 6", "Contacts: on box",
-        "Clearance: on box", "Least clearance: on box", "Figure 4.3: a sheet"})
+  for (const char* title : {"Distance from", "Work–precision of runs: hung-corners", "Energy: hung-corners",
+                            "Updates: hung-corners", "Convergence: sheet", "Work–precision: All that was tried on sheet",
+                            "Stability: n = 6", "Contacts: on box", "Clearance: on box", "Least clearance: on box",
+                            "Figure 4.3: a sheet", "Stress over strain: pulled", "Stress over strain: sheared"})
     EXPECT_THAT(titles, HasSubstr(title));
 }
 
@@ -337,7 +349,7 @@ void expect_sorting(const json& seen) {
 std::filesystem::path page(const BenchIntegrators& program, const Words& files) {
   {
     results::RunFile file(program.folder() / "tables.h5", results::provenance("bench_integrators study all"));
-    for (const Table& table : {orders(), trials(), atlas(), over_time(), hostile()}) file.add(table);
+    for (const Table& table : {orders(), trials(), atlas(), over_time(), loops(), hostile()}) file.add(table);
   }
   EXPECT_THAT(program.output(Words{"report"} + files + Words{"tables.h5", "--out", "page"}),
               AllOf(HasSubstr("\nOrders of convergence\n"), HasSubstr("\nreport: page/index.html\n")));
