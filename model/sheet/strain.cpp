@@ -164,9 +164,9 @@ void Strain::second_derivatives(const Vectors& x, Hessian& by) const {
       const Angle angle(of[0], of[1]);
       const double c = angle.c, s = angle.sine, bent = c / (s * s * s);
       const Eigen::Matrix3d across_p = I - angle.p * angle.p.transpose(), across_q = I - angle.q * angle.q.transpose();
-      const auto twice = [&](const Eigen::Vector3d& n, double r, const Eigen::Vector3d& by, const Eigen::Matrix3d& across) {
-        const Eigen::Matrix3d of_c = -(n * by.transpose() + by * n.transpose()) / r - c / (r * r) * across;
-        return Eigen::Matrix3d(of_c / s + bent * by * by.transpose());
+      const auto twice = [&](const Eigen::Vector3d& n, double r, const Eigen::Vector3d& by_n, const Eigen::Matrix3d& across) {
+        const Eigen::Matrix3d of_c = -(n * by_n.transpose() + by_n * n.transpose()) / r - c / (r * r) * across;
+        return Eigen::Matrix3d(of_c / s + bent * by_n * by_n.transpose());
       };
       H[0][0] = twice(angle.p, angle.p_length, angle.by_p, across_p);
       H[1][1] = twice(angle.q, angle.q_length, angle.by_q, across_q);

@@ -63,7 +63,8 @@ void find_groups(Table& table) {
 void find_parts(Table& table) {
   switch (table.figure) {
     case Figure::none:
-    case Figure::map: return;  // versions before 6 had no maps
+    case Figure::map:
+    case Figure::curves: return;  // versions before 6 had neither
     case Figure::convergence:
       return draw_known(table, {{Part::figure, "scene"},
                                 {Part::figure, "experiment"},
