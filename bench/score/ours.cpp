@@ -87,7 +87,7 @@ void check_methods(const std::vector<std::string>& methods, const model::Scene& 
       throw std::invalid_argument(fmt::format("method '{}': expected one that meets obstacles, as the scene has some", name));
     if (cell.method->needs_energies && !model::forces_without_energy(scene.sheet).empty())
       throw std::invalid_argument(
-          fmt::format("method '{}': expected elastic forces with energies, as not all of the scene", name));
+          fmt::format("method '{}': expected elastic forces with mean forces, as not all of the scene", name));
   }
 }
 

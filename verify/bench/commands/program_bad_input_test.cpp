@@ -135,7 +135,7 @@ const std::vector<BadInput> bad_inputs = {
     {"BendText", run_with("--set", {"material.bend=soft"}), {"--set", "material.bend = 'soft'", "number"}},
     {"ForceWithoutEnergy",
      {"run", "--scene", "pulled", "--method", "energy-momentum", "--step", "0.01"},
-     {"energy-momentum", "expected elastic forces with energies", "plate"}},
+     {"energy-momentum", "expected elastic forces with mean forces", "plate"}},
     {"OneParticle", run_with("--set", {"grid.n=1"}), {"--set", "grid.n = 1", "at least 2 particles"}},
     {"NoParticles", run_with("--set", {"grid.n=0"}), {"--set", "grid.n = 0", "from 1"}},
     {"EndNegative", run_with("--set", {"end.time=-1"}), {"--set", "end.time = -1", "above 0"}},
