@@ -66,6 +66,7 @@ Integrator::Integrator(const SplitOde& ode, const Method& method, const Options&
       step_{.ode = own_ ? *own_ : ode,
             .options = options_,
             .stage = nullptr,
+            .contacts = nullptr,
             .linearised = nullptr,
             .phi = nullptr,
             .history = history_,
@@ -92,8 +93,8 @@ Integrator::Integrator(const SplitOde& ode, const Method& method, const Options&
     own_->stiffness = ode.memory->stiffness();
   }
   if (method.implicit()) {
-    ContactResponse* const contacts = ode.contacts ? &contacts_.emplace(step_.ode) : nullptr;
-    step_.stage = &stage_.emplace(step_.ode, options_, contacts);
+    if (ode.contacts) step_.contacts = &contacts_.emplace(step_.ode);
+    step_.stage = &stage_.emplace(step_.ode, options_, step_.contacts);
   } else if (ode.contacts) {
     sub_stepping_.impacts = &impacts_.emplace(step_.ode);
   }
@@ -167,9 +168,9 @@ void Integrator::step_without_history() {
   method_.step(step_);
 }
 
-/// Discards the force of the history's newest point if contacts changed its velocities.
+/// Discards the force of the history's newest point if contacts changed its velocities. Sub-steps finish theirs.
 void Integrator::finish_contacts() {
-  if (contacts_ && contacts_->finish(next_.y, history_[0].y)) history_[0].has_f = false;
+  if (contacts_ && !method_.sub_steps && contacts_->finish(next_.y, history_[0].y)) history_[0].has_f = false;
 }
 
 /// Extrapolates the history to the end of the step: v into av, and x into ax if the error estimate needs it.

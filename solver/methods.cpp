@@ -229,7 +229,6 @@ constexpr Method method_rows[] = {
      .order = 2,
      .stages = Stages::linear,
      .step = bridson,
-     .meets_obstacles = false,
      .sub_steps = true},
     {.name = "rkl2",
      .description = "Runge-Kutta-Legendre, explicit, as many stages as damping demands",

@@ -17,6 +17,7 @@ struct Stage {
   double accuracy = 1e-3;          ///< part of the distance between guess and solution that may be left as an error
   double inertia = 1;              ///< μ, for methods whose coefficients in x and in v differ
   const Vectors* start = nullptr;  ///< x0 [m], null for the force at a state
+  bool springs = true;             ///< of linear stages: whether f depends on x; if not, x takes part in contacts only
   double residual = 0;  ///< |M (av − v) + γ f| [N s] at which the stage ends instead of its tolerance, if positive
 };
 

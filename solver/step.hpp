@@ -47,6 +47,7 @@ struct Step {
   const SplitOde& ode;
   const Options& options;
   StageSolver* stage;            ///< null for methods that do not use it
+  ContactResponse* contacts;     ///< of these stages, null if there are no obstacles
   LinearisedSystem* linearised;  ///< null unless the method's stages are linearised
   PhiFunctions* phi;             ///< null unless the method is exponential
   History& history;

@@ -188,7 +188,7 @@ std::vector<Size> sizes_of(const model::Cloth& cloth, const Eigen::Vector3d& gra
     system.filter_residual(stage_step);
     solver::Vectors momentum = cloth.ode.mass.asDiagonal() * (y.v.rowwise() + stage_step * gravity.transpose());
     solver::filter(cloth.ode.pins, momentum);
-    sizes.push_back({system.scale(y, stage_step).b, momentum.norm()});
+    sizes.push_back({system.scale(stage, y).b, momentum.norm()});
   }
   return sizes;
 }

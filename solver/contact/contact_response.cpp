@@ -26,17 +26,49 @@ ContactResponse::ContactResponse(const SplitOde& ode)
       changes_(ode.work->counter("contact_changes", "contacts caught, released, or changed between sticking and sliding")) {}
 
 void ContactResponse::begin(double t0, double h, const State& y0, bool again) {
+  if (!again) remember();
+  step_begin_ = t0;
+  step_ = h;
+  divided_ = false;
+  impulse_.setZero();
+  work_ = 0;
+  contacts_.clear();
+  ode_.contacts(t0, h, y0, contacts_);
+  touch_all(t0, h, y0);
+}
+
+void ContactResponse::begin_part(double t0, double h, const State& y0) {
+  const auto along_normal = [&](const Contact& contact) { return y0.x.row(contact.particle).dot(contact.normal); };
+  if (std::exchange(divided_, true)) {
+    remember();
+  } else {
+    borders_.clear();
+    for (const Contact& contact : contacts_)
+      borders_.push_back({along_normal(contact) - std::max(0.0, contact.gap), contact.least});
+  }
+  for (std::size_t k = 0; k < contacts_.size(); ++k) {
+    const auto [begin, end] = borders_[k];
+    const double moves = (end - begin) / step_, now = begin + (t0 - step_begin_) * moves;
+    contacts_[k].gap = along_normal(contacts_[k]) - now;
+    contacts_[k].least = now + h * moves;
+  }
+  touch_all(t0, h, y0);
+}
+
+void ContactResponse::remember() {
+  past_.clear();
+  for (const Touched& p : touched_)
+    for (std::size_t k = p.begin; k < p.end; ++k)
+      if (active_[k]) past_.push_back({p.particle, contacts_[k].obstacle, p.status, p.force, p.bound});
+}
+
+/// Finds the particles with contacts, and their first constraints.
+void ContactResponse::touch_all(double t0, double h, const State& y0) {
   t0_ = t0;
   h_ = h;
   y0_ = &y0;
   size_ = y0.x.cwiseAbs().maxCoeff();
-  if (!again) past_.clear();
-  for (const Touched& p : touched_)
-    for (std::size_t k = p.begin; k < p.end && !again; ++k)
-      if (active_[k]) past_.push_back({p.particle, contacts_[k].obstacle, p.status, p.force, p.bound});
   touched_.clear();
-  contacts_.clear();
-  ode_.contacts(t0, h, y0, contacts_);
   active_.assign(contacts_.size(), false);
   std::size_t past = 0;
   for (std::size_t begin = 0, end = 0; begin < contacts_.size(); begin = end) {
@@ -286,8 +318,9 @@ bool ContactResponse::finish(State& y1, State& y0) {
     const Eigen::Vector3d v1 = y1.v.row(p.particle), jump = constrained * (p.obstacle - v1);
     y1.v.row(p.particle) += jump;
     const Eigen::Vector3d v0 = y0.v.row(p.particle), stopped = constrained * (p.obstacle - v0);
-    p.impulse = ode_.mass[p.particle] * stopped + h_ * (p.friction - constrained * p.force);
-    p.work = 0.5 * p.impulse.dot(v0 + v1 + jump);
+    const Eigen::Vector3d impulse = ode_.mass[p.particle] * stopped + h_ * (p.friction - constrained * p.force);
+    impulse_ += impulse;
+    work_ += 0.5 * impulse.dot(v0 + v1 + jump);
     const bool impulsive = p.fresh && p.bound > 0;
     if (p.fresh) {  // the reaction to the impact does not last
       p.bound = friction_bound(p, -(p.inverse * p.force));
@@ -304,20 +337,12 @@ bool ContactResponse::finish(State& y1, State& y0) {
   return changed;
 }
 
+bool ContactResponse::impact() const {
+  return std::ranges::any_of(touched_, [](const Touched& p) { return p.fresh; });
+}
+
 int ContactResponse::constrained() const {
   return static_cast<int>(std::ranges::count_if(touched_, [](const Touched& p) { return p.status != Status::free; }));
-}
-
-double ContactResponse::work() const {
-  double sum = 0;
-  for (const Touched& p : touched_) sum += p.work;
-  return sum;
-}
-
-Eigen::Vector3d ContactResponse::impulse() const {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const Touched& p : touched_) sum += p.impulse;
-  return sum;
 }
 
 }  // namespace drape::solver

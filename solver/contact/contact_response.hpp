@@ -28,6 +28,10 @@ class ContactResponse {
   /// hold. `again`: repeats the same step.
   void begin(double t0, double h, const State& y0, bool again = false);
 
+  /// The same for a part of this step, with the contacts that were found for the whole; the borders move evenly. A method that
+  /// divides its steps begins and finishes each part.
+  void begin_part(double t0, double h, const State& y0);
+
   /// Whether nothing can be touched in this step.
   bool empty() const { return touched_.empty(); }
 
@@ -52,9 +56,12 @@ class ContactResponse {
   /// Kinetic energy of the motion that new constraints stop in the step [J].
   double stopped_energy() const;
 
-  int constrained() const;          ///< particles constrained in the last step
-  Eigen::Vector3d impulse() const;  ///< of the obstacles on the particles in the last step [N s]
-  double work() const;              ///< done by these impulses [J]
+  /// Whether the step has new constraints.
+  bool impact() const;
+
+  int constrained() const;                              ///< particles constrained in the last step or sub-step
+  Eigen::Vector3d impulse() const { return impulse_; }  ///< of the obstacles on the particles in the last step [N s]
+  double work() const { return work_; }                 ///< done by these impulses [J]
 
  private:
   enum class Status { free, slides, sticks };
@@ -82,8 +89,6 @@ class ContactResponse {
     Eigen::Vector3d holding = Eigen::Vector3d::Zero();   ///< tangential multiplier of the constraints [N]
     double bound = 0;                                    ///< Σ η λ, its limit [N]
     Eigen::Vector3d force = Eigen::Vector3d::Zero();     ///< f of the stage [N]
-    Eigen::Vector3d impulse = Eigen::Vector3d::Zero();   ///< of the obstacles in the step [N s]
-    double work = 0;                                     ///< of this impulse [J]
 
     Eigen::Matrix3d constrained() const { return allowed - free; }
     Eigen::Matrix3d tangent() const { return allowed - normals * inverse; }
@@ -97,6 +102,8 @@ class ContactResponse {
     double bound;
   };
 
+  void remember();
+  void touch_all(double t0, double h, const State& y0);
   void touch(int particle, std::size_t begin, std::size_t end, std::size_t& past);
   void configure(Touched& p);
   void rebuild_filter();
@@ -114,13 +121,21 @@ class ContactResponse {
   const SplitOde& ode_;
   std::vector<Eigen::Matrix3d> allowed_;  ///< for each particle, if there are pins
   double t0_ = 0, h_ = 0;
-  double size_ = 0;  ///< largest coordinate of a particle [m]
+  double step_begin_ = 0, step_ = 0;  ///< t0 and h of the whole step [s]
+  bool divided_ = false;              ///< whether a part of the step has begun
+  double size_ = 0;                   ///< largest coordinate of a particle [m]
   const State* y0_ = nullptr;
   std::vector<Contact> contacts_;
-  std::vector<char> active_;  ///< for each contact
+  struct Border {
+    double begin, end;
+  };
+  std::vector<Border> borders_;  ///< for each contact, least <x, n> when the step begins and when it ends [m]
+  std::vector<char> active_;     ///< for each contact
   std::vector<Touched> touched_;
   std::vector<Past> past_;
   Filter pinned_, filter_;
+  Eigen::Vector3d impulse_ = Eigen::Vector3d::Zero();
+  double work_ = 0;
   std::int64_t &constrained_particles_, &changes_;
 };
 

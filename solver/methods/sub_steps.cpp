@@ -32,6 +32,7 @@ void sub_step(Step& s, SubStepLimit limit, bool (*whole_step)(Step& s, double su
     done = whole_step(s, substeps);
     if (!done) s.recall();
     if (!done && s.sub_stepping.impacts != nullptr) s.sub_stepping.impacts->begin(s.t, s.h, s.y0());
+    if (!done && s.contacts != nullptr) s.contacts->begin(s.t, s.h, s.y0());
   }
 }
 

@@ -8,7 +8,7 @@ namespace drape::solver {
 
 StageResult StageSolver::fixed_point(const Stage& stage, const Vectors* f_explicit, State& y) {
   StageResult result;
-  result.outcome = system_.prepare(stage.gamma, stage.inertia);
+  result.outcome = system_.prepare(stage);
   if (result.outcome != Outcome::success) return result;
   prescribe(ode_.pins, y.v);
   const auto ended = [&](Outcome outcome) { return StageResult{outcome, result.updates, result.cg_iterations}; };
@@ -31,7 +31,7 @@ StageResult StageSolver::fixed_point(const Stage& stage, const Vectors* f_explic
         system_.adapt_contacts(stage, f_explicit, y, size.target(tolerance), result.updates >= changing_updates);
     const double whole = contacts ? system_.residual().norm() : 0;
     system_.filter_residual(stage.gamma);
-    if (!solved) size = system_.scale(y, stage.gamma);
+    if (!solved) size = system_.scale(stage, y);
     size.round_off = std::max(size.round_off, StageSystem::round_off(whole));
 
     const double residual = system_.residual().norm();

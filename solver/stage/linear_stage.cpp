@@ -5,13 +5,13 @@
 namespace drape::solver {
 
 StageResult StageSolver::one_system(const Stage& stage, const Vectors& f_explicit, State& y) {
-  const Outcome prepared = system_.prepare(stage.gamma, stage.inertia);
+  const Outcome prepared = system_.prepare(stage);
   if (prepared != Outcome::success) return {prepared, 0, 0};
   prescribe(ode_.pins, y.v);
   system_.evaluate(stage, &f_explicit, y);
   system_.filter_residual(stage.gamma);
   if (!std::isfinite(system_.residual().norm())) return {Outcome::not_finite, 0, 0};
-  const LinearResult solved = system_.correct(system_.scale(y, stage.gamma).target(options_.cg_tolerance));
+  const LinearResult solved = system_.correct(system_.scale(stage, y).target(options_.cg_tolerance));
   y.v += system_.correction();
   y.x = stage.ax + stage.gamma * y.v;
   ++work_.updates;

@@ -9,7 +9,7 @@ namespace drape::solver {
 StageResult StageSolver::printed_loop(const Stage& stage, State& y) {
   StageResult result;
   const auto ended = [&](Outcome outcome) { return StageResult{outcome, result.updates, result.cg_iterations}; };
-  const Outcome prepared = system_.prepare(stage.gamma, stage.inertia);
+  const Outcome prepared = system_.prepare(stage);
   if (prepared != Outcome::success) return ended(prepared);
   prescribe(ode_.pins, y.v);
   const int passes = options_.accepted_passes();
@@ -19,7 +19,7 @@ StageResult StageSolver::printed_loop(const Stage& stage, State& y) {
     system_.filter_residual(stage.gamma);
     const double residual = system_.residual().norm();
     if (!std::isfinite(residual)) return ended(Outcome::not_finite);
-    const double target = system_.scale(y, stage.gamma).target(options_.cg_tolerance);
+    const double target = system_.scale(stage, y).target(options_.cg_tolerance);
     if (residual <= target) return ended(Outcome::success);
     if (result.updates == options_.max_updates) return ended(Outcome::not_converged);
     const LinearResult system = system_.correct(target);

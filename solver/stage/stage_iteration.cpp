@@ -21,11 +21,11 @@ void StageIteration::evaluate(const Stage& stage, State& y) {
 StageResult StageIteration::solve(const Stage& stage, State& y) {
   StageResult result;
   const auto ended = [&](Outcome outcome) { return StageResult{outcome, result.updates, result.cg_iterations}; };
-  const Outcome prepared = system_.prepare(stage.gamma, stage.inertia);
+  const Outcome prepared = system_.prepare(stage);
   if (prepared != Outcome::success) return ended(prepared);
   prescribe(ode_.pins, y.v);
   evaluate(stage, y);
-  const StageSystem::Scale size = system_.scale(y, stage.gamma);
+  const StageSystem::Scale size = system_.scale(stage, y);
   const double tolerance = loop_tolerance(options_, stage);
   const double end = stage.residual > 0 ? stage.residual : size.target(tolerance);
   const double linear_target = stage.residual > 0 ? end / 2 : size.target(std::min(options_.cg_tolerance, tolerance / 2));

@@ -126,14 +126,15 @@ double StageSystem::noise(const State& y, double gamma) const {
 }
 
 /// At rest both b and r are round-off only, so that a relative test alone would never pass.
-StageSystem::Scale StageSystem::scale(const State& y, double gamma) {
+StageSystem::Scale StageSystem::scale(const Stage& stage, const State& y) {
+  if (!stage.springs) return {r_.norm(), noise(y, stage.gamma)};
   multiply(A_, y.v, q_);
   ++work_.products;
   work_.bytes += multiply_bytes(A_) + vector_bytes(A_.rows(), 3);
   q_ += r_;
   filter(ode_.pins, q_);
   filtered()(q_);
-  return {q_.norm(), noise(y, gamma)};
+  return {q_.norm(), noise(y, stage.gamma)};
 }
 
 void StageSystem::evaluate(const Stage& stage, const Vectors* f_explicit, State& y) {
@@ -146,9 +147,13 @@ void StageSystem::evaluate(const Stage& stage, const Vectors* f_explicit, State&
       ode_.mean_excess(stage.t, *stage.start, q_, r_);
     }
   } else {
-    multiply(ode_.stiffness, y.x, r_);
-    ++work_.products;
-    work_.bytes += multiply_bytes(ode_.stiffness) + vector_bytes(A_.rows(), 8);
+    if (stage.springs) {
+      multiply(ode_.stiffness, y.x, r_);
+      ++work_.products;
+      work_.bytes += multiply_bytes(ode_.stiffness) + vector_bytes(A_.rows(), 8);
+    } else {
+      r_.setZero();
+    }
     if (ode_.damping.nonZeros() > 0) {
       multiply(ode_.damping, y.v, q_);
       r_ += q_;

@@ -27,6 +27,11 @@ class StageSystem {
   /// Assembles and factors A for this γ and μ, unless its own γ differs by less than `different`, relatively.
   Outcome prepare(double gamma, double inertia, double different = 1e-12);
 
+  /// Assembles and factors the matrix of a linear stage: A, or M − γ D if its springs are explicit.
+  Outcome prepare(const Stage& stage) {
+    return stage.springs ? prepare(stage.gamma, stage.inertia) : prepare_damping(stage.gamma);
+  }
+
   /// Assembles and factors M − γ D in place of A, for methods whose springs are explicit.
   Outcome prepare_damping(double gamma);
 
@@ -36,7 +41,8 @@ class StageSystem {
   /// γ of A [s].
   double gamma() const { return gamma_; }
 
-  /// Sets x = ax + γ v, imposes contacts and sets r in all coordinates; f = K x + D v + f̂ if f̂ is given.
+  /// Sets x = ax + γ v, imposes contacts and sets r in all coordinates; f = K x + D v + f̂ if f̂ is given, and without K x if
+  /// springs are explicit.
   void evaluate(const Stage& stage, const Vectors* f_explicit, State& y);
 
   /// Adapts the contacts to y and r; true if they changed, with y and r evaluated again. `noise`, `settled`: as
@@ -52,12 +58,13 @@ class StageSystem {
   /// z ≈ A⁻¹ r in the directions that pins leave free, for an r that lies in them. Returns <r, z>.
   double precondition(const Vectors& r, Vectors& z) { return cg_.precondition(pinned_, r, z); }
 
-  /// Scale of |r|: |b| = |r + A v|, and the round-off below which no residual falls.
+  /// Scale of |r|: |b| = |r + A v|, and the round-off below which no residual falls. If springs are explicit, steps are so
+  /// short that |b| would be all momentum: there it is the |r| of the guess.
   struct Scale {
     double b, round_off;
     double target(double tolerance) const { return std::max(tolerance * b, round_off); }
   };
-  Scale scale(const State& y, double gamma);
+  Scale scale(const Stage& stage, const State& y);
 
   /// Round-off of |r| [N s], from differences of positions times spring constants.
   double noise(const State& y, double gamma) const;

@@ -18,7 +18,8 @@ Trial trial(const std::string& toml, std::span<const model::Override> changes) {
 
 std::vector<std::string> methods() {
   std::vector<std::string> names;
-  for (const solver::Method& method : solver::thesis_methods()) names.emplace_back(method.name);
+  for (const solver::Method& method : solver::methods())
+    if (method.meets_obstacles) names.emplace_back(method.name);
   return names;
 }
 

@@ -11,7 +11,7 @@
 /// Scenes with obstacles, and what happens in them.
 namespace drape::verify::contact_scenes {
 
-/// All methods by name.
+/// All methods that meet obstacles, by name.
 std::vector<std::string> methods();
 
 /// A compiled scene that tests can change before it runs.
