@@ -63,7 +63,7 @@ std::vector<Job> figure_4_3(const Question& question);
 std::vector<Job> conditioning(const Question& question);
 std::vector<Job> limits(const Question& question);
 std::vector<Job> memory(const Question& question);
-std::vector<Job> fabric_tests(const Question& question);
+std::vector<Job> fabrics(const Question& question);
 std::vector<Job> scaling(const Question& question);
 std::vector<Job> stability(const Question& question);
 std::vector<Job> stages(const Question& question);

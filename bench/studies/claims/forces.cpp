@@ -8,6 +8,8 @@
 #include "bench/studies/claims/claim.hpp"
 #include "bench/studies/claims/sheet_runs.hpp"
 #include "model/cloth.hpp"
+#include "reference/exact/tension.hpp"
+#include "reference/sundials/kinsol.hpp"
 
 /// Claims about the forces of a sheet, from a single evaluation.
 namespace drape::bench {
@@ -287,6 +289,46 @@ std::vector<ClaimCase> tension_differs_by_squares() {
           order("both", [](double u, double v) { return Eigen::Vector2d(u * u / 2 + u * v, v * v / 2 + u * v); })};
 }
 
+/// Where the free end of a pulled St. Venant-Kirchhoff sheet comes to rest, less its length: ∫ λ − 1 dX with
+/// ½ k (λ² − 1) λ = f (L − X), by Simpson's rule.
+double displacement_of_continuum(const reference::PulledSheet& sheet) {
+  constexpr int pieces = 200;
+  const auto stretch = [&](int place) {
+    const double stress = sheet.body_force / sheet.modulus * sheet.length * (1 - static_cast<double>(place) / pieces);
+    double e = stress;  // λ − 1
+    for (int k = 0; k < 20; ++k) e -= (e * (1 + e) * (1 + e / 2) - stress) / (1 + 3 * e + 1.5 * e * e);
+    return e;
+  };
+  double sum = 0;
+  for (int place = 0; place < pieces; place += 2) sum += stretch(place) + 4 * stretch(place + 1) + stretch(place + 2);
+  return sum * sheet.length / (3 * pieces);
+}
+
+/// Experiment (a) of figure 2.11, whose right edge is fixed, against such a sheet.
+std::vector<ClaimCase> equilibrium_differs_by_squares() {
+  const auto difference = [](double body_force) {
+    const reference::PulledSheet pulled{.body_force = body_force};
+    const std::string gravity = fmt::format("[{:.17g}, 0, 0]", -body_force);
+    model::Cloth cloth =
+        model::compile(with("tension", {{"forces.gravity", gravity}, {"material.tension", fmt::format("{}", pulled.modulus)}}));
+    std::vector<solver::Pin> pins(cloth.start.x.rows());
+    for (int i = 0; i < cloth.ode.particles(); ++i)
+      pins[i] = {.particle = i, .fixed = {false, false, true}};  // springs would buckle
+    for (const solver::Pin& pin : cloth.ode.pins) pins[pin.particle] = pin;
+    cloth.ode.pins = std::move(pins);
+    solver::Vectors guess = cloth.start.x;
+    guess.col(0) += body_force / pulled.modulus * (guess.col(0).array() - pulled.length).matrix();
+    const reference::Equilibrium rest = reference::equilibrium(cloth.ode, guess, {.line_search = false});
+    const double displacement = cloth.start.x(0, 0) - rest.x(0, 0);
+    return displacement - displacement_of_continuum(pulled);
+  };
+  const double whole = difference(9.81), half = difference(9.81 / 2), quarter = difference(9.81 / 4);
+  const reference::PulledSheet pulled;
+  const double strain = pulled.body_force * pulled.length / pulled.modulus;
+  return {{"power of the load", std::log2(half / quarter), std::abs(std::log2(whole * quarter / (half * half))), 1.9, 2.1},
+          {"over ½ (fL/k)² L", whole / (0.5 * strain * strain * pulled.length), strain, 0.99, 1.01}};
+}
+
 constexpr Claim of_forces[] = {
     {"P-03", "Etzmuß 2002", "2.5", "Algorithm 3 discretises the membrane, borders included", "order of the force per area", "1",
      algorithm_3_is_consistent},
@@ -294,6 +336,8 @@ constexpr Claim of_forces[] = {
      "order of the force per area", "1", algorithm_5_is_of_second_order},
     {"C-18", "Etzmuß 2002", "2.3.3", "the error of div_γ is quadratic in the strains",
      "order of the difference from a continuum in the strains", "1", tension_differs_by_squares},
+    {"C-18b", "Etzmuß 2002", "2.8", "so is that of an equilibrium in the load", "difference of the free end from a continuum",
+     "1", equilibrium_differs_by_squares},
     {"C-20", "Etzmuß 2002", "2.1.2, 2.3.3", "diagonal springs couple shear and transverse contraction", "C12 over G", "1",
      springs_contract},
     {"C-20b", "Etzmuß 2002", "2.3.4", "constants of springs, hinges and triangles are those of the cloth on every mesh",

@@ -497,8 +497,9 @@ TEST_F(ProgramStudies, FabricsBendAsWasPublished) {
   program.output({"study", "fabrics", "--quick", "--method", "verlet", "--out", "study.h5"});
   std::map<std::string, std::vector<std::string>> judged;
   for (const Table& table : results::read_tables(program.folder() / "study.h5")) judged[table.name] = verdicts(table);
-  EXPECT_THAT(judged["fabric-tests"], AllOf(SizeIs(2 * 4), Each("met: within 5 %"))) << "along weft and warp";
+  EXPECT_THAT(judged["fabric-bending-tests"], AllOf(SizeIs(2 * 4), Each("met: within 5 %"))) << "along weft and warp";
   EXPECT_THAT(judged["cantilever"], AllOf(SizeIs(14), Each("met: within 1 %")));
+  EXPECT_THAT(judged["creep"], AllOf(SizeIs(4), Each("met: below 1e-4")));
   EXPECT_TRUE(judged.contains("field-winners"));
 }
 
