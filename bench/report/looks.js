@@ -46,7 +46,7 @@ export const looks = {
     "cvode-bdf": "#C2185B",
     "cvode-adams": "#E57373",
     "arkode-dirk": "#6D4C41",
-    "arkode-esdirk": "#F4511E",
+    "arkode-esdirk": "#D84315",
     "arkode-imex": "#9E9D24",
     "arkode-erk": "#558B2F",
     "ida-bdf": "#607D8B",
@@ -69,8 +69,8 @@ export const looks = {
     "mic0": ["x", "longdash"]
   },
   "other_colours": [
-    "#17BECF", "#E377C2", "#8D6E63", "#9CCC65", "#EF6C00", "#5C6BC0", "#BCBD22", "#26A69A", "#C62828", "#7B1FA2",
-    "#0277BD", "#558B2F", "#F9A825", "#455A64", "#AD1457", "#6D4C41"
+    "#17BECF", "#E377C2", "#9467BD", "#9CCC65", "#EF6C00", "#5C6BC0", "#BCBD22", "#26A69A", "#C62828", "#7B1FA2",
+    "#0277BD", "#6B8E23", "#FFB347", "#455A64", "#DA70D6", "#5D4037"
   ],
   "other_marks": [
     ["triangle-down", "dash"], ["pentagon", "dot"], ["hexagon", "dashdot"], ["star-diamond", "longdash"],
