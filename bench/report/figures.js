@@ -22,13 +22,13 @@ function detailsOf(table) {
   return (row) => columns.map((column) => detail(column, row)).filter((text) => text).join("<br>");
 }
 
-/** The figure that a row of a table is in: texts as they are, numbers by their columns' titles. */
-function figureOf(table) {
-  const value = (column, row) =>
-      (column.numeric ? `${titleOf(column)} = ${cellText(column, row)} ${unitOf(column).slice(1, -1)}`.trim() :
-                        cellText(column, row));
-  return (row) => partsOf(table, "figure").map((column) => value(column, row)).join(", ");
-}
+/** A cell in a name: a text as it is, a number by its column's title. */
+const named = (column, row) =>
+    (column.numeric ? `${titleOf(column)} = ${cellText(column, row)} ${unitOf(column).slice(1, -1)}`.trim() :
+                      cellText(column, row));
+
+/** The figure that a row of a table is in. */
+const figureOf = (table) => (row) => partsOf(table, "figure").map((column) => named(column, row)).join(", ");
 
 /** The largest uncertainty of the errors in some rows. */
 function largestUncertainty(table, rows) {
@@ -408,7 +408,7 @@ function overTimeFigure(file, table) {
 function curvesFigures(file, table) {
   const [x, y, curve] = ["x", "y", "curve"].map((part) => partOf(table, part)), figure = figureOf(table);
   return [...groupBy(rowsOf(table), figure)].map(([title, rows]) => {
-    const kinds = [...groupBy(rows, (row) => row[curve.name])];
+    const kinds = [...groupBy(rows, (row) => named(curve, row))];
     const make = (width, colours) => {
       const curves = kinds.map(([name, of]) => ({
                                  type: "scatter",
@@ -431,7 +431,7 @@ function curvesFigures(file, table) {
     return {
       file,
       make,
-      title: `${table.description}: ${title}`,
+      title: [table.description, title].filter((text) => text).join(": "),
       says: `${explained(x)}. ${explained(y)}.${moreCurves(kinds.length)}`,
       columns: () => columnsWhere(table, (row) => figure(row) === title)
     };

@@ -179,6 +179,17 @@ Table loops() {
   return table;
 }
 
+/// One figure, whose curves have numbers for names.
+Table creep() {
+  Table table{
+      "creep",
+      "Creep",
+      {column("quality", "1", Role::key, {5.0, 5.0, 10.0, 10.0}), column("time", "s", Role::quantity, {0.0, 1.0, 0.0, 1.0}),
+       column("strain", "1", Role::quantity, {1.0, 3.0, 1.0, 2.0})}};
+  draw(table, Figure::curves, {{Part::curve, "quality"}, {Part::x, "time"}, {Part::y, "strain"}});
+  return table;
+}
+
 /// A sheet on a box that rises, beside other obstacles.
 std::string scene_on_box(const std::string& name, const std::string& others) {
   return fmt::format(R"(name = "{}"
@@ -267,7 +278,7 @@ void expect_marks_in_every_figure(const json& seen) {
   for (const char* title : {"Distance from", "Work–precision of runs: hung-corners", "Energy: hung-corners",
                             "Updates: hung-corners", "Convergence: sheet", "Work–precision: All that was tried on sheet",
                             "Stability: n = 6", "Contacts: on box", "Clearance: on box", "Least clearance: on box",
-                            "Figure 4.3: a sheet", "Stress over strain: pulled", "Stress over strain: sheared"})
+                            "Figure 4.3: a sheet", "Stress over strain: pulled", "Stress over strain: sheared", "Creep"})
     EXPECT_THAT(titles, HasSubstr(title));
 }
 
@@ -349,7 +360,7 @@ void expect_sorting(const json& seen) {
 std::filesystem::path page(const BenchIntegrators& program, const Words& files) {
   {
     results::RunFile file(program.folder() / "tables.h5", results::provenance("bench_integrators study all"));
-    for (const Table& table : {orders(), trials(), atlas(), over_time(), loops(), hostile()}) file.add(table);
+    for (const Table& table : {orders(), trials(), atlas(), over_time(), loops(), creep(), hostile()}) file.add(table);
   }
   EXPECT_THAT(program.output(Words{"report"} + files + Words{"tables.h5", "--out", "page"}),
               AllOf(HasSubstr("\nOrders of convergence\n"), HasSubstr("\nreport: page/index.html\n")));
