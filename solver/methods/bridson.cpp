@@ -52,7 +52,7 @@ bool sub_steps(Step& s, double tau, double count) {
 }
 
 /// The same where obstacles are near. Constraints act in both halves of a sub-step, which share one evaluation of f(t1, x1, v),
-/// with the v that the first half leads to if it lasts. After an impact the second half is implicit, too: both together are
+/// with the v that the first half leads to if it lasts. After an impact the second half is implicit as well: both together are
 /// L-stable for the damping, which else would ring.
 bool sub_steps_in_contact(Step& s, double tau, double count) {
   State& y = s.y1();

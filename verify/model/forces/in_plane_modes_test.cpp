@@ -67,7 +67,7 @@ TEST(InPlaneModes, ConvergeToOrthotropicElasticity) {
     std::vector<Eigen::Vector2d> errors;
     for (const int size : {9, 17, 33}) {
       const Discrete found = discrete(sheet(size), m, n);
-      EXPECT_LE(found.residual, 1e-10) << m << " " << n << ": they are modes of the particles, too";
+      EXPECT_LE(found.residual, 1e-10) << m << " " << n << ": these are also modes of the particles";
       errors.emplace_back((found.squares - continuum(m, n)).cwiseAbs().cwiseQuotient(continuum(m, n)));
     }
     for (int mode = 0; mode < 2; ++mode) {
