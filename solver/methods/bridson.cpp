@@ -21,7 +21,7 @@ double bridson_step_limit(const SplitOde& ode, double t, const State& y) {
 /// The state is kept at (x1, v at the middle of the sub-step), so that there is one linear system a sub-step: the second half
 /// of a sub-step and the first half of the next are   M (v½' − v½) = τ f(t1, x1, (v½ + v½')/2). It is solved by one Newton
 /// update with M − τ/2 D from the guess v½' = v½ + δ, where δ is the last change of v½.
-bool sub_steps(Step& s, double tau, double count) {
+bool bridson_sub_steps(Step& s, double tau, double count) {
   State& y = s.y1();
   Vectors &weight = s.scratch.ax, &ahead = s.scratch.av, &f = s.scratch.f_hat, &delta = s.scratch.rates[0].v;
   s.ode.force(s.t, y.x, y.v, f);
@@ -54,7 +54,7 @@ bool sub_steps(Step& s, double tau, double count) {
 /// The same where obstacles are near. Constraints act in both halves of a sub-step, which share one evaluation of f(t1, x1, v),
 /// with the v that the first half leads to if it lasts. After an impact the second half is implicit as well: both together are
 /// L-stable for the damping, which else would ring.
-bool sub_steps_in_contact(Step& s, double tau, double count) {
+bool bridson_sub_steps_in_contact(Step& s, double tau, double count) {
   State& y = s.y1();
   State& start = s.scratch.rates[0];
   Vectors &weight = s.scratch.ax, &ahead = s.scratch.av, &f = s.scratch.f_hat, &r = s.scratch.rates[1].v;
@@ -101,7 +101,7 @@ bool whole_bridson_step(Step& s, double substeps) {
   inverse_masses(s.ode, s.scratch.ax);
   s.y1() = s.y0();
   const bool contacts = s.contacts != nullptr && !s.contacts->empty();
-  return (contacts ? sub_steps_in_contact : sub_steps)(s, s.h / substeps, substeps);
+  return (contacts ? bridson_sub_steps_in_contact : bridson_sub_steps)(s, s.h / substeps, substeps);
 }
 
 }  // namespace

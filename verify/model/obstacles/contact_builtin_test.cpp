@@ -44,7 +44,8 @@ double kinetic(const Trial& trial, const Moment& moment) { return kinetic_energy
 
 class BuiltinContact : public testing::TestWithParam<std::tuple<std::string, std::string>> {};
 INSTANTIATE_TEST_SUITE_P(, BuiltinContact,
-                         testing::Combine(testing::ValuesIn(names(true)), testing::Values("sbdf2", "bdf2", "verlet", "bridson")),
+                         testing::Combine(testing::ValuesIn(names(true)),
+                                          testing::Values("sbdf2", "bdf2", "verlet", "bridson")),
                          [](const auto& test) { return word(std::get<0>(test.param) + "_" + std::get<1>(test.param)); });
 
 TEST_P(BuiltinContact, StaysOutsideLosesEnergyAndComesToRest) {
