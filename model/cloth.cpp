@@ -199,12 +199,7 @@ SparseMatrix Forces::edge_matrix(const WeftWarp& modulus) const {
   return spring_matrix(grid_, [&](const Edge& edge) { return along(modulus, edge) * edge.width / edge.length; });
 }
 
-Eigen::VectorXd masses(const Sheet& sheet) {
-  Eigen::VectorXd mass(sheet.grid.particles());
-  for (int b = 0; b < sheet.grid.nv; ++b)
-    for (int a = 0; a < sheet.grid.nu; ++a) mass[sheet.grid.index(a, b)] = sheet.material.density * sheet.grid.cell_area(a, b);
-  return mass;
-}
+Eigen::VectorXd masses(const Sheet& sheet) { return sheet.material.density * sheet.grid.cell_areas(); }
 
 /// The sheet of a scene with its rest shape. `start`: positions at t = 0.
 Sheet sheet_of(const Scene& scene, const Vectors& start) {

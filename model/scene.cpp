@@ -8,6 +8,7 @@
 #include <string_view>
 #include <tuple>
 
+#include "model/sheet/edges.hpp"
 #include "solver/base/registry.hpp"
 
 namespace drape::model {
@@ -110,7 +111,7 @@ double size(const Scene& scene) { return std::max(scene.sheet.grid.size_u, scene
 double numerical_stiffness(const Scene& scene, double h) {
   const Grid& grid = scene.sheet.grid;
   const Material& material = scene.sheet.material;
-  const double lu = grid.spacing_u(), lv = grid.spacing_v();
+  const auto [lu, lv] = shortest_edges(grid);
   return h * h / material.density * std::max(material.tension.weft / (lu * lu), material.tension.warp / (lv * lv));
 }
 

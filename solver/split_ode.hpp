@@ -36,12 +36,12 @@ struct Contact {
 /// C = 0   [Macklin, Müller, Chentanez 2016].
 struct CompliantConstraint {
   enum class Kind {
-    distance,     ///< C = |x1 − x0| − rest [m]
-    right_angle,  ///< C = <x1 − x0, x2 − x0> [m²]
+    distance,  ///< C = |x1 − x0| − rest [m]
+    angle,     ///< C = <x1 − x0, x2 − x0> − rest [m²]
   } kind;
   std::array<int, 3> particles;  ///< of x0, x1, x2; the last is not used by `distance`
-  double rest;                   ///< [m], 0 if not used
-  double compliance;             ///< α [m/N], of right angles [m³/N], positive
+  double rest;                   ///< [m], of angles [m²]
+  double compliance;             ///< α [m/N], of angles [m³/N], positive
 };
 
 /// The part of the Jacobian in a Newton matrix.

@@ -171,6 +171,7 @@ void register_all() {
       {"plate", only({{"material.bend", "1e-3"}})},
       {"plate-unprojected", only({{"material.bend", "1e-3"}, {"material.bend_projected", "false"}})},
       {"hung-sheet", {}},
+      {"hung-panel", {{"grid.grading", "1.5"}}},
   };
   for (const auto& [name, changes] : forces)
     add(

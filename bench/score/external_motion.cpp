@@ -14,6 +14,7 @@
 
 #include "bench/score/observables.hpp"
 #include "model/scene.hpp"
+#include "model/sheet/edges.hpp"
 #include "results/file/hdf5.hpp"
 #include "solver/base/input_file.hpp"
 #include "solver/base/process.hpp"
@@ -120,7 +121,8 @@ void check_finite(const std::string& name, const char* what, const std::vector<V
 }  // namespace
 
 std::vector<Eigen::Index> match(const Vectors& vertices, const Vectors& particles, const model::Grid& grid) {
-  const double within = matched_within * std::min(grid.spacing_u(), grid.spacing_v());
+  const auto [weft, warp] = shortest_edges(grid);
+  const double within = matched_within * std::min(weft, warp);
   std::vector<Eigen::Index> by_x(static_cast<std::size_t>(vertices.rows())), matched;
   std::iota(by_x.begin(), by_x.end(), 0);
   const auto x_of = [&](Eigen::Index vertex) { return vertices(vertex, 0); };

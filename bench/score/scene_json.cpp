@@ -55,14 +55,16 @@ Json rows(const solver::Vectors& vectors) {
 
 Json particles(const model::Scene& scene, const model::Cloth& cloth) {
   const model::Grid& grid = scene.sheet.grid;
+  const auto spacing = [&](double equal) { return grid.uniform() ? Json(equal) : Json(); };
   return {{"count", grid.particles()},
           {"nu", grid.nu},
           {"nv", grid.nv},
           {"index", "particle (a, b) is a + nu b, counted from 0; a along u, the weft, b along v, the warp"},
           {"side_u", grid.size_u},
           {"side_v", grid.size_v},
-          {"spacing_u", grid.spacing_u()},
-          {"spacing_v", grid.spacing_v()},
+          {"spacing_u", spacing(grid.spacing_u())},  // null if they differ
+          {"spacing_v", spacing(grid.spacing_v())},
+          {"pattern", grid.uniform() ? Json() : rows(grid.parameters())},
           {"mass_rule",
            grid.border_cells == model::BorderCells::dual
                ? "lumped: density times the area of the dual cell; half of an inner one on borders, a quarter in corners"

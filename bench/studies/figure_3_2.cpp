@@ -63,9 +63,11 @@ class Waves {
   template <class Transform>
   Eigen::VectorXd sum(double factor, const Transform& transform, const solver::Vectors& field) const {
     const model::Grid& grid = sheet_.grid;
+    const Eigen::VectorXd areas = grid.cell_areas();
     Eigen::VectorXd energy = Eigen::VectorXd::Zero(count());
     for (int b = 0; b < grid.nv; ++b)
-      energy += factor * grid.cell_area(1, b) * transform(field.middleRows(grid.index(0, b), grid.nu)).rowwise().squaredNorm();
+      energy +=
+          factor * areas[grid.index(1, b)] * transform(field.middleRows(grid.index(0, b), grid.nu)).rowwise().squaredNorm();
     return energy;
   }
 

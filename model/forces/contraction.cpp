@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "model/forces/term.hpp"
-#include "model/sheet/cells.hpp"
+#include "model/sheet/metric.hpp"
 
 namespace drape::model {
 namespace {
@@ -30,15 +30,19 @@ struct Strained {
 struct Pairs {
   std::array<Strained, 2> u, v;
 
-  Pairs(const Configuration& c, const Cell& cell, double lu, double lv)
-      : u{Strained(c, cell.lower(), lu), Strained(c, cell.upper(), lu)},
-        v{Strained(c, cell.left(), lv), Strained(c, cell.right(), lv)} {}
+  Pairs(const Configuration& c, const Cell& cell, const Metric& metric)
+      : u{Strained(c, cell.lower(), metric.length(cell.lower())), Strained(c, cell.upper(), metric.length(cell.upper()))},
+        v{Strained(c, cell.left(), metric.length(cell.left())), Strained(c, cell.right(), metric.length(cell.right()))} {}
 };
 
 /// Half the pull of an edge of length l is C12 times a quarter of the cell's area, over l.
 struct Moduli {
-  double elastic, viscous;  ///< C12 l_u l_v/4, d12 l_u l_v/4
+  double elastic, viscous;  ///< C12 A/4, d12 A/4, of a cell of area A
 
+  Moduli(const CellLaw& law, const Metric& metric, const Cell& cell) {
+    const auto [u, v] = metric.sides(cell);
+    elastic = law.contraction * u * v, viscous = law.contraction_rate * u * v;
+  }
   double stress(const std::array<Strained, 2>& other) const {
     return elastic * (other[0].strain + other[1].strain) + viscous * (other[0].rate + other[1].rate);
   }
@@ -94,16 +98,15 @@ void add_mean_excess(double elastic, const std::array<Averaged, 2>& pair, const 
 }  // namespace
 
 /// Transverse contraction σ11 = C12 ε22 + d12 ε̇22, σ22 = C12 ε11 + d12 ε̇11 [Etzmuß 2002, (2.22)] in the consistent form
-/// E = Σ_cells C12 l_u l_v ½(ε_lower + ε_upper) ½(ε_left + ε_right). Algorithm 5 as printed is half a cell off.
+/// E = Σ_cells C12 A ½(ε_lower + ε_upper) ½(ε_left + ε_right). Algorithm 5 as printed is half a cell off.
 std::optional<Term> make_contraction(const Sheet& sheet) {
   const Material& m = sheet.material;
-  const double elastic = by_tables(m) ? 0 : m.contraction;
-  if (elastic == 0 && m.contraction_damping == 0) return {};
+  const double C12 = by_tables(m) ? 0 : m.contraction;
+  if (C12 == 0 && m.contraction_damping == 0) return {};
   if (sheet.grid.nu < 2 || sheet.grid.nv < 2) return {};  // a chain has no cells
-  const double lu = sheet.grid.spacing_u(), lv = sheet.grid.spacing_v();
-  const CellLaw law{.contraction = elastic / 4, .contraction_rate = m.contraction_damping / 4};
-  const Moduli moduli{law.contraction * lu * lv, law.contraction_rate * lu * lv};
+  const CellLaw law{.contraction = C12 / 4, .contraction_rate = m.contraction_damping / 4};
   const auto all = std::make_shared<const std::vector<Cell>>(cells(sheet.grid));
+  const auto metric = std::make_shared<const Metric>(sheet.grid);
 
   Term term;
   term.law.cell = law;
@@ -111,23 +114,26 @@ std::optional<Term> make_contraction(const Sheet& sheet) {
     term.active_law.cell.contraction_rate = law.contraction_rate;
   term.energy = [=](const Vectors& x) {
     double energy = 0;
-    const auto strain = [&](EdgeEnds edge, double l) { return difference(x, edge).norm() / l - 1; };
+    const auto strain = [&](EdgeEnds edge) { return difference(x, edge).norm() / metric->length(edge) - 1; };
     for (const Cell& cell : *all)
-      energy += moduli.elastic * (strain(cell.lower(), lu) + strain(cell.upper(), lu)) *
-                (strain(cell.left(), lv) + strain(cell.right(), lv));
+      energy += Moduli(law, *metric, cell).elastic * (strain(cell.lower()) + strain(cell.upper())) *
+                (strain(cell.left()) + strain(cell.right()));
     return energy;
   };
   term.mean_excess = [=](const Vectors& x0, const Vectors& x1, Vectors& f) {
+    const auto averaged = [&](EdgeEnds edge) { return Averaged(x0, x1, edge, metric->length(edge)); };
     for (const Cell& cell : *all) {
-      const std::array u{Averaged(x0, x1, cell.lower(), lu), Averaged(x0, x1, cell.upper(), lu)};
-      const std::array v{Averaged(x0, x1, cell.left(), lv), Averaged(x0, x1, cell.right(), lv)};
-      add_mean_excess(moduli.elastic, u, v, f);
-      add_mean_excess(moduli.elastic, v, u, f);
+      const std::array u{averaged(cell.lower()), averaged(cell.upper())};
+      const std::array v{averaged(cell.left()), averaged(cell.right())};
+      const double elastic = Moduli(law, *metric, cell).elastic;
+      add_mean_excess(elastic, u, v, f);
+      add_mean_excess(elastic, v, u, f);
     }
   };
   term.jacobian = [=](const Configuration& c, const JacobianEntries& entries) {
     for (const Cell& cell : *all) {
-      const Pairs pairs(c, cell, lu, lv);
+      const Pairs pairs(c, cell, *metric);
+      const Moduli moduli(law, *metric, cell);
       add_jacobians(moduli, pairs.u, pairs.v, entries);
       add_jacobians(moduli, pairs.v, pairs.u, entries);
     }

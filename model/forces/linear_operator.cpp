@@ -59,10 +59,11 @@ SparseMatrix symmetric_part(const SparseMatrix& B) {
 
 }  // namespace
 
-void add_quadratic(std::vector<Eigen::Triplet<double>>& entries, Stencil stencil, double weight) {
+void add_quadratic(std::vector<Eigen::Triplet<double>>& entries, std::span<const StencilEntry> stencil, double weight) {
   if (weight == 0) return;
   for (const auto& [i, c] : stencil)
-    for (const auto& [j, d] : stencil) entries.emplace_back(i, j, -weight * c * d);
+    for (const auto& [j, d] : stencil)
+      if (c * d != 0) entries.emplace_back(i, j, -weight * c * d);
 }
 
 Term unprojected(LinearOperators operators) {

@@ -1,21 +1,15 @@
 #pragma once
 
-#include <initializer_list>
-#include <memory>
+#include <span>
+#include <vector>
 
 #include "model/forces/term.hpp"
+#include "model/sheet/metric.hpp"
 
 namespace drape::model {
 
-/// One entry of a difference stencil.
-struct StencilEntry {
-  int particle;
-  double coefficient;
-};
-using Stencil = std::initializer_list<StencilEntry>;
-
 /// Adds the matrix of the force −∇(½ w |Σ c x|²).
-void add_quadratic(std::vector<Eigen::Triplet<double>>& entries, Stencil stencil, double weight);
+void add_quadratic(std::vector<Eigen::Triplet<double>>& entries, std::span<const StencilEntry> stencil, double weight);
 
 /// The elastic operator B on positions and the viscous one on velocities; both scalar, N × N, [N/m] and [N s/m].
 struct LinearOperators {

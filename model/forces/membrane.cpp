@@ -9,26 +9,18 @@ namespace {
 /// The matrix of A (B1 s_uu + B2 s_vv). A border particle takes the curvature of its inner neighbour: zero curvature there
 /// would make it first order.
 SparseMatrix membrane_matrix(const Grid& grid, const WeftWarp& B) {
+  const Metric metric(grid);
   std::vector<Eigen::Triplet<double>> entries;
-  const auto add = [&](int i, int before, int centre, int after, double weight) {
-    if (weight == 0) return;
-    entries.emplace_back(i, before, weight);
-    entries.emplace_back(i, centre, -2 * weight);
-    entries.emplace_back(i, after, weight);
+  const auto add = [&](int i, const LineDifference& difference, double modulus) {
+    const double weight = metric.area(i) * modulus / (difference.length * difference.length);
+    for (const auto& [particle, coefficient] : difference.entries)
+      if (weight * coefficient != 0) entries.emplace_back(i, particle, coefficient * weight);
   };
-  const double lu = grid.spacing_u(), lv = grid.spacing_v();
   for (int b = 0; b < grid.nv; ++b)
     for (int a = 0; a < grid.nu; ++a) {
       const int i = grid.index(a, b);
-      const double area = grid.cell_area(a, b);
-      if (grid.nu > 2) {
-        const int c = std::clamp(a, 1, grid.nu - 2);
-        add(i, grid.index(c - 1, b), grid.index(c, b), grid.index(c + 1, b), area * B.weft / (lu * lu));
-      }
-      if (grid.nv > 2) {
-        const int c = std::clamp(b, 1, grid.nv - 2);
-        add(i, grid.index(a, c - 1), grid.index(a, c), grid.index(a, c + 1), area * B.warp / (lv * lv));
-      }
+      if (grid.nu > 2) add(i, metric.second_difference(std::clamp(a, 1, grid.nu - 2), b, true), B.weft);
+      if (grid.nv > 2) add(i, metric.second_difference(a, std::clamp(b, 1, grid.nv - 2), false), B.warp);
     }
   SparseMatrix matrix(grid.particles(), grid.particles());
   matrix.setFromTriplets(entries.begin(), entries.end());

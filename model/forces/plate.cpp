@@ -4,23 +4,23 @@
 namespace drape::model {
 namespace {
 
-/// The matrix of the force −∇E for E = ½ Σ A (B1 |D²_u x|² + B2 |D²_v x|²) + ½ Σ_cells l_u l_v (B1 + B2) |D_u D_v x|².
+/// The matrix of the force −∇E for E = ½ Σ A (B1 |D²_u x|² + B2 |D²_v x|²) + ½ Σ_cells A (B1 + B2) |D_u D_v x|².
 SparseMatrix plate_matrix(const Grid& grid, const WeftWarp& B) {
-  const double lu = grid.spacing_u(), lv = grid.spacing_v();
-  const auto index = [&](int a, int b) { return grid.index(a, b); };
+  const Metric metric(grid);
   std::vector<Eigen::Triplet<double>> entries;
+  const auto along = [&](int a, int b, bool weft) {
+    const auto [stencil, l] = metric.second_difference(a, b, weft);
+    add_quadratic(entries, stencil, metric.area(grid.index(a, b)) * (weft ? B.weft : B.warp) / (l * l * l * l));
+  };
   for (int b = 0; b < grid.nv; ++b)
     for (int a = 0; a < grid.nu; ++a) {
-      const double area = grid.cell_area(a, b);
-      if (a > 0 && a < grid.nu - 1)
-        add_quadratic(entries, {{index(a - 1, b), 1}, {index(a, b), -2}, {index(a + 1, b), 1}},
-                      area * B.weft / (lu * lu * lu * lu));
-      if (b > 0 && b < grid.nv - 1)
-        add_quadratic(entries, {{index(a, b - 1), 1}, {index(a, b), -2}, {index(a, b + 1), 1}},
-                      area * B.warp / (lv * lv * lv * lv));
-      if (a > 0 && b > 0)
-        add_quadratic(entries, {{index(a, b), 1}, {index(a - 1, b), -1}, {index(a, b - 1), -1}, {index(a - 1, b - 1), 1}},
-                      (B.weft + B.warp) / (lu * lv));
+      if (a > 0 && a < grid.nu - 1) along(a, b, true);
+      if (b > 0 && b < grid.nv - 1) along(a, b, false);
+      if (a == 0 || b == 0) continue;
+      const Cell cell = cell_at(grid, a - 1, b - 1);
+      const auto [stencil, lu, lv] = metric.mixed_difference(cell);
+      const double size = lu * lv;
+      add_quadratic(entries, stencil, (B.weft + B.warp) / size * (metric.area(cell) / size));
     }
   SparseMatrix matrix(grid.particles(), grid.particles());
   matrix.setFromTriplets(entries.begin(), entries.end());

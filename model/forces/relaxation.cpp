@@ -4,7 +4,7 @@
 
 #include "model/forces/term.hpp"
 #include "model/memory/path.hpp"
-#include "model/sheet/cells.hpp"
+#include "model/sheet/metric.hpp"
 
 namespace drape::model {
 namespace {
@@ -12,7 +12,8 @@ namespace {
 using solver::State;
 
 /// The part of a pull that Maxwell elements have forgotten, of every edge and of every quadrant of a cell: minus the stiffness
-/// times r = Σ Y ζ, where dζ/dt = ω (ε − ζ). The strain of an edge is |p|/l − 1, of a quadrant <p, q> [m²].
+/// times r = Σ Y ζ, where dζ/dt = ω (ε − ζ). The strain of an edge is |p|/l − 1, of a quadrant <p, q> less
+/// than at rest [m²].
 class RelaxingStrains final : public TermMemory {
  public:
   RelaxingStrains(const Sheet& sheet, Spectrum spectrum);
@@ -33,6 +34,7 @@ class RelaxingStrains final : public TermMemory {
   struct Element {
     EdgeEnds p, q;
     double length;     ///< of an edge; 0 for a quadrant
+    double rest;       ///< <p, q> of a quadrant at rest [m²]
     double stiffness;  ///< pull per strain: [N] of an edge, [N/m³] of a quadrant
     double volume;     ///< energy per stiffness, strain and strain: l of an edge, 1 of a quadrant
 
@@ -78,16 +80,17 @@ RelaxingStrains::RelaxingStrains(const Sheet& sheet, Spectrum spectrum)
   const Material& m = sheet.material;
   for (const Edge& edge : edges(sheet.grid))
     if (const double k = along(m.tension, edge); k > 0)
-      elements_.push_back({{edge.i, edge.j}, {}, edge.length, k * edge.width, edge.length});
+      elements_.push_back({{edge.i, edge.j}, {}, edge.length, 0, k * edge.width, edge.length});
   if (m.shear == 0) return;
-  const double kappa = m.shear / (4 * sheet.grid.spacing_u() * sheet.grid.spacing_v());
+  const Metric metric(sheet.grid);
   for (const Cell& cell : cells(sheet.grid))
-    for (const auto& [p, q] : quadrants(cell)) elements_.push_back({p, q, 0, kappa, 1});
+    for (const auto& [p, q] : quadrants(cell))
+      elements_.push_back({p, q, 0, metric.product(p, q), m.shear / (4 * metric.quadrant_measure(cell, p, q)), 1});
 }
 
 double RelaxingStrains::strain(const Element& e, const Vectors& x) {
   const Eigen::Vector3d p = difference(x, e.p);
-  return e.edge() ? p.norm() / e.length - 1 : p.dot(difference(x, e.q));
+  return e.edge() ? p.norm() / e.length - 1 : p.dot(difference(x, e.q)) - e.rest;
 }
 
 double RelaxingStrains::strain_rate(const Element& e, const Vectors& x, const Vectors& v) {

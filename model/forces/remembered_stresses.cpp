@@ -95,8 +95,9 @@ void RememberedStresses::add_jacobian(const Configuration& c, const JacobianEntr
 }
 
 void add_shear(const Grid& grid, const std::shared_ptr<const StressLaw>& law, RememberedStresses& stresses) {
+  const Metric metric(grid);
   for (const Cell& cell : cells(grid))
-    for (const auto& [p, q] : quadrants(cell)) stresses.add(Strain::of_quadrant(grid, p, q), law);
+    for (const auto& [p, q] : quadrants(cell)) stresses.add(Strain::of_quadrant(metric, cell, p, q), law);
 }
 
 void add_bending(const Grid& grid, const std::shared_ptr<const StressLaw>& weft, const std::shared_ptr<const StressLaw>& warp,

@@ -22,7 +22,8 @@ std::vector<AtRest> curvatures_at_rest(const Sheet& sheet) {
     if (stiffness * value != 0) all.push_back({curvature, value, stiffness * value});
   };
   for (const auto& [curvature, weft] : line_curvatures(grid)) add(curvature, weft ? B.weft : B.warp);
-  for (const Cell& cell : cells(grid)) add(Strain::of_twist(grid, cell), B.weft + B.warp);
+  const Metric metric(grid);
+  for (const Cell& cell : cells(grid)) add(Strain::of_twist(metric, cell), B.weft + B.warp);
   return all;
 }
 

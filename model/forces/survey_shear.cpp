@@ -24,6 +24,7 @@ Elastic diagonal(const Grid& grid, EdgeEnds ends, double share, double G) {
 
 std::vector<Elastic> elements(const Grid& grid, ShearForm form, double G) {
   std::vector<Elastic> all;
+  const Metric metric(grid);
   for (const Cell& cell : cells(grid)) {
     const EdgeEnds falling{cell.corner[1][0], cell.corner[0][1]}, rising{cell.corner[0][0], cell.corner[1][1]};
     const auto corners = quadrants(cell);
@@ -36,10 +37,11 @@ std::vector<Elastic> elements(const Grid& grid, ShearForm form, double G) {
         break;
       case ShearForm::triangles: all.push_back(diagonal(grid, falling, 1, G)); break;
       case ShearForm::hinges:
-        for (const auto& [p, q] : corners) all.push_back({Strain::of_angle(grid, p, q), G});
+        for (const auto& [p, q] : corners) all.push_back({Strain::of_angle(metric, cell, p, q), G});
         break;
       case ShearForm::baraff_witkin:
-        for (const auto& [p, q] : {corners.front(), corners.back()}) all.push_back({Strain::of_quadrant(grid, p, q), 2 * G});
+        for (const auto& [p, q] : {corners.front(), corners.back()})
+          all.push_back({Strain::of_quadrant(metric, cell, p, q), 2 * G});
         break;
     }
   }

@@ -8,6 +8,7 @@
 
 #include "model/fabric.hpp"
 #include "model/scene_file/obstacle_keys.hpp"
+#include "model/scene_file/outline_keys.hpp"
 #include "model/scene_file/pin_keys.hpp"
 
 namespace drape::model {
@@ -78,6 +79,32 @@ void read_grid_size(const Value& value, Scene& scene) {
 }
 
 Data grid_size_data(const Scene& scene) { return List{scene.sheet.grid.size_u, scene.sheet.grid.size_v}; }
+
+template <auto which>
+void read_outline(const Value& value, Scene& scene) {
+  Grid& grid = scene.sheet.grid;
+  grid.outline.*which = read_side(value);
+  const Outline& o = grid.outline;
+  if (o.lower.empty() || o.upper.empty() || o.left.empty() || o.right.empty()) return;
+  const Vectors pattern = grid.parameters();
+  const Eigen::RowVector3d size = pattern.colwise().maxCoeff() - pattern.colwise().minCoeff();
+  grid.size_u = size[0], grid.size_v = size[1];
+}
+
+template <auto which>
+Data outline_data(const Scene& scene) {
+  return side_data(scene.sheet.grid.outline.*which);
+}
+
+void read_grading(const Value& value, Scene& scene) {
+  const WeftWarp grading = value.weft_warp(&Value::positive);
+  constexpr double steepest = 1000;
+  for (const double one : {grading.weft, grading.warp})
+    if (!(one <= steepest && one * steepest >= 1)) value.fail("from 1/1000 to 1000");
+  scene.sheet.grid.grading_u = grading.weft, scene.sheet.grid.grading_v = grading.warp;
+}
+
+Data grading_data(const Scene& scene) { return List{scene.sheet.grid.grading_u, scene.sheet.grid.grading_v}; }
 
 /// Keys that follow change what the fabric has.
 void read_fabric(const Value& value, Scene& scene) {
@@ -283,6 +310,14 @@ std::span<const SceneKey> scene_key_table() {
        read_grid_size, grid_size_data},
       {"grid.border_cells", "", "\"dual\" (half on borders) or \"whole\" (as the algorithms of the thesis print it)",
        at<&Scene::sheet, &Sheet::grid, &Grid::border_cells>, check::one_of<border_cells>},
+
+      {"grid.grading", "1", "the last spacing over the first along weft and warp, between which they grow by a constant factor: one number or two",
+       read_grading, grading_data},
+      {"grid.lower", "", "with right, upper and left the sides of a curved panel in the plane of its pattern, lower and upper along u, left and right along v: list of { line = [[x, y], [x, y]] | arc = [three points] | bezier = [control points] } in metres; grid.size is then the box around it",
+       read_outline<&Outline::lower>, outline_data<&Outline::lower>},
+      {"grid.right", "", "up from where lower ends", read_outline<&Outline::right>, outline_data<&Outline::right>},
+      {"grid.upper", "", "from left to right", read_outline<&Outline::upper>, outline_data<&Outline::upper>},
+      {"grid.left", "", "up from where lower begins", read_outline<&Outline::left>, outline_data<&Outline::left>},
 
       {"material.fabric", "", "a measured cloth, see bench_integrators list fabrics: its density and moduli, which other keys change",
        read_fabric, fabric_data},

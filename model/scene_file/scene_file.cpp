@@ -11,6 +11,7 @@
 #include <variant>
 
 #include "model/scene_file/keys.hpp"
+#include "model/scene_file/outline_keys.hpp"
 #include "model/scene_file/toml_nesting.hpp"
 #include "solver/base/input_file.hpp"
 #include "solver/base/printable.hpp"
@@ -95,6 +96,15 @@ void check_together(const Scene& scene, const std::string& origin) {
   const Material& m = scene.sheet.material;
   const Grid& grid = scene.sheet.grid;
   const auto fail = [&](std::string_view what) { throw SceneError(fmt::format("{}: {}", origin, what)); };
+  check_outline(grid, origin);
+  if (!grid.uniform()) {
+    if (m.shear_form != ShearForm::conservative)
+      fail("material.shear_form: expected \"conservative\", the others are those of a rectangle with equal spacings");
+    if (m.bend_form == BendForm::printed || m.bend_form == BendForm::printed_is_border)
+      fail("material.bend_form: expected \"plate\" or \"membrane\", the others are those of a rectangle with equal spacings");
+    if (by_tables(m)) fail("material.law: expected \"linear\", tables are those of a rectangle with equal spacings");
+    if (scene.start.pleats.count > 0) fail("start.pleats: expected 0 waves, they are those of a rectangle with equal spacings");
+  }
   if (m.contraction * m.contraction >= m.tension.weft * m.tension.warp && m.contraction > 0)
     fail("material.contraction: expected C12² below k1 k2, or the material would collapse");
   if (m.shear_damping > 0 && m.shear_form > ShearForm::printed)

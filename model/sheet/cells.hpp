@@ -23,12 +23,16 @@ inline std::array<std::pair<EdgeEnds, EdgeEnds>, 4> quadrants(const Cell& cell) 
       {{cell.lower(), cell.left()}, {cell.lower(), cell.right()}, {cell.upper(), cell.left()}, {cell.upper(), cell.right()}}};
 }
 
+/// The cell whose lower left corner is (a, b).
+inline Cell cell_at(const Grid& grid, int a, int b) {
+  return {{{grid.index(a, b), grid.index(a, b + 1)}, {grid.index(a + 1, b), grid.index(a + 1, b + 1)}}};
+}
+
 /// All cells, line by line.
 inline std::vector<Cell> cells(const Grid& grid) {
   std::vector<Cell> all;
   for (int b = 0; b + 1 < grid.nv; ++b)
-    for (int a = 0; a + 1 < grid.nu; ++a)
-      all.push_back({{{grid.index(a, b), grid.index(a, b + 1)}, {grid.index(a + 1, b), grid.index(a + 1, b + 1)}}});
+    for (int a = 0; a + 1 < grid.nu; ++a) all.push_back(cell_at(grid, a, b));
   return all;
 }
 

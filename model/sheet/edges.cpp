@@ -1,8 +1,12 @@
 #include "model/sheet/edges.hpp"
 
+#include <algorithm>
+
 namespace drape::model {
 
-std::vector<Edge> edges(const Grid& grid) {
+namespace {
+
+std::vector<Edge> uniform_edges(const Grid& grid) {
   const double lu = grid.spacing_u(), lv = grid.spacing_v();
   std::vector<Edge> all;
   for (int b = 0; b < grid.nv; ++b)
@@ -11,6 +15,41 @@ std::vector<Edge> edges(const Grid& grid) {
   for (int b = 0; b + 1 < grid.nv; ++b)
     for (int a = 0; a < grid.nu; ++a) all.push_back({grid.index(a, b), grid.index(a, b + 1), false, lv, grid.cell_width_u(a)});
   return all;
+}
+
+}  // namespace
+
+/// Elsewhere an edge's strip has half the area of the quadrilaterals beside it.
+std::vector<Edge> edges(const Grid& grid) {
+  if (grid.uniform()) return uniform_edges(grid);
+  const Vectors x = grid.parameters();
+  const Eigen::VectorXd quads = grid.quad_areas();
+  const int columns = grid.nu - 1, lines = grid.nv - 1;
+  std::vector<Edge> all;
+  const auto add = [&](int i, int j, bool weft, int a, int b) {
+    const int before_a = weft ? a : a - 1, before_b = weft ? b - 1 : b;
+    double sum = 0;
+    int count = 0;
+    if (before_a >= 0 && before_b >= 0) sum += quads[before_a + columns * before_b], ++count;
+    if (a < columns && b < lines) sum += quads[a + columns * b], ++count;
+    const double length = (x.row(j) - x.row(i)).norm();
+    all.push_back({i, j, weft, length, sum / (grid.border_cells == BorderCells::whole ? count : 2) / length});
+  };
+  for (int b = 0; b <= lines; ++b)
+    for (int a = 0; a < columns; ++a) add(grid.index(a, b), grid.index(a + 1, b), true, a, b);
+  for (int b = 0; b < lines; ++b)
+    for (int a = 0; a <= columns; ++a) add(grid.index(a, b), grid.index(a, b + 1), false, a, b);
+  return all;
+}
+
+WeftWarp shortest_edges(const Grid& grid) {
+  WeftWarp shortest{grid.spacing_u(), grid.spacing_v()};
+  if (grid.uniform()) return shortest;
+  for (const Edge& edge : edges(grid)) {
+    double& length = edge.weft ? shortest.weft : shortest.warp;
+    length = std::min(length, edge.length);
+  }
+  return shortest;
 }
 
 void add_spring(std::vector<Eigen::Triplet<double>>& entries, EdgeEnds edge, double weight) {

@@ -13,11 +13,14 @@ struct Edge {
   int i, j;
   bool weft;      ///< along u
   double length;  ///< rest length l [m]
-  double width;   ///< width of the strip the edge stands for [m]: the other spacing, half of it on a border
+  double width;   ///< width of the strip the edge stands for [m]: of a uniform grid the other spacing, half of it on a border
 };
 
 /// All edges: weft first, then warp.
 std::vector<Edge> edges(const Grid& grid);
+
+/// The shortest rest lengths along weft and warp [m]; of a chain across it the width it stands for.
+WeftWarp shortest_edges(const Grid& grid);
 
 /// The value of a modulus along an edge.
 inline double along(const WeftWarp& modulus, const Edge& edge) { return edge.weft ? modulus.weft : modulus.warp; }

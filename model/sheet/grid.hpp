@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "model/sheet/outline.hpp"
 #include "solver/state.hpp"
 
 namespace drape::model {
@@ -13,7 +14,8 @@ using solver::Vectors;
 /// whole, as in the thesis' algorithms.
 enum class BorderCells { dual, whole };
 
-/// The parameter domain of a rectangular sheet: nu × nv particles; u is the weft direction, v the warp direction.
+/// The parameter domain of a panel: nu × nv particles; u is the weft direction, v the warp direction. It is a rectangle with
+/// equal spacings, unless it has an outline or a grading.
 ///
 /// A direction with a single particle makes a chain [Etzmuß 2002, 2.2]: its spacing is then the width of the strip that
 /// the chain stands for.
@@ -23,9 +25,15 @@ struct Grid {
   double size_u = 1;  ///< [m]
   double size_v = 1;  ///< [m]
   BorderCells border_cells = BorderCells::dual;
+  Outline outline = {};  ///< in the place of the rectangle, whose sides are then those of the box around it
+  double grading_u = 1;  ///< the last spacing over the first
+  double grading_v = 1;
 
+  bool uniform() const { return !outline.given() && grading_u == 1 && grading_v == 1; }
   int particles() const { return nu * nv; }
   int index(int a, int b) const { return a + nu * b; }
+
+  // A uniform grid only:
   double spacing_u() const { return nu > 1 ? size_u / (nu - 1) : size_u; }  ///< l_u [m]
   double spacing_v() const { return nv > 1 ? size_v / (nv - 1) : size_v; }  ///< l_v [m]
 
@@ -36,14 +44,16 @@ struct Grid {
   double cell_width_u(int a) const { return (border_cells == BorderCells::whole ? 1 : dual_width(a, nu)) * spacing_u(); }
   double cell_width_v(int b) const { return (border_cells == BorderCells::whole ? 1 : dual_width(b, nv)) * spacing_v(); }
 
-  /// Area that particle (a, b) stands for [m²].
-  double cell_area(int a, int b) const { return cell_width_u(a) * cell_width_v(b); }
+  // Any grid:
 
-  /// The areas of all particles [m²].
+  /// The areas that particles stand for [m²].
   Eigen::VectorXd cell_areas() const;
 
-  /// Positions (u, v) of all particles as (x, y), z = 0: N × 3 [m].
-  solver::Vectors parameters() const;
+  /// The areas of the quadrilaterals between the lines, line by line [m²].
+  Eigen::VectorXd quad_areas() const;
+
+  /// Positions (u, v) of all particles in the pattern as (x, y), z = 0: N × 3 [m].
+  Vectors parameters() const;
 };
 
 }  // namespace drape::model

@@ -37,12 +37,13 @@ Strain Strain::of_edge(const Edge& edge) {
   return strain;
 }
 
-Strain Strain::of_quadrant(const Grid& grid, EdgeEnds p, EdgeEnds q) {
+Strain Strain::of_quadrant(const Metric& metric, const Cell& cell, EdgeEnds p, EdgeEnds q) {
   Strain strain;
   strain.kind_ = Kind::quadrant;
   strain.vectors_ = 2;
-  strain.size_ = grid.spacing_u() * grid.spacing_v();
-  strain.area_ = strain.size_ / 4;
+  strain.size_ = metric.length(p) * metric.length(q);
+  strain.rest_ = metric.product(p, q) / strain.size_;
+  strain.area_ = metric.area(cell) / 4;
   const auto add = [&](int particle, int vector, double weight) {
     int j = 0;
     while (j < strain.count_ && strain.particles_[j] != particle) ++j;
@@ -54,40 +55,42 @@ Strain Strain::of_quadrant(const Grid& grid, EdgeEnds p, EdgeEnds q) {
   return strain;
 }
 
-Strain Strain::of_angle(const Grid& grid, EdgeEnds p, EdgeEnds q) {
-  Strain strain = of_quadrant(grid, p, q);
+Strain Strain::of_angle(const Metric& metric, const Cell& cell, EdgeEnds p, EdgeEnds q) {
+  Strain strain = of_quadrant(metric, cell, p, q);
   strain.kind_ = Kind::angle;
   return strain;
 }
 
-Strain Strain::of_curvature(const Grid& grid, int a, int b, bool weft) {
+Strain Strain::of_curvature(const Metric& metric, int a, int b, bool weft) {
   Strain strain;
   strain.kind_ = Kind::curvature;
   strain.count_ = 5, strain.vectors_ = 3;
-  strain.area_ = grid.cell_area(a, b);
-  const int left = grid.index(std::max(a - 1, 0), b), right = grid.index(std::min(a + 1, grid.nu - 1), b);
-  const int lower = grid.index(a, std::max(b - 1, 0)), upper = grid.index(a, std::min(b + 1, grid.nv - 1));
-  const double l = weft ? grid.spacing_u() : grid.spacing_v(), w = 1 / (l * l);
-  // On a border the particle itself is one of the neighbours that span its normal.
-  strain.particles_ = {grid.index(a, b), left, right, lower, upper};
-  strain.weights_[0][2] = -2 * w;
-  strain.weights_[1] = {-1, 0, weft ? w : 0};
-  strain.weights_[2] = {1, 0, weft ? w : 0};
-  strain.weights_[3] = {0, -1, weft ? 0 : w};
-  strain.weights_[4] = {0, 1, weft ? 0 : w};
+  strain.area_ = metric.area(metric.grid().index(a, b));
+  const LineDifference difference = metric.second_difference(a, b, weft);
+  const double per_square = 1 / (difference.length * difference.length);
+  // The particle itself, left, right, lower, upper; on a border it is one of the neighbours that span its normal as well.
+  const std::array<int, most_particles> entry = weft ? std::array{1, 0, 2, 3, 4} : std::array{1, 3, 4, 0, 2};
+  constexpr double along_u[] = {0, -1, 1, 0, 0}, along_v[] = {0, 0, 0, -1, 1};
+  for (int j = 0; j < strain.count_; ++j) {
+    const auto [particle, coefficient] = difference.entries[entry[j]];
+    strain.particles_[j] = particle;
+    strain.weights_[j] = {along_u[j], along_v[j], coefficient * per_square};
+  }
   return strain;
 }
 
-Strain Strain::of_twist(const Grid& grid, const Cell& cell) {
+Strain Strain::of_twist(const Metric& metric, const Cell& cell) {
   Strain strain;
   strain.kind_ = Kind::curvature;
   strain.count_ = 4, strain.vectors_ = 3;
-  strain.area_ = grid.spacing_u() * grid.spacing_v();
-  for (const int a : {0, 1})
-    for (const int b : {0, 1}) {
-      strain.particles_[2 * a + b] = cell.corner[a][b];
-      strain.weights_[2 * a + b] = {a == 1 ? 1.0 : -1.0, b == 1 ? 1.0 : -1.0, (a == b ? 1 : -1) / strain.area_};
-    }
+  strain.area_ = metric.area(cell);
+  const CellDifference difference = metric.mixed_difference(cell);
+  const double size = difference.length_u * difference.length_v;
+  for (int j = 0; j < strain.count_; ++j) {
+    const auto [particle, coefficient] = difference.entries[j];
+    strain.particles_[j] = particle;
+    strain.weights_[j] = {j >= 2 ? 1.0 : -1.0, j % 2 == 1 ? 1.0 : -1.0, coefficient / size};
+  }
   return strain;
 }
 
@@ -104,7 +107,7 @@ Strain::Columns Strain::vectors(const Vectors& x) const {
 double Strain::value(const Columns& of) const {
   switch (kind_) {
     case Kind::edge: return of[0].norm() / size_ - 1;
-    case Kind::quadrant: return of[0].dot(of[1]) / size_;
+    case Kind::quadrant: return of[0].dot(of[1]) / size_ - rest_;
     case Kind::angle: return std::asin(of[0].normalized().dot(of[1].normalized()));
     case Kind::curvature: break;
   }
@@ -204,10 +207,11 @@ void Strain::second_derivatives(const Vectors& x, Hessian& by) const {
 std::vector<LineCurvature> line_curvatures(const Grid& grid) {
   std::vector<LineCurvature> all;
   if (grid.nu < 2 || grid.nv < 2) return all;
+  const Metric metric(grid);
   for (int b = 0; b < grid.nv; ++b)
     for (int a = 0; a < grid.nu; ++a) {
-      if (a > 0 && a < grid.nu - 1) all.push_back({Strain::of_curvature(grid, a, b, true), true});
-      if (b > 0 && b < grid.nv - 1) all.push_back({Strain::of_curvature(grid, a, b, false), false});
+      if (a > 0 && a < grid.nu - 1) all.push_back({Strain::of_curvature(metric, a, b, true), true});
+      if (b > 0 && b < grid.nv - 1) all.push_back({Strain::of_curvature(metric, a, b, false), false});
     }
   return all;
 }

@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "model/sheet/cells.hpp"
+#include "model/sheet/metric.hpp"
 
 namespace drape::model {
 
@@ -16,17 +16,17 @@ class Strain {
   /// |p|/l − 1 of an edge.
   static Strain of_edge(const Edge& edge);
 
-  /// <s_u, s_v> of a quadrant, the edges p and q of which share a corner.
-  static Strain of_quadrant(const Grid& grid, EdgeEnds p, EdgeEnds q);
+  /// <s_u, s_v> of a quadrant, less than at rest; the edges p and q of a cell share a corner.
+  static Strain of_quadrant(const Metric& metric, const Cell& cell, EdgeEnds p, EdgeEnds q);
 
-  /// The angle between the edges p and q less than a right one, asin <p, q>/(|p| |q|).
-  static Strain of_angle(const Grid& grid, EdgeEnds p, EdgeEnds q);
+  /// The angle between the edges p and q of a cell less than a right one, asin <p, q>/(|p| |q|).
+  static Strain of_angle(const Metric& metric, const Cell& cell, EdgeEnds p, EdgeEnds q);
 
   /// The normal curvature <N, s_uu> or <N, s_vv> of particle (a, b), which is not on the ends of the line [1/m].
-  static Strain of_curvature(const Grid& grid, int a, int b, bool weft);
+  static Strain of_curvature(const Metric& metric, int a, int b, bool weft);
 
   /// The twist <N, s_uv> of a cell [1/m].
-  static Strain of_twist(const Grid& grid, const Cell& cell);
+  static Strain of_twist(const Metric& metric, const Cell& cell);
 
   double area() const { return area_; }  ///< that it stands for [m²]
 
@@ -79,7 +79,8 @@ class Strain {
   Kind kind_ = Kind::edge;
   int count_ = 0, vectors_ = 0;
   double area_ = 0;
-  double size_ = 1;  ///< length of an edge, area of a quadrant
+  double size_ = 1;  ///< length of an edge; product of the lengths of a quadrant's edges
+  double rest_ = 0;  ///< <s_u, s_v> of a quadrant at rest
   std::array<int, most_particles> particles_{};
   std::array<std::array<double, most_vectors>, most_particles> weights_{};
 };

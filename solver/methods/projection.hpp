@@ -25,7 +25,7 @@ inline ConstraintValue evaluate(const CompliantConstraint& constraint, const Vec
     return {length - constraint.rest, 2, {-n, n}};
   }
   const Eigen::Vector3d q = x.row(k) - x.row(i);
-  return {p.dot(q), 3, {-p - q, q, p}};
+  return {p.dot(q) - constraint.rest, 3, {-p - q, q, p}};
 }
 
 /// f += −C/α ∇C, the forces of constraints [N].

@@ -135,6 +135,7 @@ TEST(Compile, DescribesThePlanInOneLine) {
 
 TEST(Compile, GivesDualCellMassesThatSumToDensityTimesArea) {
   for (const auto& [name, grid] : grids()) {
+    if (grid.outline.given()) continue;
     Scene scene;
     scene.sheet.grid = grid;
     scene.sheet.material.density = 0.3;

@@ -45,10 +45,8 @@ solver::Vectors equilibrium(const model::Scene& scene, solver::Vectors x) {
 }
 
 double rms_distance(const model::Grid& grid, const solver::Vectors& a, const solver::Vectors& b) {
-  double sum = 0;
-  for (int i = 0; i < grid.particles(); ++i)
-    sum += grid.cell_area(i % grid.nu, i / grid.nu) * (a.row(i) - b.row(i)).squaredNorm();
-  return std::sqrt(sum / (grid.size_u * grid.size_v));
+  const Eigen::VectorXd areas = grid.cell_areas();
+  return std::sqrt(areas.dot((a - b).rowwise().squaredNorm()) / areas.sum());
 }
 
 }  // namespace drape::verify

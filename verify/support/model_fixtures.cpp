@@ -4,6 +4,8 @@
 #include <cmath>
 #include <random>
 
+#include "model/sheet/edges.hpp"
+
 namespace drape::verify::sheets {
 
 std::vector<ForceCase> force_cases() {
@@ -50,9 +52,34 @@ ForceCase force_case(const std::string& name) {
 
 Grid five_by_four() { return {5, 4, 1.0, 0.6}; }
 
+Grid graded() {
+  Grid grid = five_by_four();
+  grid.grading_u = 2, grid.grading_v = 0.6;
+  return grid;
+}
+
+Grid curved() {
+  using enum model::CurvePiece::Kind;
+  Grid grid{5, 4, 1.2, 0.95};
+  grid.outline = {.lower = {{arc, {{0, 0}, {0.5, -0.1}, {1, 0.05}}}},
+                  .upper = {{line, {{0.15, 0.7}, {0.6, 0.75}}}, {bezier, {{0.6, 0.75}, {0.8, 0.75}, {1.2, 0.85}}}},
+                  .left = {{bezier, {{0, 0}, {-0.1, 0.2}, {0.15, 0.4}, {0.15, 0.7}}}},
+                  .right = {{line, {{1, 0.05}, {1.2, 0.85}}}}};
+  grid.grading_u = 1.3;
+  return grid;
+}
+
+bool exists_on(const Grid& grid, const ForceCase& force) {
+  const Material& m = force.material;
+  if (is_chain(grid) && !force.exists_on_chains) return false;
+  return grid.uniform() || (m.shear_form == ShearForm::conservative && !by_tables(m) &&
+                            (m.bend_form == BendForm::plate || m.bend_form == BendForm::membrane));
+}
+
 std::vector<NamedGrid> grids() {
-  return {{"2x2", {2, 2, 0.3, 0.2}}, {"3x2", {3, 2, 0.5, 0.2}},      {"2x4", {2, 4, 0.3, 0.6}},    {"3x3", {3, 3, 0.5, 0.4}},
-          {"5x4", five_by_four()},   {"chain_6x1", {6, 1, 1, 0.25}}, {"chain_1x5", {1, 5, 0.2, 1}}};
+  return {{"2x2", {2, 2, 0.3, 0.2}},     {"3x2", {3, 2, 0.5, 0.2}}, {"2x4", {2, 4, 0.3, 0.6}},
+          {"3x3", {3, 3, 0.5, 0.4}},     {"5x4", five_by_four()},   {"chain_6x1", {6, 1, 1, 0.25}},
+          {"chain_1x5", {1, 5, 0.2, 1}}, {"graded", graded()},      {"curved", curved()}};
 }
 
 Scene scene_of(const ForceCase& force, const Grid& grid) {
@@ -69,8 +96,7 @@ std::vector<Sheet> sheets_where(const std::function<bool(const Sheet&)>& holds) 
   std::vector<Sheet> found;
   for (const ForceCase& force : force_cases())
     for (const NamedGrid& grid : grids())
-      if (const Sheet sheet{force, grid}; (force.exists_on_chains || !is_chain(grid.grid)) && holds(sheet))
-        found.push_back(sheet);
+      if (const Sheet sheet{force, grid}; exists_on(grid.grid, force) && holds(sheet)) found.push_back(sheet);
   return found;
 }
 
@@ -87,7 +113,10 @@ Vectors cylinder(const Grid& grid, double kappa) {
   return x;
 }
 
-double spacing(const Grid& grid) { return std::min(grid.spacing_u(), grid.spacing_v()); }
+double spacing(const Grid& grid) {
+  const auto [weft, warp] = shortest_edges(grid);
+  return std::min(weft, warp);
+}
 
 Vectors random_vectors(int n, double amplitude, unsigned seed) {
   std::mt19937 generator(seed);

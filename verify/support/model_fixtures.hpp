@@ -96,16 +96,21 @@ std::vector<ForceCase> force_cases();
 
 ForceCase force_case(const std::string& name);
 
-/// Grids with spacings that differ. The smallest have borders only; chains run along u and along v.
+/// Grids with spacings that differ. The smallest have borders only; chains run along u and along v; two are not uniform.
 struct NamedGrid {
   std::string name;
   Grid grid;
 };
 
-/// One with an inside, borders and corners.
+/// One with an inside, borders and corners; a rectangle whose spacings grow; a panel with curved sides and no right angle.
 Grid five_by_four();
+Grid graded();
+Grid curved();
 
 std::vector<NamedGrid> grids();
+
+/// Whether a force is defined on a grid.
+bool exists_on(const Grid& grid, const ForceCase& force);
 
 inline bool is_chain(const Grid& grid) { return grid.nu == 1 || grid.nv == 1; }
 
@@ -129,7 +134,7 @@ std::string name_of(const testing::TestParamInfo<Sheet>& test);
 /// A sheet that is bent along the weft to a cylinder of this curvature [1/m], with its edges for chords.
 Vectors cylinder(const Grid& grid, double kappa);
 
-/// The smaller spacing, the length by which displacements are measured.
+/// The smallest spacing, the length by which displacements are measured.
 double spacing(const Grid& grid);
 
 /// n vectors whose components lie in [-amplitude, amplitude].

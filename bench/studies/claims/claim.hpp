@@ -48,13 +48,14 @@ struct Claim {
   bool timed = false;                                   ///< whether the number is a ratio of times
 };
 
-/// The groups of claims, a file each: of forces, of linear modes, of linear systems, of orders, of sheets in motion, and of
-/// methods other than those of the thesis.
+/// The groups of claims, a file each: of forces, of linear modes, of linear systems, of orders, of sheets in motion, of panels
+/// that are no rectangles, and of methods other than those of the thesis.
 std::span<const Claim> force_claims();
 std::span<const Claim> mode_claims();
 std::span<const Claim> system_claims();
 std::span<const Claim> order_claims();
 std::span<const Claim> sheet_claims();
+std::span<const Claim> panel_claims();
 std::span<const Claim> alternative_claims();
 
 /// All of them, group by group.

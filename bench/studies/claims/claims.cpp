@@ -124,7 +124,7 @@ std::vector<results::Table> claims_tables(const std::vector<LedgerRow>& ledger) 
 std::vector<const Claim*> all_claims() {
   std::vector<const Claim*> all;
   for (const auto group :
-       {force_claims(), mode_claims(), system_claims(), order_claims(), sheet_claims(), alternative_claims()})
+       {force_claims(), mode_claims(), system_claims(), order_claims(), sheet_claims(), panel_claims(), alternative_claims()})
     for (const Claim& claim : group) all.push_back(&claim);
   return all;
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "model/sheet/metric.hpp"
+
 namespace drape::model {
 namespace {
 
@@ -39,24 +41,55 @@ void fetch(const double* data) {
   for (int i = 0; i < 3 * short_block; i += column_block) __builtin_prefetch(data + i);
 }
 
-/// The law of the edges in one direction, of rest length l.
+/// The law of the edges in one direction, of rest length l; 1: each has its own.
 EdgePull edge_pull(const EdgeLaw& law, double WeftWarp::*direction, double l) {
   return {law.spring.*direction / l, law.preload.*direction, law.dashpot.*direction / l, law.drag.*direction / l};
 }
+
+double length_of(const Grid& grid, double spacing) { return grid.uniform() ? spacing : 1; }
 
 Vec scaled(double s, const Eigen::Vector3d& a) { return {s * a[0], s * a[1], s * a[2]}; }
 
 }  // namespace
 
+GridShape::GridShape(const Grid& grid, int length) {
+  for (Eigen::ArrayXXd* all : {&weft_width, &weft_per_length, &warp_width, &warp_per_length, &particle_area, &cell_area,
+                               &cosine[0][0], &cosine[0][1], &cosine[1][0], &cosine[1][1]})
+    all->setZero(length + 1, grid.nv);  // loops look at the next column as well
+  for (const Edge& edge : edges(grid)) {
+    const int a = edge.i % grid.nu, line = edge.j / grid.nu;
+    (edge.weft ? weft_width : warp_width)(a, line) = edge.width;
+    (edge.weft ? weft_per_length : warp_per_length)(a, line) = 1 / edge.length;
+  }
+  const Eigen::VectorXd areas = grid.cell_areas();
+  for (int i = 0; i < grid.particles(); ++i) particle_area(i % grid.nu, i / grid.nu) = areas[i];
+  const Metric metric(grid);
+  for (const Cell& cell : cells(grid)) {
+    const int a = cell.corner[0][0] % grid.nu, line = cell.corner[0][1] / grid.nu;
+    cell_area(a, line) = metric.area(cell);
+    for (const int right : {0, 1})
+      for (const int upper : {0, 1}) {
+        const EdgeEnds p = upper == 1 ? cell.upper() : cell.lower(), q = right == 1 ? cell.right() : cell.left();
+        cosine[right][upper](a, line) = metric.product(p, q) / (metric.length(p) * metric.length(q));
+      }
+  }
+}
+
 FusedForces::FusedForces(const Grid& grid, const GridLaw& law)
     : grid_(grid),
       law_(law),
-      weft_(edge_pull(law.edge, &WeftWarp::weft, grid.spacing_u())),
-      warp_(edge_pull(law.edge, &WeftWarp::warp, grid.spacing_v())),
+      weft_(edge_pull(law.edge, &WeftWarp::weft, length_of(grid, grid.spacing_u()))),
+      warp_(edge_pull(law.edge, &WeftWarp::warp, length_of(grid, grid.spacing_v()))),
       length_((grid.nu + column_block) / column_block * column_block),
       fetches_(grid.particles() > cached_particles),
       weft_width_(Eigen::ArrayXd::Zero(length_)),
       warp_width_(Eigen::ArrayXd::Zero(length_)) {
+  if (grid.uniform()) {
+    law_.cell.shear /= grid.spacing_u() * grid.spacing_v();
+    law_.cell.shear_rate /= grid.spacing_u() * grid.spacing_v();
+  } else {
+    shape_ = std::make_unique<GridShape>(grid, length_);
+  }
   weft_width_.head(grid.nu - 1) = 1;
   for (int a = 0; a < grid.nu; ++a) warp_width_[a] = grid.cell_width_u(a);
   const std::ptrdiff_t stride =
@@ -77,38 +110,63 @@ void FusedForces::read(int b, Columns columns, const Vectors& from, const Field&
   part(from.data() + 3 * static_cast<std::ptrdiff_t>(grid_.index(0, b)), ahead(columns, grid_.nu), to);
 }
 
+Edges FusedForces::weft_of(int b, const Line& line) const {
+  Edges edges = line.weft;
+  if (shape_) edges.per_length = shape_->weft_per_length.col(b).data();
+  return edges;
+}
+
+Edges FusedForces::warp_of(int b, const Line& line) const {
+  Edges edges = line.warp;
+  if (shape_) edges.per_length = shape_->warp_per_length.col(b).data();
+  return edges;
+}
+
 void FusedForces::pull_weft(int b, Columns columns, const Line& line) const {
   const Ends x{line.x, line.x.next()}, v{line.v, line.v.next()};
-  pull_edges(weft_ * grid_.cell_width_v(b), x, v, weft_width_.data(), columns, line.weft);
-  if (law_.cell.contracts()) strain_edges(law_.cell, grid_.spacing_u(), v, columns, line.weft);
+  const Edges weft = weft_of(b, line);
+  if (shape_)
+    pull_edges(weft_, x, v, shape_->weft_width.col(b).data(), columns, weft);
+  else
+    pull_edges(weft_ * grid_.cell_width_v(b), x, v, weft_width_.data(), columns, weft);
+  if (law_.cell.contracts()) strain_edges(law_.cell, grid_.spacing_u(), v, columns, weft);
 }
 
-void FusedForces::pull_warp(Columns columns, const Line& before, const Line& line) const {
+void FusedForces::pull_warp(int b, Columns columns, const Line& before, const Line& line) const {
   const Ends x{before.x, line.x}, v{before.v, line.v};
   const Columns warp = ahead(columns, length_);
-  pull_edges(warp_, x, v, warp_width_.data(), warp, line.warp);
-  if (law_.cell.contracts()) strain_edges(law_.cell, grid_.spacing_v(), v, warp, line.warp);
+  const Edges edges = warp_of(b, line);
+  pull_edges(warp_, x, v, shape_ ? shape_->warp_width.col(b).data() : warp_width_.data(), warp, edges);
+  if (law_.cell.contracts()) strain_edges(law_.cell, grid_.spacing_v(), v, warp, edges);
 }
 
-void FusedForces::pull_cells(Columns columns, const Line& before, const Line& line) const {
-  const Edges& left = line.warp;
-  const CellEdges cells{.lower = before.weft,
-                        .upper = line.weft,
-                        .left = left,
-                        .right = left.along.next(),
-                        .v00 = before.v,
-                        .v10 = before.v.next(),
-                        .v01 = line.v,
-                        .v11 = line.v.next(),
-                        .right_inverse = left.inverse + 1,
-                        .right_stress = left.stress + 1,
-                        .pull_right = line.pull_right};
-  shear_cells(law_.cell, weft_width_.data(), columns, cells);
-  if (law_.cell.contracts()) contract_cells(grid_.spacing_u(), grid_.spacing_v(), weft_width_.data(), columns, cells);
+void FusedForces::pull_cells(int b, Columns columns, const Line& before, const Line& line) const {
+  const Edges left = warp_of(b, line);
+  CellEdges cells{.lower = weft_of(b - 1, before),
+                  .upper = weft_of(b, line),
+                  .left = left,
+                  .right = left.along.next(),
+                  .v00 = before.v,
+                  .v10 = before.v.next(),
+                  .v01 = line.v,
+                  .v11 = line.v.next(),
+                  .right_inverse = left.inverse + 1,
+                  .right_stress = left.stress + 1,
+                  .pull_right = line.pull_right,
+                  .exists = weft_width_.data()};
+  CellShapes shapes;
+  if (shape_) {
+    const auto cosines = [&](int right, int upper) { return shape_->cosine[right][upper].col(b).data(); };
+    shapes = {shape_->cell_area.col(b).data(), cosines(0, 0), cosines(1, 0), cosines(0, 1), cosines(1, 1)};
+    cells.shapes = &shapes;
+  }
+  shear_cells(law_.cell, columns, cells);
+  if (law_.cell.contracts()) contract_cells(grid_.spacing_u(), grid_.spacing_v(), columns, cells);
 }
 
 void FusedForces::write(int b, Columns columns, const Line& line, const Line& next, Vectors& f) const {
-  gather(scaled(grid_.cell_width_v(b), law_.load), warp_width_.data(), {line.weft.pull.before(), line.weft.pull},
+  const Vec load = scaled(shape_ ? 1 : grid_.cell_width_v(b), law_.load);
+  gather(load, shape_ ? shape_->particle_area.col(b).data() : warp_width_.data(), {line.weft.pull.before(), line.weft.pull},
          {line.warp.pull, next.warp.pull}, {line.pull_right.before(), next.pull_right.before()}, ahead(columns, grid_.nu),
          f.data() + 3 * static_cast<std::ptrdiff_t>(grid_.index(0, b)));
 }
@@ -139,9 +197,9 @@ void FusedForces::operator()(const Vectors& x, const Vectors& v, Vectors& f) {
       pull_weft(b, columns, line);
       if (b == 0) continue;
       if (fetches_ && velocities) fetch(v.data() + next);
-      pull_warp(columns, before, line);
+      pull_warp(b, columns, before, line);
       if (fetches_ && b > 1) fetch(f.data() + next - 6 * static_cast<std::ptrdiff_t>(grid_.nu));
-      if (law_.cell.acts()) pull_cells(columns, before, line);
+      if (law_.cell.acts()) pull_cells(b, columns, before, line);
     }
   }
 }

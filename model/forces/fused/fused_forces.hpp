@@ -1,11 +1,23 @@
 #pragma once
 
 #include <array>
+#include <memory>
 
 #include "model/forces/fused/kernels.hpp"
 #include "model/sheet/grid.hpp"
 
 namespace drape::model {
+
+/// The edges, cells and particles of a grid that is not uniform: one column of the arrays for each line, widths and areas 0
+/// where there is none.
+struct GridShape {
+  GridShape(const Grid& grid, int length);
+
+  Eigen::ArrayXXd weft_width, weft_per_length;           ///< [m], [1/m]
+  Eigen::ArrayXXd warp_width, warp_per_length;           ///< of the edges from the line before
+  Eigen::ArrayXXd particle_area, cell_area;              ///< [m²], of the cells between the line before and this one
+  std::array<std::array<Eigen::ArrayXXd, 2>, 2> cosine;  ///< of quadrants, [0 left, 1 right][0 lower, 1 upper]
+};
 
 /// Evaluates a law in one pass over memory, line by line: reads x and v once and writes f once.
 ///
@@ -30,22 +42,25 @@ class FusedForces {
     Field pull_right;
   };
 
+  Edges weft_of(int b, const Line& line) const;
+  Edges warp_of(int b, const Line& line) const;
   void read(int b, Columns columns, const solver::Vectors& from, const Field& to) const;
   void pull_weft(int b, Columns columns, const Line& line) const;
-  void pull_warp(Columns columns, const Line& before, const Line& line) const;
-  void pull_cells(Columns columns, const Line& before, const Line& line) const;
+  void pull_warp(int b, Columns columns, const Line& before, const Line& line) const;
+  void pull_cells(int b, Columns columns, const Line& before, const Line& line) const;
   void write(int b, Columns columns, const Line& line, const Line& next, solver::Vectors& f) const;
   void clear_warp(const Line& line) const;
 
   Grid grid_;
   GridLaw law_;
-  EdgePull weft_, warp_;       ///< for a strip of unit width
-  int length_;                 ///< number of columns that the loops run over
-  bool fetches_;               ///< whether x, v and f come from memory
-  Eigen::ArrayXd weft_width_;  ///< 1 where the edge and the cell towards the next column exist, else 0
-  Eigen::ArrayXd warp_width_;  ///< width of the edges along v [m], 0 where there is no column
-  Eigen::ArrayXd memory_;      ///< holds the lines
-  std::array<Line, 2> lines_;  ///< the one with even b and the one with odd b
+  EdgePull weft_, warp_;                    ///< for a strip of unit width
+  int length_;                              ///< number of columns that the loops run over
+  bool fetches_;                            ///< whether x, v and f come from memory
+  Eigen::ArrayXd weft_width_;               ///< 1 where the edge and the cell towards the next column exist, else 0
+  Eigen::ArrayXd warp_width_;               ///< width of the edges along v [m], 0 where there is no column
+  std::unique_ptr<const GridShape> shape_;  ///< null if the grid is uniform
+  Eigen::ArrayXd memory_;                   ///< holds the lines
+  std::array<Line, 2> lines_;               ///< the one with even b and the one with odd b
 };
 
 }  // namespace drape::model

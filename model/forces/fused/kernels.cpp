@@ -22,56 +22,94 @@ void with(bool condition, const F& f) {
   condition ? f(std::true_type()) : f(std::false_type());
 }
 
-template <bool preload, bool dashpot, bool drag>
+template <bool preload, bool dashpot, bool drag, bool own_lengths>
 void pull(EdgePull law, Ends x, Ends v, const double* width, Columns columns, Edges edges) {
 #pragma GCC ivdep
   for (int k = columns.begin; k < columns.end; ++k) {
     const Vec p = difference(x, k);
     edges.along.set(k, p);
-    double stress = law.spring;
+    const double per_length = own_lengths ? edges.per_length[k] : 1;
+    double stress = per_length * law.spring;
     if constexpr (preload) stress -= law.preload / std::sqrt(dot(p, p));
-    if constexpr (dashpot) stress += law.dashpot * dot(p, difference(v, k)) / dot(p, p);
+    if constexpr (dashpot) stress += per_length * law.dashpot * dot(p, difference(v, k)) / dot(p, p);
     Vec g = stress * p;
-    if constexpr (drag) g = g + law.drag * difference(v, k);
+    if constexpr (drag) g = g + (per_length * law.drag) * difference(v, k);
     edges.pull.set(k, width[k] * g);
   }
 }
 
-template <bool viscous>
+template <bool viscous, bool own_lengths>
 void strain(CellLaw law, double l, Ends v, Columns columns, Edges edges) {
 #pragma GCC ivdep
   for (int k = columns.begin; k < columns.end; ++k) {
     const Vec p = edges.along[k];
     const double pp = dot(p, p), inverse = 1 / std::sqrt(pp);
-    double stress = law.contraction * (pp * inverse / l - 1);
-    if constexpr (viscous) stress += law.contraction_rate * dot(p, difference(v, k)) * inverse / l;
+    const auto over_length = [&](double value) { return own_lengths ? value * edges.per_length[k] : value / l; };
+    double stress = law.contraction * (over_length(pp * inverse) - 1);
+    if constexpr (viscous) stress += over_length(law.contraction_rate * dot(p, difference(v, k)) * inverse);
     edges.inverse[k] = inverse;
     edges.stress[k] = stress;
   }
 }
 
-template <bool viscous>
-void shear(CellLaw law, const double* exists, Columns columns, const CellEdges& cells) {
+template <bool viscous, bool own_shapes>
+void shear(CellLaw law, Columns columns, const CellEdges& cells) {
+  const CellShapes shapes = own_shapes ? *cells.shapes : CellShapes{};
+  const double* const exists = cells.exists;
+  const double *lower_length = cells.lower.per_length, *upper_length = cells.upper.per_length;
+  const double* left_length = cells.left.per_length;
   const Field lower = cells.lower.along, upper = cells.upper.along, left = cells.left.along, right = cells.right;
   const Field pull_lower = cells.lower.pull, pull_upper = cells.upper.pull, pull_left = cells.left.pull;
   const Field pull_right = cells.pull_right, v00 = cells.v00, v10 = cells.v10, v01 = cells.v01, v11 = cells.v11;
 #pragma GCC ivdep
   for (int k = columns.begin; k < columns.end; ++k) {
     const Vec a = lower[k], b = upper[k], c = left[k], d = right[k];
-    double ac = law.shear * dot(a, c), ad = law.shear * dot(a, d);
-    double bc = law.shear * dot(b, c), bd = law.shear * dot(b, d);
+    // Each quadrant has s = 1/(l_p l_q), and e times s.
+    double s_ac = 1, s_ad = 1, s_bc = 1, s_bd = 1;
+    double e_ac = dot(a, c), e_ad = dot(a, d), e_bc = dot(b, c), e_bd = dot(b, d);
+    if constexpr (own_shapes) {
+      s_ac = lower_length[k] * left_length[k], s_ad = lower_length[k] * left_length[k + 1];
+      s_bc = upper_length[k] * left_length[k], s_bd = upper_length[k] * left_length[k + 1];
+      e_ac = s_ac * e_ac - shapes.lower_left[k], e_ad = s_ad * e_ad - shapes.lower_right[k];
+      e_bc = s_bc * e_bc - shapes.upper_left[k], e_bd = s_bd * e_bd - shapes.upper_right[k];
+    }
+    double ac = law.shear * e_ac, ad = law.shear * e_ad, bc = law.shear * e_bc, bd = law.shear * e_bd;
     if constexpr (viscous) {
       const Vec va = v10[k] - v00[k], vb = v11[k] - v01[k], vc = v01[k] - v00[k], vd = v11[k] - v10[k];
-      ac += law.shear_rate * (dot(va, c) + dot(a, vc));
-      ad += law.shear_rate * (dot(va, d) + dot(a, vd));
-      bc += law.shear_rate * (dot(vb, c) + dot(b, vc));
-      bd += law.shear_rate * (dot(vb, d) + dot(b, vd));
+      ac += s_ac * law.shear_rate * (dot(va, c) + dot(a, vc));
+      ad += s_ad * law.shear_rate * (dot(va, d) + dot(a, vd));
+      bc += s_bc * law.shear_rate * (dot(vb, c) + dot(b, vc));
+      bd += s_bd * law.shear_rate * (dot(vb, d) + dot(b, vd));
     }
-    ac *= exists[k], ad *= exists[k], bc *= exists[k], bd *= exists[k];
+    const double weight = own_shapes ? shapes.area[k] : exists[k];
+    ac *= weight * s_ac, ad *= weight * s_ad, bc *= weight * s_bc, bd *= weight * s_bd;
     add(pull_lower, k, ac * c + ad * d);
     add(pull_upper, k, bc * c + bd * d);
     add(pull_left, k, ac * a + bc * b);
     pull_right.set(k, ad * a + bd * b);
+  }
+}
+
+template <bool own_shapes>
+void contract(double lu, double lv, Columns columns, CellEdges cells) {
+  const double* const exists = cells.exists;
+  const double* const area = own_shapes ? cells.shapes->area : nullptr;
+  const double *lower_length = cells.lower.per_length, *upper_length = cells.upper.per_length;
+  const double* left_length = cells.left.per_length;
+#pragma GCC ivdep
+  for (int k = columns.begin; k < columns.end; ++k) {
+    const double weight = own_shapes ? area[k] : exists[k];
+    double lower = lv, upper = lv, left = lu, right = lu;  // the area over the edge's length
+    if constexpr (own_shapes) {
+      lower = lower_length[k], upper = upper_length[k];
+      left = left_length[k], right = left_length[k + 1];
+    }
+    const double along_u = cells.left.stress[k] + cells.right_stress[k];
+    const double along_v = cells.lower.stress[k] + cells.upper.stress[k];
+    add(cells.lower.pull, k, weight * lower * along_u * cells.lower.inverse[k] * cells.lower.along[k]);
+    add(cells.upper.pull, k, weight * upper * along_u * cells.upper.inverse[k] * cells.upper.along[k]);
+    add(cells.left.pull, k, weight * left * along_v * cells.left.inverse[k] * cells.left.along[k]);
+    add(cells.pull_right, k, weight * right * along_v * cells.right_inverse[k] * cells.right[k]);
   }
 }
 
@@ -86,30 +124,28 @@ void part(const double* xyz, Columns columns, const Field& to) {
 void pull_edges(const EdgePull& law, const Ends& x, const Ends& v, const double* width, Columns columns, const Edges& edges) {
   with(law.preload != 0, [&](auto preload) {
     with(law.dashpot != 0, [&](auto dashpot) {
-      with(law.drag != 0, [&](auto drag) { pull<preload, dashpot, drag>(law, x, v, width, columns, edges); });
+      with(law.drag != 0, [&](auto drag) {
+        with(edges.per_length != nullptr,
+             [&](auto own_lengths) { pull<preload, dashpot, drag, own_lengths>(law, x, v, width, columns, edges); });
+      });
     });
   });
 }
 
 void strain_edges(const CellLaw& law, double l, const Ends& v, Columns columns, const Edges& edges) {
-  with(law.contraction_rate != 0, [&](auto viscous) { strain<viscous>(law, l, v, columns, edges); });
+  with(law.contraction_rate != 0, [&](auto viscous) {
+    with(edges.per_length != nullptr, [&](auto own_lengths) { strain<viscous, own_lengths>(law, l, v, columns, edges); });
+  });
 }
 
-void shear_cells(const CellLaw& law, const double* exists, Columns columns, const CellEdges& cells) {
-  with(law.shear_rate != 0, [&](auto viscous) { shear<viscous>(law, exists, columns, cells); });
+void shear_cells(const CellLaw& law, Columns columns, const CellEdges& cells) {
+  with(law.shear_rate != 0, [&](auto viscous) {
+    with(cells.shapes != nullptr, [&](auto own_shapes) { shear<viscous, own_shapes>(law, columns, cells); });
+  });
 }
 
-void contract_cells(double lu, double lv, const double* exists, Columns columns, const CellEdges& all) {
-  const CellEdges cells = all;
-#pragma GCC ivdep
-  for (int k = columns.begin; k < columns.end; ++k) {
-    const double along_u = exists[k] * lv * (cells.left.stress[k] + cells.right_stress[k]);
-    const double along_v = exists[k] * lu * (cells.lower.stress[k] + cells.upper.stress[k]);
-    add(cells.lower.pull, k, along_u * cells.lower.inverse[k] * cells.lower.along[k]);
-    add(cells.upper.pull, k, along_u * cells.upper.inverse[k] * cells.upper.along[k]);
-    add(cells.left.pull, k, along_v * cells.left.inverse[k] * cells.left.along[k]);
-    add(cells.pull_right, k, along_v * cells.right_inverse[k] * cells.right[k]);
-  }
+void contract_cells(double lu, double lv, Columns columns, const CellEdges& cells) {
+  with(cells.shapes != nullptr, [&](auto own_shapes) { contract<own_shapes>(lu, lv, columns, cells); });
 }
 
 void gather(const Vec& load, const double* width, const Ends& weft_pulls, const Ends& warp_pulls, const Ends& left_cells,

@@ -43,6 +43,13 @@ struct Ends {
 struct Edges {
   Field along, pull;
   double *inverse, *stress;
+  const double* per_length = nullptr;  ///< 1/l at rest [1/m]; null: the same for all, and in their law
+};
+
+/// Cells of a grid that is not uniform: areas [m²], and <p, q>/(l_p l_q) at rest of the quadrants between the lower or upper
+/// and the left or right edge.
+struct CellShapes {
+  const double *area, *lower_left, *lower_right, *upper_left, *upper_right;
 };
 
 /// The edges of cells: lower and upper along u, left and right along v; and the
@@ -54,6 +61,9 @@ struct CellEdges {
   Field v00, v10, v01, v11;
   const double *right_inverse, *right_stress;
   Field pull_right;
+
+  const double* exists;                ///< 1 where there is a cell, else 0
+  const CellShapes* shapes = nullptr;  ///< null if the grid is uniform
 };
 
 /// Splits the coordinates x y z x y z ... of columns into the three arrays of a field.
@@ -69,14 +79,15 @@ struct EdgePull {
 /// Sets the edges from their ends, and their pulls times `width`.
 void pull_edges(const EdgePull& law, const Ends& x, const Ends& v, const double* width, Columns columns, const Edges& edges);
 
-/// Sets the inverse lengths of edges of rest length l, and the stresses that they cause in the edges across them.
+/// Sets the inverse lengths of edges, and the stresses that they cause in the edges across them. `l`: their rest length, unless
+/// each has its own.
 void strain_edges(const CellLaw& law, double l, const Ends& v, Columns columns, const Edges& edges);
 
-/// Adds the pulls of cells, and sets those on their right; exists: 1 where there is a cell, else 0.
-void shear_cells(const CellLaw& law, const double* exists, Columns columns, const CellEdges& cells);
+/// Adds the pulls of cells, and sets those on their right. The law of a uniform grid has been divided by the area of a cell.
+void shear_cells(const CellLaw& law, Columns columns, const CellEdges& cells);
 
-/// Adds the pulls of cells with spacings l_u and l_v.
-void contract_cells(double lu, double lv, const double* exists, Columns columns, const CellEdges& cells);
+/// Adds the pulls of cells with spacings l_u and l_v, unless each has its own.
+void contract_cells(double lu, double lv, Columns columns, const CellEdges& cells);
 
 /// Sets the forces f = x y z x y z ... on the particles of a line from the pulls of the edges that they begin and end.
 void gather(const Vec& load, const double* width, const Ends& weft, const Ends& warp, const Ends& left_cells, Columns columns,

@@ -21,12 +21,14 @@ struct EdgeLaw {
   bool operator==(const EdgeLaw&) const = default;
 };
 
-/// The pulls of a cell's edges that depend on its other edges. An edge p along u and an edge q along v of the cell pull
-///   along q and along p:      shear <p, q> + shear_rate d/dt <p, q>   (each quadrant),
-///   along p° l_v and q° l_u:  contraction ε + contraction_rate ε̇,    ε the other pair's summed strains.
+/// The pulls of a cell's edges that depend on its other edges. In a cell of area A an edge p along u and an edge q along v, of
+/// lengths l_p and l_q, pull
+///   along q and along p:                  A/(l_p l_q)² (shear e + shear_rate ė),  e = <p, q> less than at rest  (each
+///   quadrant), along p° A/l_p and along q° A/l_q:    contraction ε + contraction_rate ε̇,     ε the other pair's summed
+///   strains.
 struct CellLaw {
-  double shear = 0;             ///< [N/m³]
-  double shear_rate = 0;        ///< [N s/m³]
+  double shear = 0;             ///< [N/m]
+  double shear_rate = 0;        ///< [N s/m]
   double contraction = 0;       ///< [N/m]
   double contraction_rate = 0;  ///< [N s/m]
 

@@ -98,6 +98,7 @@ void expect_refutable(std::span<const Claim> claims) {
 
 TEST(Ledger, OfForcesIsDecidedByNumbersThatCouldHaveRefutedIt) { expect_refutable(bench::force_claims()); }
 TEST(Ledger, OfModesIsDecidedByNumbersThatCouldHaveRefutedIt) { expect_refutable(bench::mode_claims()); }
+TEST(Ledger, OfPanelsIsDecidedByNumbersThatCouldHaveRefutedIt) { expect_refutable(bench::panel_claims()); }
 TEST(Ledger, OfSystemsIsDecidedByNumbersThatCouldHaveRefutedIt) {
   DRAPE_SLOW();
   expect_refutable(bench::system_claims());

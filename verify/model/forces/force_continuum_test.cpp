@@ -190,7 +190,8 @@ double worst(const std::string& name, const Grid& grid, const Density& density, 
     for (int a = 0; a < grid.nu; ++a) {
       const double u = a * grid.spacing_u(), v = b * grid.spacing_v();
       if (std::min({u, v, 1 - u, 1 - v}) < margin) continue;
-      error = std::max(error, largest(f.row(grid.index(a, b)).transpose() / grid.cell_area(a, b) - density(u, v)));
+      error =
+          std::max(error, largest(f.row(grid.index(a, b)).transpose() / grid.cell_areas()[grid.index(a, b)] - density(u, v)));
     }
   return error;
 }

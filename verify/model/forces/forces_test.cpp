@@ -137,7 +137,7 @@ TEST(Forces, OfSpringsAreSplitSuchThatOnlyKxGrows) {
 
 TEST(Forces, OfSpringsHaveSymmetricNegativeSemidefiniteMatricesWithoutRowSums) {
   for (const auto& [name, grid] : grids()) {
-    const SplitOde ode = ode_of(force_case("all_of_the_thesis"), grid);
+    const SplitOde ode = ode_of(force_case("all_with_a_membrane"), grid);
     for (const Eigen::MatrixXd A : {ode.stiffness, ode.damping}) {
       const double rounding = 100 * epsilon * largest(A);
       EXPECT_EQ(A, A.transpose()) << name;

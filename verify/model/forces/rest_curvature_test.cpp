@@ -85,7 +85,8 @@ TEST(RestCurvature, IsWhatAFlatSheetReturnsTo) {
   solver::Integrator integrator(cloth.ode, solver::method("implicit-euler"), {}, start);
   ASSERT_EQ(integrate(integrator, 2, 0.01).outcome, solver::Outcome::success);
   for (int a = 1; a < 8; ++a)
-    EXPECT_NEAR(model::Strain::of_curvature(scene.sheet.grid, a, 2, true).value(integrator.state().x), kappa, 1e-3);
+    EXPECT_NEAR(model::Strain::of_curvature(model::Metric(scene.sheet.grid), a, 2, true).value(integrator.state().x), kappa,
+                1e-3);
   EXPECT_LT(solver::stored_energy(cloth.ode, 0, integrator.state()), 1e-7);
 }
 

@@ -287,7 +287,7 @@ TEST(Friction, KeepsTheCurvatureOfKawabatasTest) {
   cloth.ode.memory->carry(1e-3, y);
   solver::Integrator integrator(cloth.ode, solver::method("implicit-euler"), {}, y);
   ASSERT_EQ(integrate(integrator, 50, 1e-2).outcome, Outcome::success);
-  const double kappa = model::Strain::of_curvature(scene.sheet.grid, 4, 1, true).value(integrator.state().x);
+  const double kappa = model::Strain::of_curvature(model::Metric(scene.sheet.grid), 4, 1, true).value(integrator.state().x);
   EXPECT_NEAR(kappa, HB / B, 0.02 * HB / B);
 }
 

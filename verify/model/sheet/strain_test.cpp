@@ -16,13 +16,14 @@ using namespace sheets;
 
 std::vector<Strain> strains(const Grid& grid) {
   std::vector<Strain> all;
+  const model::Metric metric(grid);
   for (const model::Edge& edge : edges(grid)) all.push_back(Strain::of_edge(edge));
   for (const model::Cell& cell : cells(grid)) {
     for (const auto& [p, q] : quadrants(cell)) {
-      all.push_back(Strain::of_quadrant(grid, p, q));
-      all.push_back(Strain::of_angle(grid, p, q));
+      all.push_back(Strain::of_quadrant(metric, cell, p, q));
+      all.push_back(Strain::of_angle(metric, cell, p, q));
     }
-    all.push_back(Strain::of_twist(grid, cell));
+    all.push_back(Strain::of_twist(metric, cell));
   }
   for (const model::LineCurvature& curvature : line_curvatures(grid)) all.push_back(curvature.strain);
   return all;
@@ -66,14 +67,16 @@ TEST(Strain, HasTheDerivativesThatDifferencesShow) {
 /// A sheet that is stretched and sheared, and arcs along weft and warp whose chords are the edges.
 TEST(Strain, IsThatOfSimpleShapes) {
   const Grid grid{6, 5, 1, 0.6};
+  const model::Metric metric(grid);
   Vectors x = grid.parameters();
   x.col(0) = 1.2 * grid.parameters().col(0) + 0.3 * grid.parameters().col(1);
   for (const model::Edge& edge : edges(grid))
     EXPECT_NEAR(Strain::of_edge(edge).value(x), edge.weft ? 0.2 : std::hypot(1, 0.3) - 1, 1e-14);
   for (const model::Cell& cell : cells(grid))
-    for (const auto& [p, q] : quadrants(cell)) EXPECT_NEAR(Strain::of_quadrant(grid, p, q).value(x), 1.2 * 0.3, 1e-14);
+    for (const auto& [p, q] : quadrants(cell)) EXPECT_NEAR(Strain::of_quadrant(metric, cell, p, q).value(x), 1.2 * 0.3, 1e-14);
   for (const model::Cell& cell : cells(grid))
-    for (const auto& [p, q] : quadrants(cell)) EXPECT_NEAR(Strain::of_angle(grid, p, q).value(x), std::atan(0.3), 1e-14);
+    for (const auto& [p, q] : quadrants(cell))
+      EXPECT_NEAR(Strain::of_angle(metric, cell, p, q).value(x), std::atan(0.3), 1e-14);
 
   for (const bool weft : {true, false}) {
     constexpr double angle = 0.3;  // between edges
@@ -87,23 +90,24 @@ TEST(Strain, IsThatOfSimpleShapes) {
     const double exact = 2 * std::sin(angle / 2) / l;  // 1/R
     for (int b = 1; b < grid.nv - 1; ++b)
       for (int a = 1; a < grid.nu - 1; ++a) {
-        EXPECT_NEAR(Strain::of_curvature(grid, a, b, weft).value(x), exact, 1e-12);
-        EXPECT_NEAR(Strain::of_curvature(grid, a, b, !weft).value(x), 0, 1e-12);
+        EXPECT_NEAR(Strain::of_curvature(metric, a, b, weft).value(x), exact, 1e-12);
+        EXPECT_NEAR(Strain::of_curvature(metric, a, b, !weft).value(x), 0, 1e-12);
       }
-    for (const model::Cell& cell : cells(grid)) EXPECT_NEAR(Strain::of_twist(grid, cell).value(x), 0, 1e-12);
+    for (const model::Cell& cell : cells(grid)) EXPECT_NEAR(Strain::of_twist(metric, cell).value(x), 0, 1e-12);
   }
   x = grid.parameters();
   x.col(2) = 1e-4 * x.col(0).cwiseProduct(x.col(1));
-  for (const model::Cell& cell : cells(grid)) EXPECT_NEAR(Strain::of_twist(grid, cell).value(x), 1e-4, 1e-11);
+  for (const model::Cell& cell : cells(grid)) EXPECT_NEAR(Strain::of_twist(metric, cell).value(x), 1e-4, 1e-11);
 }
 
 /// So that energies of homogeneous strains are those of the sheet.
 TEST(Strain, StandsForAreasThatAddUpToTheSheet) {
   const Grid grid = five_by_four();
+  const model::Metric metric(grid);
   double weft = 0, warp = 0, shear = 0;
   for (const model::Edge& edge : edges(grid)) (edge.weft ? weft : warp) += Strain::of_edge(edge).area();
   for (const model::Cell& cell : cells(grid))
-    for (const auto& [p, q] : quadrants(cell)) shear += Strain::of_quadrant(grid, p, q).area();
+    for (const auto& [p, q] : quadrants(cell)) shear += Strain::of_quadrant(metric, cell, p, q).area();
   for (const double area : {weft, warp, shear}) EXPECT_NEAR(area, grid.size_u * grid.size_v, 1e-14);
 }
 

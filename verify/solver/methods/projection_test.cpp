@@ -102,7 +102,7 @@ TEST(CompliantConstraints, HaveTheirGradients) {
   const Vectors x = noise(3, 5);
   constexpr double delta = 1e-6;
   for (const CompliantConstraint& c :
-       {CompliantConstraint{Kind::distance, {2, 0, 0}, 0.4, 1}, CompliantConstraint{Kind::right_angle, {1, 2, 0}, 0, 1}}) {
+       {CompliantConstraint{Kind::distance, {2, 0, 0}, 0.4, 1}, CompliantConstraint{Kind::angle, {1, 2, 0}, 0, 1}}) {
     const auto value = evaluate(c, x);
     for (int k = 0; k < value.particles; ++k)
       for (int axis = 0; axis < 3; ++axis) {
@@ -235,7 +235,7 @@ TEST(Xpbd, DampsAsImplicitEulerDoes) {
 
 TEST(Xpbd, KeepsTheMomentumOfWhatIsFree) {
   SplitOde ode =
-      constrained(masses().head(3), {{Kind::distance, {0, 1, 1}, 0.1, 1e-4}, {Kind::right_angle, {1, 2, 0}, 0, 1e-3}}, 0);
+      constrained(masses().head(3), {{Kind::distance, {0, 1, 1}, 0.1, 1e-4}, {Kind::angle, {1, 2, 0}, 0, 1e-3}}, 0);
   const State start{noise(3, 7), noise(3, 8)};
   for (const char* method : {"xpbd", "xpbd-jacobi"}) {
     const State end = moved(ode, method, repeated(3, 2), start, 0.1, 0.01);

@@ -1,0 +1,148 @@
+#include "model/scene_file/outline_keys.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "model/keys/key.hpp"
+
+namespace drape::model {
+namespace {
+
+using Eigen::Vector2d;
+
+std::string shown(const Vector2d& point) { return fmt::format("[{:g}, {:g}]", point.x(), point.y()); }
+
+bool same(const Vector2d& a, const Vector2d& b) {
+  constexpr double round_off = 1e-9;
+  return (a - b).norm() <= round_off * std::max(a.norm(), b.norm());
+}
+
+struct PieceKind {
+  std::string_view name;
+  CurvePiece::Kind kind;
+  std::size_t least, most;  ///< points
+};
+constexpr PieceKind piece_kinds[] = {
+    {"line", CurvePiece::Kind::line, 2, 2}, {"arc", CurvePiece::Kind::arc, 3, 3}, {"bezier", CurvePiece::Kind::bezier, 3, 6}};
+
+const PieceKind& kind_of(const CurvePiece& piece) { return *std::ranges::find(piece_kinds, piece.kind, &PieceKind::kind); }
+
+void read_points(const Value& value, CurvePiece& piece) {
+  const PieceKind& kind = kind_of(piece);
+  constexpr double largest = 1e6;  // [m]
+  for (const Value& point : value.list()) {
+    const std::vector<Value> xy = point.list(2);
+    piece.points.emplace_back(xy[0].number(), xy[1].number());
+    if (piece.points.back().cwiseAbs().maxCoeff() > largest)
+      point.fail("coordinates in metres, of at most a thousand kilometres");
+  }
+  const std::size_t count = piece.points.size();
+  if (count < kind.least || count > kind.most)
+    value.fail(kind.least == kind.most ? fmt::format("{} points", kind.least)
+                                       : fmt::format("{} to {} points", kind.least, kind.most));
+  if (piece.kind == CurvePiece::Kind::arc) {
+    const Vector2d a = piece.points[1] - piece.points[0], b = piece.points[2] - piece.points[0];
+    if (!(std::abs(a.x() * b.y() - a.y() * b.x()) > 1e-9 * a.norm() * b.norm()))
+      value.fail("three points that are not on one line");
+  }
+  if (!(Curve({piece}).length() > 0)) value.fail("points that differ");
+}
+
+CurvePiece read_piece(const Value& value) {
+  const std::vector<KeyInfo> keys = [] {
+    std::vector<KeyInfo> all;
+    for (const PieceKind& kind : piece_kinds) all.push_back({kind.name, "m", "[x, y] of its points"});
+    return all;
+  }();
+  require_keys(value, "piece of a curve", keys);
+  if (value.table().size() != 1) value.fail("one of line, arc and bezier in every piece");
+  CurvePiece piece;
+  for (const PieceKind& kind : piece_kinds)
+    if (const toml::node* points = value.table().get(kind.name)) {
+      piece.kind = kind.kind;
+      read_points(value.child(kind.name, *points), piece);
+    }
+  return piece;
+}
+
+[[noreturn]] void fail(const std::string& origin, const std::string& what) { throw SceneError(origin + ": " + what); }
+
+/// One side and where it has to begin and end.
+struct Corner {
+  std::string_view side, end, other, other_end;
+  Vector2d point, other_point;
+};
+
+void check_corners(const Outline& o, const std::string& origin) {
+  const auto first = [](const std::vector<CurvePiece>& side) { return side.front().points.front(); };
+  const auto last = [](const std::vector<CurvePiece>& side) { return side.back().points.back(); };
+  for (const Corner& corner : {Corner{"lower", "begin", "left", "begins", first(o.lower), first(o.left)},
+                               Corner{"lower", "end", "right", "begins", last(o.lower), first(o.right)},
+                               Corner{"upper", "begin", "left", "ends", first(o.upper), last(o.left)},
+                               Corner{"upper", "end", "right", "ends", last(o.upper), last(o.right)}})
+    if (!same(corner.point, corner.other_point))
+      fail(origin, fmt::format("grid.{}: expected to {} where grid.{} {}, at {}, not at {}: the outline is open", corner.side,
+                               corner.end, corner.other, corner.other_end, shown(corner.other_point), shown(corner.point)));
+}
+
+/// The corners of all quadrilaterals turn left.
+void check_lines(const Grid& grid, const std::string& origin) {
+  const Vectors x = grid.parameters();
+  const auto turn = [&](int from, int at, int to) {
+    const Eigen::RowVector3d p = x.row(at) - x.row(from), q = x.row(to) - x.row(at);
+    return p[0] * q[1] - p[1] * q[0];
+  };
+  for (int b = 0; b + 1 < grid.nv; ++b)
+    for (int a = 0; a + 1 < grid.nu; ++a) {
+      const int c[] = {grid.index(a, b), grid.index(a + 1, b), grid.index(a + 1, b + 1), grid.index(a, b + 1)};
+      for (int k = 0; k < 4; ++k)
+        if (!(turn(c[k], c[(k + 1) % 4], c[(k + 2) % 4]) > 0))
+          fail(origin,
+               fmt::format("grid: its lines cross or turn back at the cell [{}, {}], near {}: expected lower, right, upper "
+                           "and left counterclockwise, and no side that bends over another",
+                           a, b, shown(x.row(c[k]).head<2>())));
+    }
+}
+
+}  // namespace
+
+std::vector<CurvePiece> read_side(const Value& value) {
+  constexpr std::size_t most = 1000;
+  const std::vector<Value> entries = value.list();
+  if (entries.size() > most) value.fail(fmt::format("at most {} pieces, not {}", most, entries.size()));
+  std::vector<CurvePiece> side;
+  for (const Value& entry : entries) {
+    CurvePiece piece = read_piece(entry);
+    if (!side.empty() && !same(side.back().points.back(), piece.points.front()))
+      entry.fail(fmt::format("a piece that begins where the one before ends, at {}", shown(side.back().points.back())));
+    side.push_back(std::move(piece));
+  }
+  return side;
+}
+
+Data side_data(const std::vector<CurvePiece>& side) {
+  List pieces;
+  for (const CurvePiece& piece : side) {
+    List points;
+    for (const Vector2d& point : piece.points) points.emplace_back(List{point.x(), point.y()});
+    pieces.emplace_back(Entries{{std::string(kind_of(piece).name), points}});
+  }
+  return pieces;
+}
+
+void check_outline(const Grid& grid, const std::string& origin) {
+  if (grid.uniform()) return;
+  if (grid.nu < 2 || grid.nv < 2) fail(origin, "grid: expected no sides and a grading of 1, a chain has equal spacings");
+  const Outline& o = grid.outline;
+  if (o.given()) {
+    for (const auto& [name, side] : {std::pair("lower", &o.lower), {"right", &o.right}, {"upper", &o.upper}, {"left", &o.left}})
+      if (side->empty()) fail(origin, fmt::format("grid.{}: expected all of lower, right, upper and left, or none", name));
+    check_corners(o, origin);
+  }
+  check_lines(grid, origin);
+}
+
+}  // namespace drape::model

@@ -1,0 +1,151 @@
+#include "model/sheet/outline.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace drape::model {
+namespace {
+
+using Eigen::Vector2d;
+
+/// The circle through three points, and the angle that an arc from the first through the second to the third sweeps.
+struct Circle {
+  Vector2d centre;
+  double begin, sweep;
+
+  explicit Circle(const std::vector<Vector2d>& p) {
+    const Vector2d a = p[1] - p[0], b = p[2] - p[0];
+    const double twice = 2 * (a.x() * b.y() - a.y() * b.x());
+    const Vector2d from_first =
+        Vector2d(b.y() * a.squaredNorm() - a.y() * b.squaredNorm(), a.x() * b.squaredNorm() - b.x() * a.squaredNorm()) / twice;
+    centre = p[0] + from_first;
+    const auto angle = [this](const Vector2d& at) { return std::atan2(at.y() - centre.y(), at.x() - centre.x()); };
+    begin = angle(p[0]);
+    sweep = angle(p[2]) - begin;
+    // Counterclockwise if the three points turn left.
+    if (twice > 0 && sweep < 0) sweep += 2 * std::numbers::pi;
+    if (twice < 0 && sweep > 0) sweep -= 2 * std::numbers::pi;
+  }
+};
+
+/// By de Casteljau.
+Vector2d bezier_point(std::vector<Vector2d> p, double t) {
+  for (std::size_t left = p.size() - 1; left > 0; --left)
+    for (std::size_t k = 0; k < left; ++k) p[k] += t * (p[k + 1] - p[k]);
+  return p[0];
+}
+
+double bezier_speed(const std::vector<Vector2d>& p, double t) {
+  std::vector<Vector2d> differences;
+  for (std::size_t k = 0; k + 1 < p.size(); ++k)
+    differences.emplace_back(static_cast<double>(p.size() - 1) * (p[k + 1] - p[k]));
+  return bezier_point(differences, t).norm();
+}
+
+/// ∫ speed dt by Gauss' formula with five points, whose error is of order 10.
+double bezier_length(const std::vector<Vector2d>& p, double from, double to) {
+  constexpr double nodes[] = {0, 0.5384693101056831, 0.906179845938664};
+  constexpr double weights[] = {0.5688888888888889, 0.47862867049936647, 0.23692688505618908};
+  const double middle = (from + to) / 2, half = (to - from) / 2;
+  double sum = weights[0] * bezier_speed(p, middle);
+  for (const int k : {1, 2})
+    sum += weights[k] * (bezier_speed(p, middle - half * nodes[k]) + bezier_speed(p, middle + half * nodes[k]));
+  return half * sum;
+}
+
+constexpr int measured_parts = 64;  ///< of a Bézier curve, whose lengths are computed
+
+}  // namespace
+
+Curve::Curve(const std::vector<CurvePiece>& pieces) {
+  double end = 0;
+  for (const CurvePiece& piece : pieces) {
+    std::vector<double> passed;
+    switch (piece.kind) {
+      case CurvePiece::Kind::line: end += (piece.points[1] - piece.points[0]).norm(); break;
+      case CurvePiece::Kind::arc: {
+        const Circle circle(piece.points);
+        end += std::abs(circle.sweep) * (piece.points[0] - circle.centre).norm();
+        break;
+      }
+      case CurvePiece::Kind::bezier:
+        passed.push_back(0);
+        for (int k = 0; k < measured_parts; ++k)
+          passed.push_back(passed.back() +
+                           bezier_length(piece.points, k / double(measured_parts), (k + 1) / double(measured_parts)));
+        end += passed.back();
+        break;
+    }
+    pieces_.push_back({piece, end, std::move(passed)});
+  }
+}
+
+Vector2d Curve::at(double part) const {
+  const double wanted = part * length();
+  auto found = std::ranges::lower_bound(pieces_, wanted, {}, &Measured::end);
+  if (found == pieces_.end()) --found;
+  const double begin = found == pieces_.begin() ? 0 : std::prev(found)->end, whole = found->end - begin;
+  const std::vector<Vector2d>& p = found->piece.points;
+  const double within = std::clamp(wanted - begin, 0.0, whole);
+  if (within == 0) return p.front();
+  if (within == whole) return p.back();
+  double t = within / whole;
+  switch (found->piece.kind) {
+    case CurvePiece::Kind::line: return p[0] + t * (p[1] - p[0]);
+    case CurvePiece::Kind::arc: {
+      const Circle circle(p);
+      return circle.centre + Eigen::Rotation2Dd(t * circle.sweep) * (p[0] - circle.centre);
+    }
+    case CurvePiece::Kind::bezier: break;
+  }
+  const auto above = std::ranges::upper_bound(found->passed, within);
+  const auto k = static_cast<int>(std::distance(found->passed.begin(), above)) - 1;
+  const double first = k / double(measured_parts);
+  const double left = within - found->passed[k];
+  t = first + left / (found->passed[k + 1] - found->passed[k]) / measured_parts;
+  double step = 1;
+  for (int newton = 0; newton < 20 && std::abs(step) > 1e-15; ++newton) {  // where the curve has a cusp it takes many
+    const double speed = bezier_speed(p, t);
+    if (!(speed > 0)) break;
+    step = std::clamp(t - (bezier_length(p, first, t) - left) / speed, first, (k + 1) / double(measured_parts)) - t;
+    t += step;
+  }
+  return bezier_point(p, t);
+}
+
+std::vector<double> graded(int n, double grading) {
+  std::vector<double> places(n, 0.0);
+  const double growth = n > 2 ? std::pow(grading, 1.0 / (n - 2)) : 1;
+  double spacing = 1;
+  for (int a = 1; a < n; ++a, spacing *= growth) places[a] = places[a - 1] + spacing;
+  const double whole = n > 1 ? places.back() : 1;
+  for (double& place : places) place /= whole;
+  return places;
+}
+
+Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor> transfinite(const Outline& outline, const std::vector<double>& u,
+                                                                      const std::vector<double>& v) {
+  const auto points = [](const std::vector<CurvePiece>& side, const std::vector<double>& parts) {
+    const Curve curve(side);
+    std::vector<Vector2d> all;
+    for (const double part : parts) all.push_back(curve.at(part));
+    return all;
+  };
+  const std::vector<Vector2d> lower = points(outline.lower, u), upper = points(outline.upper, u);
+  const std::vector<Vector2d> left = points(outline.left, v), right = points(outline.right, v);
+  const auto nu = static_cast<Eigen::Index>(u.size()), nv = static_cast<Eigen::Index>(v.size());
+  Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor> all(nu * nv, 3);
+  for (Eigen::Index b = 0; b < nv; ++b)
+    for (Eigen::Index a = 0; a < nu; ++a) {
+      const double s = u[a], t = v[b];
+      const Vector2d sides = (1 - t) * lower[a] + t * upper[a] + (1 - s) * left[b] + s * right[b];
+      const Vector2d corners =
+          (1 - t) * ((1 - s) * lower.front() + s * lower.back()) + t * ((1 - s) * upper.front() + s * upper.back());
+      all.row(a + nu * b) << (sides - corners).transpose(), 0;
+    }
+  return all;
+}
+
+}  // namespace drape::model

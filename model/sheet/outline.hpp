@@ -1,0 +1,61 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+namespace drape::model {
+
+/// A piece of a curve in the plane of the pattern.
+struct CurvePiece {
+  enum class Kind {
+    line,    ///< from the first point to the second
+    arc,     ///< of the circle through three points, from the first to the last
+    bezier,  ///< with these control points
+  } kind = Kind::line;
+  std::vector<Eigen::Vector2d> points;  ///< [m]
+
+  bool operator==(const CurvePiece&) const = default;
+};
+
+/// A curve in the plane, by its arc length.
+class Curve {
+ public:
+  /// The pieces one after the other; at least one.
+  explicit Curve(const std::vector<CurvePiece>& pieces);
+
+  double length() const { return pieces_.back().end; }  ///< [m]
+
+  /// The point at a part of the length, from 0 to 1.
+  Eigen::Vector2d at(double part) const;
+
+ private:
+  struct Measured {
+    CurvePiece piece;
+    double end;                  ///< length up to its end [m]
+    std::vector<double> passed;  ///< length within it up to equidistant parameters; empty if its speed is constant
+  };
+  std::vector<Measured> pieces_;
+};
+
+/// The four sides of a panel in the plane of its pattern: lower and upper along u, left and right along v; each from the lower
+/// left to the upper right. Empty: a rectangle.
+struct Outline {
+  std::vector<CurvePiece> lower, upper, left, right;
+
+  bool given() const { return !lower.empty() || !upper.empty() || !left.empty() || !right.empty(); }
+  bool operator==(const Outline&) const = default;
+};
+
+/// The places of n particles on a side as parts of its length. `grading`: the last spacing over the first; they grow by a
+/// constant factor.
+std::vector<double> graded(int n, double grading);
+
+/// Points inside an outline by transfinite interpolation [Gordon, Hall 1973; Etzmuß 2002, 2.7]:
+///   s(u, v) = (1 − v) lower(u) + v upper(u) + (1 − u) left(v) + u right(v)
+///             − (1 − u)(1 − v) P00 − u (1 − v) P10 − (1 − u) v P01 − u v P11.
+/// Row a + |u| b is the point of u[a], v[b]: x, y, and z = 0 [m].
+Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor> transfinite(const Outline& outline, const std::vector<double>& u,
+                                                                      const std::vector<double>& v);
+
+}  // namespace drape::model
