@@ -101,10 +101,10 @@ void add_mean_excess(double elastic, const std::array<Averaged, 2>& pair, const 
 /// E = Σ_cells C12 A ½(ε_lower + ε_upper) ½(ε_left + ε_right). Algorithm 5 as printed is half a cell off.
 std::optional<Term> make_contraction(const Sheet& sheet) {
   const Material& m = sheet.material;
-  const double C12 = by_tables(m) ? 0 : m.contraction;
-  if (C12 == 0 && m.contraction_damping == 0) return {};
+  const double modulus = by_tables(m) ? 0 : m.contraction;
+  if (modulus == 0 && m.contraction_damping == 0) return {};
   if (sheet.grid.nu < 2 || sheet.grid.nv < 2) return {};  // a chain has no cells
-  const CellLaw law{.contraction = C12 / 4, .contraction_rate = m.contraction_damping / 4};
+  const CellLaw law{.contraction = modulus / 4, .contraction_rate = m.contraction_damping / 4};
   const auto all = std::make_shared<const std::vector<Cell>>(cells(sheet.grid));
   const auto metric = std::make_shared<const Metric>(sheet.grid);
 
