@@ -8,6 +8,7 @@
 #include <string_view>
 #include <tuple>
 
+#include "model/obstacles/mesh_shape.hpp"
 #include "model/sheet/edges.hpp"
 #include "solver/base/registry.hpp"
 
@@ -104,6 +105,13 @@ solver::State start(const Scene& scene) {
   if (scene.start.plane == Plane::vertical) y.x.col(1).swap(y.x.col(2));
   y.v = scene.start.velocity.transpose().replicate(y.x.rows(), 1);
   return y;
+}
+
+std::optional<TrimmedSurface> trimmed_surface(const Scene& scene) {
+  if (scene.trim.file.empty()) return {};
+  TriangleMesh pattern = read_mesh(scene.trim.file);
+  for (Eigen::Vector3d& vertex : pattern.vertices) vertex *= scene.trim.scale;
+  return TrimmedSurface(scene.sheet.grid, pattern);
 }
 
 double size(const Scene& scene) { return std::max(scene.sheet.grid.size_u, scene.sheet.grid.size_v); }

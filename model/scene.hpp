@@ -1,12 +1,14 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "model/forces/term.hpp"
 #include "model/obstacles/contacts.hpp"
+#include "model/trimmed_surface.hpp"
 #include "solver/split_ode.hpp"
 
 namespace drape::model {
@@ -41,6 +43,12 @@ struct Start {
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< [m/s]
 };
 
+/// A triangle mesh that is drawn in the place of the grid [Etzmuß 2002, 2.7].
+struct Trim {
+  std::string file;  ///< flat, on the pattern; empty: none
+  double scale = 1;  ///< metres for a unit of the file
+};
+
 /// A scene as users describe it. A value: copy it, change it, compile it.
 struct Scene {
   std::string name;
@@ -52,6 +60,7 @@ struct Scene {
   ContactRule contact;
   Start start;
   RestShape rest = RestShape::flat;
+  Trim trim;
   double end = 1;  ///< [s]
 };
 
@@ -66,6 +75,10 @@ Contacts contacts(const Scene& scene, solver::Counters& work);
 
 /// The state at t = 0 without prescribed velocities.
 solver::State start(const Scene& scene);
+
+/// The mesh that is drawn in the place of the grid, if there is one. Throws std::invalid_argument as read_mesh and
+/// TrimmedSurface do.
+std::optional<TrimmedSurface> trimmed_surface(const Scene& scene);
 
 /// Length by which errors are divided: the longer side [m].
 double size(const Scene& scene);

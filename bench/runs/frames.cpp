@@ -7,6 +7,7 @@
 #include <cctype>
 #include <cmath>
 #include <fstream>
+#include <optional>
 
 #include "model/obstacles/surface.hpp"
 #include "solver/base/atomic_file.hpp"
@@ -35,7 +36,10 @@ void write(const fs::path& file, double t, const model::Polygons& polygons) {
 class Writer {
  public:
   Writer(const RunSpec& spec, const Frames& frames)
-      : folder_(frames.folder / run_name(spec)), every_(frames.every), grid_(spec.scene.sheet.grid) {
+      : folder_(frames.folder / run_name(spec)),
+        every_(frames.every),
+        grid_(spec.scene.sheet.grid),
+        trimmed_(model::trimmed_surface(spec.scene)) {
     base::create_folder(folder_);
     for (const model::ObstacleRule& rule : spec.scene.obstacles) obstacles_.emplace_back(rule, 4 * model::size(spec.scene));
   }
@@ -44,7 +48,8 @@ class Writer {
     const double periods = std::floor(t / every_ + 1e-9);  // times are sums of steps
     if (periods < due_) return;
     due_ = periods + 1;
-    write(folder_ / fmt::format("sheet-{:04}.obj", frame_), t, model::sheet_polygons(grid_, y.x));
+    write(folder_ / fmt::format("sheet-{:04}.obj", frame_), t,
+          trimmed_ ? trimmed_->at(y.x) : model::sheet_polygons(grid_, y.x));
     for (std::size_t k = 0; k < obstacles_.size(); ++k)
       write(folder_ / fmt::format("obstacle-{}-{:04}.obj", k, frame_), t, obstacles_[k].at(t));
     ++frame_;
@@ -54,6 +59,7 @@ class Writer {
   fs::path folder_;
   double every_;
   model::Grid grid_;
+  std::optional<model::TrimmedSurface> trimmed_;
   std::vector<model::PosedObstacle> obstacles_;
   double due_ = 0;
   int frame_ = 0;

@@ -7,6 +7,7 @@
 #include <limits>
 #include <sstream>
 
+#include "solver/base/input_file.hpp"
 #include "solver/base/printable.hpp"
 
 namespace drape::model {
@@ -95,8 +96,16 @@ const toml::table& Value::table() const {
   return *node_.as_table();
 }
 
-std::filesystem::path Value::folder() const {
-  return origin_.ends_with(".toml") ? std::filesystem::path(origin_).parent_path() : std::filesystem::path();
+std::string Value::input_file(std::string_view what, std::uintmax_t most_bytes) const {
+  namespace fs = std::filesystem;
+  const fs::path folder = origin_.ends_with(".toml") ? fs::path(origin_).parent_path() : fs::path();
+  const std::string file = fs::absolute(folder / text()).lexically_normal();
+  try {
+    base::require_input_file(file, most_bytes);
+  } catch (const base::UnreadableFile& error) {
+    fail(fmt::format("{}, {}: {}", what, base::quoted(file), error.what()));
+  }
+  return file;
 }
 
 WeftWarp Value::weft_warp(double (Value::*one)() const) const {

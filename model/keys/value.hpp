@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
-#include <filesystem>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
@@ -50,8 +50,9 @@ class Value {
     return all;
   }
 
-  /// The folder of the scene's file; of overrides and built-in scenes the working folder.
-  std::filesystem::path folder() const;
+  /// The absolute path of a file that can be read and has at most so many bytes, given from the folder of the scene's file; of
+  /// overrides and built-in scenes from the working folder. `what`: "the file of a mesh".
+  std::string input_file(std::string_view what, std::uintmax_t most_bytes) const;
 
   bool is_list() const { return node_.is_array(); }
 

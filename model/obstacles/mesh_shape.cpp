@@ -33,9 +33,8 @@ using Hierarchy = Eigen::KdBVH<double, 3, int>;
 class RegularFiles : public Assimp::DefaultIOSystem {
  public:
   bool Exists(const char* file) const override {  // NOLINT(readability-identifier-naming): for Assimp, which would open it
-    constexpr std::uintmax_t most_bytes = 256 << 20;
     try {
-      base::require_input_file(file, most_bytes);
+      base::require_input_file(file, most_mesh_bytes);
       return true;
     } catch (const base::UnreadableFile&) {
       return false;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -7,6 +8,8 @@
 #include "model/obstacles/triangle_mesh.hpp"
 
 namespace drape::model {
+
+inline constexpr std::uintmax_t most_mesh_bytes = 256 << 20;  ///< of a file
 
 /// The triangles of a file that assimp reads; vertices in one place are one. Throws std::invalid_argument, naming the file,
 /// unless it can be read, its numbers are finite and it has triangles.

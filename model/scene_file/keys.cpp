@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "model/fabric.hpp"
+#include "model/obstacles/mesh_shape.hpp"
 #include "model/scene_file/obstacle_keys.hpp"
 #include "model/scene_file/outline_keys.hpp"
 #include "model/scene_file/pin_keys.hpp"
@@ -279,6 +280,12 @@ void read_pleats(const Value& value, Scene& scene) {
 
 Data pleats_data(const Scene& scene) { return List{double(scene.start.pleats.count), scene.start.pleats.degrees}; }
 
+void read_trim(const Value& value, Scene& scene) {
+  scene.trim.file = value.text().empty() ? "" : value.input_file("the file of a mesh", most_mesh_bytes);
+}
+
+Data trim_data(const Scene& scene) { return scene.trim.file; }
+
 // --- The table ---------------------------------------------------------------------------------------------------------------
 
 template <auto member>
@@ -418,6 +425,10 @@ std::span<const SceneKey> scene_key_table() {
 
       {"rest.shape", "", "\"flat\" or \"start\": bending is at rest in the shape at t = 0",
        at<&Scene::rest>, check::one_of<rest_shapes>},
+
+      {"trim.file", "", "a flat mesh of triangles on the pattern, which is written as frames in the place of the grid (2.7)",
+       read_trim, trim_data},
+      {"trim.scale", "1", "metres for a unit of that file", at<&Scene::trim, &Trim::scale>, check::positive},
 
       {"end.time", "s", "simulated time", at<&Scene::end>, check::positive},
   };

@@ -131,6 +131,11 @@ void check_together(const Scene& scene, const std::string& origin) {
   if (scene.sheet.wind.needs_normals() && (grid.nu < 2 || grid.nv < 2))
     fail("forces.wind: expected forces.drag = forces.lift, a chain has no normals");
   if (scene.sheet.air != 0 && (grid.nu < 2 || grid.nv < 2)) fail("forces.air: expected 0, a chain has no normals");
+  try {
+    trimmed_surface(scene);
+  } catch (const std::invalid_argument& error) {
+    fail(fmt::format("trim.file: {}", error.what()));
+  }
   constexpr double most_compared = 1e8;  // a second
   if (static_cast<double>(scene.pins.size()) * grid.particles() > most_compared)
     fail(fmt::format("pins: expected at most {:g} on a grid of {} particles, not {}",

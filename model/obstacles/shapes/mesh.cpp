@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <cstdint>
-#include <filesystem>
 #include <stdexcept>
 #include <string>
 
@@ -9,7 +7,6 @@
 #include "model/obstacles/shapes/shape_kinds.hpp"
 #include "solver/base/hash.hpp"
 #include "solver/base/input_file.hpp"
-#include "solver/base/printable.hpp"
 
 namespace drape::model {
 namespace {
@@ -29,11 +26,6 @@ struct Mesh : ShapeRule {
   }
 };
 
-constexpr std::uintmax_t most_mesh_bytes = 256 << 20;
-
-/// The same file whatever folder the scene is read from.
-std::string absolute_path(const std::filesystem::path& file) { return std::filesystem::absolute(file).lexically_normal(); }
-
 /// XXH3 of the bytes of a file.
 std::string checksum(const std::string& file) {
   try {
@@ -44,13 +36,7 @@ std::string checksum(const std::string& file) {
 }
 
 void read_mesh_file(const Value& value, ShapeRule& rule) {
-  std::string& file = at<&Mesh::file>.in(rule);
-  file = absolute_path(value.folder() / value.text());
-  try {
-    base::require_input_file(file, most_mesh_bytes);
-  } catch (const base::UnreadableFile& error) {
-    value.fail(fmt::format("the file of a mesh, {}: {}", base::quoted(file), error.what()));
-  }
+  at<&Mesh::file>.in(rule) = value.input_file("the file of a mesh", most_mesh_bytes);
 }
 
 void read_checksum(const Value& value, ShapeRule& rule) {
@@ -60,7 +46,7 @@ void read_checksum(const Value& value, ShapeRule& rule) {
 
 constexpr Key<ShapeRule> mesh_keys[] = {
     {"file", "", "a closed mesh of triangles", read_mesh_file,
-     [](const ShapeRule& rule) -> Data { return absolute_path(at<&Mesh::file>.in(rule)); }, true},
+     [](const ShapeRule& rule) -> Data { return at<&Mesh::file>.in(rule); }, true},
     {"checksum", "", "of the file", read_checksum,  // behind the file, which it is about
      [](const ShapeRule& rule) -> Data { return checksum(at<&Mesh::file>.in(rule)); }},
     {"scale", "1", "metres for a unit of the file", at<&Mesh::scale>, check::positive},

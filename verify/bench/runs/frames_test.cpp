@@ -8,6 +8,7 @@
 #include "model/cloth.hpp"
 #include "model/scene_file/scene_file.hpp"
 #include "verify/support/bench_integrators.hpp"
+#include "verify/support/mesh_files.hpp"
 
 namespace drape::verify::frames_test {
 namespace {
@@ -79,6 +80,20 @@ TEST(Frames, ShowEveryParticleAndEveryCell) {
   ASSERT_EQ(start.faces.size(), 12u);
   EXPECT_THAT(start.faces[0], ElementsAre(0, 1, 6, 5));
   EXPECT_THAT(start.faces[11], ElementsAre(13, 14, 19, 18));
+  EXPECT_EQ(later.faces, start.faces);
+  EXPECT_LT(later.vertices[0][2], -1e-4);  // it falls
+}
+
+/// The scene names a mesh, which rides on the sheet.
+TEST(Frames, ShowWhatTheSheetIsTrimmedTo) {
+  const BenchIntegrators program;
+  write_mesh(program.folder() / "part.obj",
+             {.name = "", .vertices = {{0, 0, 0}, {0.25, 0, 0}, {0, 0.25, 0}}, .triangles = {{0, 1, 2}}});
+  program.output(tiny + Words{"--method", "bdf2", "--step", "0.01", "--frames", "a", "--set", "trim.file=part.obj"});
+  const Obj start = mesh(program, "a/hung-edge-bdf2-0.01/sheet-0000.obj");
+  const Obj later = mesh(program, "a/hung-edge-bdf2-0.01/sheet-0001.obj");
+  EXPECT_THAT(start.faces, ElementsAre(ElementsAre(0, 1, 2)));
+  EXPECT_THAT(start.vertices, ElementsAre(Vector3d(0, 0, 0), Vector3d(0.25, 0, 0), Vector3d(0, 0.25, 0)));
   EXPECT_EQ(later.faces, start.faces);
   EXPECT_LT(later.vertices[0][2], -1e-4);  // it falls
 }

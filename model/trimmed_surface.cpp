@@ -1,0 +1,109 @@
+#include "model/trimmed_surface.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+#include <unsupported/Eigen/BVH>
+
+#include "model/sheet/cells.hpp"
+
+namespace drape::model {
+namespace {
+
+using Box = Eigen::AlignedBox2d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using Hierarchy = Eigen::KdBVH<double, 2, int>;
+
+/// How far a vertex may lie outside of a half, in barycentric coordinates: files of meshes have single precision.
+constexpr double outside = 1e-3;
+
+/// The halves of the cells of a grid, on its pattern.
+class Halves {
+ public:
+  explicit Halves(const Grid& grid) : pattern_(grid.parameters()) {
+    std::vector<Box> boxes;
+    for (const Cell& cell : cells(grid))
+      for (const int side : {0, 1}) {
+        const std::array<int, 3> corners{cell.corner[side][side], cell.corner[1][0], cell.corner[0][1]};
+        Box box;
+        for (const int corner : corners) box.extend(place(corner));
+        const Vector2d margin = outside * box.sizes();
+        boxes.emplace_back(box.min() - margin, box.max() + margin);
+        corners_.push_back(corners);
+      }
+    std::vector<int> order(boxes.size());
+    std::iota(order.begin(), order.end(), 0);
+    hierarchy_ = Hierarchy(order.begin(), order.end(), boxes.begin(), boxes.end());
+  }
+
+  /// The half in which a place lies deepest; weights below −`outside` if there is none.
+  TrimmedSurface::Vertex find(const Vector2d& p) const {
+    Search search{*this, p};
+    Eigen::BVIntersect(hierarchy_, search);
+    return search.found;
+  }
+
+ private:
+  struct Search {
+    const Halves& halves;
+    const Vector2d& p;
+    TrimmedSurface::Vertex found{{0, 0, 0}, Vector3d::Constant(-1)};
+
+    bool intersectVolume(const Box& box) const { return box.contains(p); }  // NOLINT(readability-identifier-naming): for Eigen
+    bool intersectObject(int half) {                                        // NOLINT(readability-identifier-naming): for Eigen
+      const Vector3d weights = halves.barycentric(half, p);
+      if (weights.minCoeff() > found.weights.minCoeff()) found = {halves.corners_[half], weights};
+      return false;  // there may be a deeper one
+    }
+  };
+
+  Vector2d place(int i) const { return pattern_.row(i).head<2>(); }
+
+  Vector3d barycentric(int half, const Vector2d& p) const {
+    const auto& [a, b, c] = corners_[half];
+    Eigen::Matrix2d edges;
+    edges << place(b) - place(a), place(c) - place(a);
+    const Vector2d bc = edges.inverse() * (p - place(a));
+    return {1 - bc.sum(), bc[0], bc[1]};
+  }
+
+  Vectors pattern_;
+  std::vector<std::array<int, 3>> corners_;
+  Hierarchy hierarchy_;
+};
+
+}  // namespace
+
+TrimmedSurface::TrimmedSurface(const Grid& grid, const TriangleMesh& pattern) : triangles_(pattern.triangles) {
+  const Halves halves(grid);
+  const double flat = 1e-6 * std::max(grid.size_u, grid.size_v);
+  for (std::size_t k = 0; k < pattern.vertices.size(); ++k) {
+    const Vector3d& vertex = pattern.vertices[k];
+    const auto refuse = [&](const char* expected) {
+      throw std::invalid_argument(fmt::format("{}: vertex {} at [{:g}, {:g}, {:g}]: expected {}", pattern.name, k + 1,
+                                              vertex.x(), vertex.y(), vertex.z(), expected));
+    };
+    if (!(std::abs(vertex.z()) <= flat)) refuse("a flat mesh, with z = 0");
+    vertices_.push_back(halves.find(vertex.head<2>()));
+    if (!(vertices_.back().weights.minCoeff() >= -outside)) refuse("vertices on the grid, in metres times trim.scale");
+  }
+}
+
+Polygons TrimmedSurface::at(const Vectors& x) const {
+  Polygons polygons;
+  for (const auto& [particles, weights] : vertices_) {
+    Vector3d vertex = Vector3d::Zero();
+    for (int k = 0; k < 3; ++k) vertex += weights[k] * x.row(particles[k]).transpose();
+    polygons.vertices.push_back(vertex);
+  }
+  for (const auto& [a, b, c] : triangles_) polygons.faces.push_back({a, b, c});
+  return polygons;
+}
+
+}  // namespace drape::model

@@ -1,0 +1,135 @@
+// Triangle meshes that ride on a grid.
+
+#include "model/trimmed_surface.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "model/scene_file/scene_file.hpp"
+#include "verify/support/mesh_files.hpp"
+#include "verify/support/model_fixtures.hpp"
+#include "verify/support/temporary_folder.hpp"
+
+namespace drape::verify::trimmed_surface_test {
+namespace {
+
+using namespace sheets;
+using Eigen::Vector3d;
+using model::TriangleMesh;
+using model::TrimmedSurface;
+
+constexpr double rounding = 1e-13;
+
+/// Vertices at random places between particles of the pattern.
+TriangleMesh scattered(const Grid& grid, int count) {
+  std::mt19937 generator(1);
+  std::uniform_real_distribution<double> part(0, 1);
+  const Vectors pattern = grid.parameters();
+  TriangleMesh mesh{.name = "scattered", .vertices = {}, .triangles = {}};
+  for (int k = 0; k < count; ++k) {
+    const int a = static_cast<int>(generator() % (grid.nu - 1)), b = static_cast<int>(generator() % (grid.nv - 1));
+    const double s = part(generator), t = part(generator);
+    const auto corner = [&](int i, int j) -> Vector3d { return pattern.row(grid.index(a + i, b + j)); };
+    mesh.vertices.push_back((1 - s) * (1 - t) * corner(0, 0) + s * (1 - t) * corner(1, 0) + (1 - s) * t * corner(0, 1) +
+                            s * t * corner(1, 1));
+    if (k >= 2) mesh.triangles.push_back({k - 2, k - 1, k});
+  }
+  return mesh;
+}
+
+TEST(TrimmedSurface, MovesExactlyInHomogeneousStrains) {
+  const Eigen::Matrix3d map = Eigen::Matrix3d{{1.1, 0.3, 0}, {0.2, 0.9, 0}, {0.1, -0.4, 1}};
+  for (const Grid& grid : {five_by_four(), graded(), curved()}) {
+    const TriangleMesh mesh = scattered(grid, 200);
+    const TrimmedSurface surface(grid, mesh);
+    const Vectors moved = grid.parameters() * map.transpose();
+    const model::Polygons polygons = surface.at(moved);
+    ASSERT_EQ(polygons.vertices.size(), mesh.vertices.size());
+    for (std::size_t k = 0; k < mesh.vertices.size(); ++k)
+      EXPECT_LE((polygons.vertices[k] - map * mesh.vertices[k]).norm(), rounding);
+    ASSERT_EQ(polygons.faces.size(), mesh.triangles.size());
+    EXPECT_THAT(polygons.faces.back(), testing::ElementsAre(197, 198, 199));
+  }
+}
+
+/// Inside of a half its point is that of the half's corners only.
+TEST(TrimmedSurface, RidesOnTheHalfInWhichItLies) {
+  const Grid grid{2, 2, 1, 1};
+  const Vectors x = random_vectors(4, 1, 1);
+  const TrimmedSurface surface(grid, {.name = "two", .vertices = {{0.2, 0.3, 0}, {0.9, 0.6, 0}}, .triangles = {}});
+  const model::Polygons polygons = surface.at(x);
+  const Eigen::RowVector3d lower_left = 0.5 * x.row(0) + 0.2 * x.row(1) + 0.3 * x.row(2);
+  const Eigen::RowVector3d upper_right = 0.5 * x.row(3) + 0.4 * x.row(1) + 0.1 * x.row(2);
+  EXPECT_LE((polygons.vertices[0].transpose() - lower_left).norm(), rounding);
+  EXPECT_LE((polygons.vertices[1].transpose() - upper_right).norm(), rounding);
+}
+
+/// What two halves share gives the same point from both: particles, edges and diagonals.
+TEST(TrimmedSurface, IsContinuousBetweenHalves) {
+  for (const Grid& grid : {five_by_four(), curved()}) {
+    const Vectors pattern = grid.parameters(), x = random_vectors(grid.particles(), 1, 2);
+    TriangleMesh mesh{.name = "edges", .vertices = {}, .triangles = {}};
+    std::vector<Eigen::RowVector3d> expected;
+    const auto add = [&](int i, int j, double part) {
+      mesh.vertices.emplace_back((1 - part) * pattern.row(i) + part * pattern.row(j));
+      expected.emplace_back((1 - part) * x.row(i) + part * x.row(j));
+    };
+    for (int b = 0; b + 1 < grid.nv; ++b)
+      for (int a = 0; a + 1 < grid.nu; ++a) {
+        add(grid.index(a, b), grid.index(a + 1, b), 0.3);
+        add(grid.index(a, b), grid.index(a, b + 1), 0.6);
+        add(grid.index(a + 1, b), grid.index(a, b + 1), 0.8);
+        add(grid.index(a, b), grid.index(a, b), 0);
+      }
+    const model::Polygons polygons = TrimmedSurface(grid, mesh).at(x);
+    for (std::size_t k = 0; k < expected.size(); ++k)
+      EXPECT_LE((polygons.vertices[k].transpose() - expected[k]).norm(), rounding) << k;
+  }
+}
+
+std::string message(const std::function<void()>& f) {
+  try {
+    f();
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(TrimmedSurface, HasItsVerticesOnTheGridAndInItsPlane) {
+  const Grid grid = five_by_four();
+  const auto refusal = [&](const Vector3d& vertex) {
+    return message([&] { TrimmedSurface(grid, {.name = "a.obj", .vertices = {{0.5, 0.5, 0}, vertex}, .triangles = {}}); });
+  };
+  EXPECT_EQ(refusal({1, 0.6, 0}), "");
+  EXPECT_EQ(refusal({1 + 1e-5, 0.3, 0}), "") << "round-off of files";
+  EXPECT_EQ(refusal({1.01, 0.3, 0}),
+            "a.obj: vertex 2 at [1.01, 0.3, 0]: expected vertices on the grid, in metres times trim.scale");
+  EXPECT_EQ(refusal({0.5, 0.3, 0.01}), "a.obj: vertex 2 at [0.5, 0.3, 0.01]: expected a flat mesh, with z = 0");
+  EXPECT_THAT(refusal({std::nan(""), 0.3, 0}), testing::HasSubstr("expected vertices on the grid"));
+}
+
+TEST(TrimmedSurface, ComesFromTheFileOfAScene) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "disc.obj";
+  write_mesh(file, {.name = "", .vertices = {{0, 0, 0}, {50, 0, 0}, {0, 50, 0}}, .triangles = {{0, 1, 2}}});
+  const std::string lines = "name = 'x'\ngrid = { n = 5, size = 0.5 }\ntrim.file = 'disc.obj'\n",
+                    origin = folder.path() / "a.toml";
+  const Scene scene = model::parse_scene(lines + "trim.scale = 0.01\n", origin);
+  EXPECT_EQ(scene.trim.file, file);
+  const auto surface = model::trimmed_surface(scene);
+  ASSERT_TRUE(surface);
+  EXPECT_EQ(surface->at(scene.sheet.grid.parameters()).vertices.size(), 3u);
+  EXPECT_EQ(to_toml(model::parse_scene(to_toml(scene), "b.toml")), to_toml(scene));
+  EXPECT_FALSE(model::trimmed_surface(model::parse_scene("name = 'x'", origin)));
+  EXPECT_EQ(message([&] { model::parse_scene(lines, origin); }),
+            origin + ": trim.file: " + file.string() +
+                ": vertex 2 at [50, 0, 0]: expected vertices on the grid, in metres times trim.scale");
+  EXPECT_THAT(message([&] { model::parse_scene("name = 'x'\ntrim.file = 'no.obj'", origin); }),
+              testing::HasSubstr(":2: trim.file = 'no.obj': expected the file of a mesh, "));
+}
+
+}  // namespace
+}  // namespace drape::verify::trimmed_surface_test
