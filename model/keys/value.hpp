@@ -50,7 +50,7 @@ class Value {
     return all;
   }
 
-  /// The absolute path of a file that can be read and has at most so many bytes, given from the folder of the scene's file; of
+  /// The absolute path of a file that can be read and is not larger than that, given from the folder of the scene's file; of
   /// overrides and built-in scenes from the working folder. `what`: "the file of a mesh".
   std::string input_file(std::string_view what, std::uintmax_t most_bytes) const;
 
