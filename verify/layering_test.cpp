@@ -114,7 +114,8 @@ const std::vector<Confined> confined_libraries = {
      {"verify/reference/sundials/state_vector_test.cpp", "reference/sundials/"}},
     {{"cholmod", "suitesparse/cholmod", "Eigen/CholmodSupport"}, {"solver/linear/"}},
     {{"klu", "suitesparse/klu"}, {"solver/linear/klu_factor.cpp"}},
-    {{"assimp/", "unsupported/Eigen/BVH"}, {"model/obstacles/mesh_shape.cpp"}},
+    {{"assimp/"}, {"model/obstacles/mesh_shape.cpp"}},
+    {{"unsupported/Eigen/BVH"}, {"model/obstacles/mesh_shape.cpp", "model/trimmed_surface.cpp"}},
 };
 
 /// The text without its comments; "//" in a string is none.
