@@ -234,8 +234,7 @@ TEST(Xpbd, DampsAsImplicitEulerDoes) {
 }
 
 TEST(Xpbd, KeepsTheMomentumOfWhatIsFree) {
-  SplitOde ode =
-      constrained(masses().head(3), {{Kind::distance, {0, 1, 1}, 0.1, 1e-4}, {Kind::angle, {1, 2, 0}, 0, 1e-3}}, 0);
+  SplitOde ode = constrained(masses().head(3), {{Kind::distance, {0, 1, 1}, 0.1, 1e-4}, {Kind::angle, {1, 2, 0}, 0, 1e-3}}, 0);
   const State start{noise(3, 7), noise(3, 8)};
   for (const char* method : {"xpbd", "xpbd-jacobi"}) {
     const State end = moved(ode, method, repeated(3, 2), start, 0.1, 0.01);
