@@ -114,6 +114,11 @@ std::optional<TrimmedSurface> trimmed_surface(const Scene& scene) {
   return TrimmedSurface(scene.sheet.grid, pattern);
 }
 
+Scene without_trim(Scene scene) {
+  scene.trim = {};
+  return scene;
+}
+
 double size(const Scene& scene) { return std::max(scene.sheet.grid.size_u, scene.sheet.grid.size_v); }
 
 double numerical_stiffness(const Scene& scene, double h) {

@@ -80,7 +80,10 @@ solver::State start(const Scene& scene);
 /// TrimmedSurface do.
 std::optional<TrimmedSurface> trimmed_surface(const Scene& scene);
 
-/// Length by which errors are divided: the longer side [m].
+/// The scene without what changes no motion.
+Scene without_trim(Scene scene);
+
+/// Length by which errors are divided: the longer side, of a panel that of the box around its particles [m].
 double size(const Scene& scene);
 
 /// Numerical stiffness ν_h = h² k/(ρ l²), the larger of weft and warp [Etzmuß 2002, 3.4.4].

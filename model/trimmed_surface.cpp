@@ -20,8 +20,8 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Hierarchy = Eigen::KdBVH<double, 2, int>;
 
-/// How far a vertex may lie outside of a half, in barycentric coordinates: files of meshes have single precision.
-constexpr double outside = 1e-3;
+/// How far a vertex may lie outside of a half, in barycentric coordinates: curved sides lie beyond the edges along them.
+constexpr double outside = 0.1;
 
 /// The halves of the cells of a grid, on its pattern.
 class Halves {

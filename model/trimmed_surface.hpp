@@ -11,7 +11,8 @@
 namespace drape::model {
 
 /// A triangle mesh that rides on a grid, whose cells are split into a lower left and an upper right half: its vertices keep
-/// their barycentric coordinates in the half in which they lie on the pattern [Etzmuß 2002, 2.7].
+/// their barycentric coordinates in the half in which they lie on the pattern [Etzmuß 2002, 2.7], or beside which, by up to a
+/// tenth.
 class TrimmedSurface {
  public:
   /// `pattern`: flat, in the plane of the grid's pattern [m]. Throws std::invalid_argument, naming the mesh and the vertex,

@@ -28,7 +28,7 @@ struct Readable {
 Readable read_obstacles(const results::RunRecord& run) {
   std::vector<model::Override> rest, obstacles;
   for (const results::SceneValue& row : run.scene_keys)
-    (row.key == "obstacles" ? obstacles : rest).push_back({row.key, row.value});
+    if (!row.key.starts_with("trim.")) (row.key == "obstacles" ? obstacles : rest).push_back({row.key, row.value});
   Readable read{model::scene_of(rest, run.scene), {}};
   for (const model::Override& obstacle : obstacles) {
     std::vector<model::Override> rows = rest;

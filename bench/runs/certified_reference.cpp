@@ -83,7 +83,7 @@ reference::Reference References::tight(const model::Scene& scene, const model::C
 reference::Reference References::at(double tolerance, const model::Scene& scene, const model::Cloth& cloth,
                                     const std::vector<double>& times, double seconds) {
   reference::SolveOptions options{.rtol = tolerance, .size = model::size(scene)};
-  const auto key = [&] { return reference::cache_key(model::to_toml(scene), 0, times, options); };
+  const auto key = [&] { return reference::cache_key(model::to_toml(model::without_trim(scene)), 0, times, options); };
   const auto check = [&](const reference::Reference& found) {
     reference::require_plausible(found, cloth.ode, cloth.start, 0, times, options.size);
   };

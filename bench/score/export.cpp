@@ -68,7 +68,7 @@ std::map<std::string, std::string> exported(const TrueMotion& truth, std::span<c
   const model::Scene& scene = truth.scene;
   std::map<std::string, std::string> files{
       {"scene.json", scene_json(truth, times)},
-      {"scene.toml", model::to_toml(scene)},
+      {"scene.toml", model::to_toml(model::without_trim(scene))},
       {"start.obj", obj(0, model::sheet_polygons(scene.sheet.grid, truth.motion.states.front().x))},
       {"reference.h5", reference_file(truth, times)},
       {"README.txt", readme(truth, times)}};

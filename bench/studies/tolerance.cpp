@@ -40,7 +40,8 @@ struct Setting {
 struct Shortened {
   const char *scene, *key, *value;
 };
-constexpr Shortened shortened[] = {{"peer-edge", "grid.n", "20"}, {"wind", "end.time", "0.5"}, {"curtain", "end.time", "0.5"}};
+constexpr Shortened shortened[] = {
+    {"peer-edge", "grid.n", "20"}, {"wind", "end.time", "0.5"}, {"curtain", "end.time", "0.5"}, {"skirt", "end.time", "0.3"}};
 
 /// All built-in scenes without obstacles.
 std::vector<Setting> settings(bool quick) {

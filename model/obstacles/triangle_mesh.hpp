@@ -7,7 +7,7 @@
 
 namespace drape::model {
 
-/// A closed surface of triangles whose corners go round counter-clockwise, seen from outside.
+/// A surface of triangles; if it is closed their corners go round counter-clockwise, seen from outside.
 struct TriangleMesh {
   std::string name;  ///< for messages
   std::vector<Eigen::Vector3d> vertices;

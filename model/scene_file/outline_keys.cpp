@@ -15,9 +15,10 @@ using Eigen::Vector2d;
 
 std::string shown(const Vector2d& point) { return fmt::format("[{:g}, {:g}]", point.x(), point.y()); }
 
-bool same(const Vector2d& a, const Vector2d& b) {
+/// `length`: of a curve that begins or ends there.
+bool same(const Vector2d& a, const Vector2d& b, double length) {
   constexpr double round_off = 1e-9;
-  return (a - b).norm() <= round_off * std::max(a.norm(), b.norm());
+  return (a - b).norm() <= round_off * length;
 }
 
 struct PieceKind {
@@ -83,27 +84,27 @@ void check_corners(const Outline& o, const std::string& origin) {
                                Corner{"lower", "end", "right", "begins", last(o.lower), first(o.right)},
                                Corner{"upper", "begin", "left", "ends", first(o.upper), last(o.left)},
                                Corner{"upper", "end", "right", "ends", last(o.upper), last(o.right)}})
-    if (!same(corner.point, corner.other_point))
+    if (!same(corner.point, corner.other_point, Curve(o.lower).length() + Curve(o.upper).length()))
       fail(origin, fmt::format("grid.{}: expected to {} where grid.{} {}, at {}, not at {}: the outline is open", corner.side,
                                corner.end, corner.other, corner.other_end, shown(corner.other_point), shown(corner.point)));
 }
 
-/// The corners of all quadrilaterals turn left.
+/// The corners of all quadrilaterals turn left, more than round-off does.
 void check_lines(const Grid& grid, const std::string& origin) {
+  constexpr double flattest = 1e-6;
   const Vectors x = grid.parameters();
   const auto turn = [&](int from, int at, int to) {
     const Eigen::RowVector3d p = x.row(at) - x.row(from), q = x.row(to) - x.row(at);
-    return p[0] * q[1] - p[1] * q[0];
+    return (p[0] * q[1] - p[1] * q[0]) / (p.norm() * q.norm());
   };
   for (int b = 0; b + 1 < grid.nv; ++b)
     for (int a = 0; a + 1 < grid.nu; ++a) {
       const int c[] = {grid.index(a, b), grid.index(a + 1, b), grid.index(a + 1, b + 1), grid.index(a, b + 1)};
       for (int k = 0; k < 4; ++k)
-        if (!(turn(c[k], c[(k + 1) % 4], c[(k + 2) % 4]) > 0))
-          fail(origin,
-               fmt::format("grid: its lines cross or turn back at the cell [{}, {}], near {}: expected lower, right, upper "
-                           "and left counterclockwise, and no side that bends over another",
-                           a, b, shown(x.row(c[k]).head<2>())));
+        if (!(turn(c[k], c[(k + 1) % 4], c[(k + 2) % 4]) > flattest))
+          fail(origin, fmt::format("grid: its lines cross or touch at the cell [{}, {}], near {}: expected lower, right, upper "
+                                   "and left counterclockwise, and no side that bends over another",
+                                   a, b, shown(x.row(c[k]).head<2>())));
     }
 }
 
@@ -116,7 +117,7 @@ std::vector<CurvePiece> read_side(const Value& value) {
   std::vector<CurvePiece> side;
   for (const Value& entry : entries) {
     CurvePiece piece = read_piece(entry);
-    if (!side.empty() && !same(side.back().points.back(), piece.points.front()))
+    if (!side.empty() && !same(side.back().points.back(), piece.points.front(), Curve({piece}).length()))
       entry.fail(fmt::format("a piece that begins where the one before ends, at {}", shown(side.back().points.back())));
     side.push_back(std::move(piece));
   }
@@ -135,6 +136,9 @@ Data side_data(const std::vector<CurvePiece>& side) {
 
 void check_outline(const Grid& grid, const std::string& origin) {
   if (grid.uniform()) return;
+  const auto is_graded = [](double grading, int n) { return grading != 1 && n < 3; };
+  if (is_graded(grid.grading_u, grid.nu) || is_graded(grid.grading_v, grid.nv))
+    fail(origin, "grid.grading: expected 1 along lines of fewer than 3 particles, which have no second spacing");
   if (grid.nu < 2 || grid.nv < 2) fail(origin, "grid: expected no sides and a grading of 1, a chain has equal spacings");
   const Outline& o = grid.outline;
   if (o.given()) {

@@ -1,6 +1,7 @@
 #include "model/sheet/edges.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace drape::model {
 
@@ -43,8 +44,8 @@ std::vector<Edge> edges(const Grid& grid) {
 }
 
 WeftWarp shortest_edges(const Grid& grid) {
-  WeftWarp shortest{grid.spacing_u(), grid.spacing_v()};
-  if (grid.uniform()) return shortest;
+  if (grid.uniform()) return {grid.spacing_u(), grid.spacing_v()};
+  WeftWarp shortest{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   for (const Edge& edge : edges(grid)) {
     double& length = edge.weft ? shortest.weft : shortest.warp;
     length = std::min(length, edge.length);

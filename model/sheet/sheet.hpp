@@ -26,7 +26,7 @@ enum class DampingForm {
 };
 
 enum class ShearForm {
-  conservative,   ///< W = ½ G <s_u, s_v>², consistent at borders
+  conservative,   ///< W = ½ G γ², γ = <s_u, s_v> less than at rest, consistent at borders
   printed,        ///< Algorithm 2 of the thesis: wide stencil, unit vectors; not the gradient of an energy
   diagonals,      ///< both diagonals of a cell; this and the next: models of the survey, forces/survey_shear.cpp
   triangles,      ///< one of them

@@ -22,10 +22,10 @@ struct EdgeLaw {
 };
 
 /// The pulls of a cell's edges that depend on its other edges. In a cell of area A an edge p along u and an edge q along v, of
-/// lengths l_p and l_q, pull
-///   along q and along p:                  A/(l_p l_q)² (shear e + shear_rate ė),  e = <p, q> less than at rest  (each
-///   quadrant), along p° A/l_p and along q° A/l_q:    contraction ε + contraction_rate ε̇,     ε the other pair's summed
-///   strains.
+/// lengths l_p and l_q, pull along each other, once for each quadrant, by
+///   A/(l_p l_q)² (shear e + shear_rate ė),   e = <p, q> less than at rest;
+/// and along themselves, each over its length, by
+///   A (contraction ε + contraction_rate ε̇),   ε the other pair's summed strains.
 struct CellLaw {
   double shear = 0;             ///< [N/m]
   double shear_rate = 0;        ///< [N s/m]

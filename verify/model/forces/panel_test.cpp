@@ -8,6 +8,7 @@
 #include "solver/linear/conjugate_gradients.hpp"
 #include "solver/linear/preconditioner.hpp"
 #include "solver/linear/stage_matrix.hpp"
+#include "solver/methods/projection.hpp"
 #include "verify/support/convergence.hpp"
 #include "verify/support/equilibrium.hpp"
 #include "verify/support/model_fixtures.hpp"
@@ -60,6 +61,39 @@ TEST(Panels, RestAsTheirPatternsAre) {
           << force.name;
       EXPECT_LE(std::abs(ode.potential_energy(0, x)), rounding) << force.name;
     }
+}
+
+TEST(Panels, HaveForgottenNothingAtRest) {
+  for (const Grid& grid : {graded(), curved()}) {
+    Scene scene;
+    scene.sheet.grid = grid;
+    scene.sheet.material = made_of(tension, shear);
+    scene.sheet.material.relaxation.maxwell = {{1, 0.3}, {10, 0.4}};
+    const model::Cloth cloth = model::compile(scene);
+    const Vectors x = grid.parameters();
+    Vectors f;
+    cloth.ode.force(0.1, x, at_rest(x), f);  // at the end of a path, on which elements have begun to relax
+    EXPECT_LE(largest(f), rounding);
+  }
+}
+
+/// What methods need that move positions.
+TEST(Panels, HaveCompliantConstraintsWithTheSameForces) {
+  const Grid grid = curved();
+  const SplitOde ode = ode_of({.name = "both",
+                               .material = made_of(tension, shear),
+                               .has_energy = true,
+                               .keeps_momentum = true,
+                               .keeps_angular = true,
+                               .dissipates = true,
+                               .ignores_rotation = true,
+                               .exists_on_chains = false},
+                              grid);
+  const State y = deformed(grid, 1);
+  Vectors f = evaluate(ode.unconstrained_force, y);
+  solver::add_forces(ode.compliant_constraints(), y.x, f);
+  const Vectors whole = evaluate(ode.force, y);
+  EXPECT_LE(largest(f - whole), rounding * largest(whole));
 }
 
 /// An annulus whose inner border is held and whose outer one is pulled outwards by s, of threads along the radius and along the

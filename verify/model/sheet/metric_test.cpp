@@ -56,6 +56,20 @@ TEST(Metric, HasWholeCellsOnBordersIfItIsAsked) {
   }
 }
 
+/// A rectangle in a box that is a square.
+TEST(Metric, KnowsTheShortestEdges) {
+  using enum model::CurvePiece::Kind;
+  const Eigen::Vector2d origin(0, 0), u(0.6, 0.6), v(-0.1, 0.1);
+  Grid grid{4, 3, 0.7, 0.7};
+  grid.outline = {.lower = {{line, {origin, u}}},
+                  .upper = {{line, {v, u + v}}},
+                  .left = {{line, {origin, v}}},
+                  .right = {{line, {u, u + v}}}};
+  const auto [weft, warp] = shortest_edges(grid);
+  EXPECT_NEAR(weft, u.norm() / 3, rounding);
+  EXPECT_NEAR(warp, v.norm() / 2, rounding);
+}
+
 TEST(Metric, AreaOfASectorIsOfOrderTwo) {
   Convergence c;
   const double exact = std::numbers::pi / 4 * (outer * outer - inner * inner);

@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "verify/support/model_fixtures.hpp"
 
@@ -33,9 +35,11 @@ TEST(Strain, HasTheDerivativesThatDifferencesShow) {
   constexpr double step = 1e-6;
   const Grid grid = five_by_four();
   const State y = deformed(grid, 1);
+  std::vector<Strain> all = strains(grid);
+  std::ranges::copy(strains(curved()), std::back_inserter(all));
   Strain::Gradient by, above, below;
   Strain::Hessian second;
-  for (const Strain& strain : strains(grid)) {
+  for (const Strain& strain : all) {
     double rate = 0;
     const double value = strain.value(y.x, by);
     EXPECT_EQ(value, strain.value(y.x));
