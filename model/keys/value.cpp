@@ -99,7 +99,7 @@ const toml::table& Value::table() const {
 std::string Value::input_file(std::string_view what, std::uintmax_t most_bytes) const {
   namespace fs = std::filesystem;
   const fs::path folder = origin_.ends_with(".toml") ? fs::path(origin_).parent_path() : fs::path();
-  const std::string file = fs::absolute(folder / text()).lexically_normal();
+  std::string file = fs::absolute(folder / text()).lexically_normal();
   try {
     base::require_input_file(file, most_bytes);
   } catch (const base::UnreadableFile& error) {
