@@ -15,10 +15,10 @@
 namespace drape::model {
 namespace {
 
-using Box = Eigen::AlignedBox2d;
+using Rectangle = Eigen::AlignedBox2d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-using Hierarchy = Eigen::KdBVH<double, 2, int>;
+using RectangleTree = Eigen::KdBVH<double, 2, int>;
 
 /// How far a vertex may lie outside of a half, in barycentric coordinates: curved sides lie beyond the edges along them.
 constexpr double outside = 0.1;
@@ -27,11 +27,11 @@ constexpr double outside = 0.1;
 class Halves {
  public:
   explicit Halves(const Grid& grid) : pattern_(grid.parameters()) {
-    std::vector<Box> boxes;
+    std::vector<Rectangle> boxes;
     for (const Cell& cell : cells(grid))
       for (const int side : {0, 1}) {
         const std::array<int, 3> corners{cell.corner[side][side], cell.corner[1][0], cell.corner[0][1]};
-        Box box;
+        Rectangle box;
         for (const int corner : corners) box.extend(place(corner));
         const Vector2d margin = outside * box.sizes();
         boxes.emplace_back(box.min() - margin, box.max() + margin);
@@ -39,7 +39,7 @@ class Halves {
       }
     std::vector<int> order(boxes.size());
     std::iota(order.begin(), order.end(), 0);
-    hierarchy_ = Hierarchy(order.begin(), order.end(), boxes.begin(), boxes.end());
+    hierarchy_ = RectangleTree(order.begin(), order.end(), boxes.begin(), boxes.end());
   }
 
   /// The half in which a place lies deepest; weights below −`outside` if there is none.
@@ -55,8 +55,10 @@ class Halves {
     const Vector2d& p;
     TrimmedSurface::Vertex found{{0, 0, 0}, Vector3d::Constant(-1)};
 
-    bool intersectVolume(const Box& box) const { return box.contains(p); }  // NOLINT(readability-identifier-naming): for Eigen
-    bool intersectObject(int half) {                                        // NOLINT(readability-identifier-naming): for Eigen
+    bool intersectVolume(const Rectangle& box) const {
+      return box.contains(p);
+    }                                 // NOLINT(readability-identifier-naming): for Eigen
+    bool intersectObject(int half) {  // NOLINT(readability-identifier-naming): for Eigen
       const Vector3d weights = halves.barycentric(half, p);
       if (weights.minCoeff() > found.weights.minCoeff()) found = {halves.corners_[half], weights};
       return false;  // there may be a deeper one
@@ -75,7 +77,7 @@ class Halves {
 
   Vectors pattern_;
   std::vector<std::array<int, 3>> corners_;
-  Hierarchy hierarchy_;
+  RectangleTree hierarchy_;
 };
 
 }  // namespace
