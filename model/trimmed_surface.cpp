@@ -55,14 +55,14 @@ class Halves {
     const Vector2d& p;
     TrimmedSurface::Vertex found{{0, 0, 0}, Vector3d::Constant(-1)};
 
-    bool intersectVolume(const Rectangle& box) const {
-      return box.contains(p);
-    }                                 // NOLINT(readability-identifier-naming): for Eigen
-    bool intersectObject(int half) {  // NOLINT(readability-identifier-naming): for Eigen
+    // NOLINTBEGIN(readability-identifier-naming): names for Eigen
+    bool intersectVolume(const Rectangle& box) const { return box.contains(p); }
+    bool intersectObject(int half) {
       const Vector3d weights = halves.barycentric(half, p);
       if (weights.minCoeff() > found.weights.minCoeff()) found = {halves.corners_[half], weights};
       return false;  // there may be a deeper one
     }
+    // NOLINTEND(readability-identifier-naming)
   };
 
   Vector2d place(int i) const { return pattern_.row(i).head<2>(); }
