@@ -29,6 +29,10 @@ TEST(Curve, GoesAlongLinesAndArcsByTheirLengths) {
   expect_near(quarter.at(1.0 / 3), {std::sqrt(3), 1});
   const Curve clockwise({{arc, {{0, 2}, {std::numbers::sqrt2, std::numbers::sqrt2}, {2, 0}}}});
   expect_near(clockwise.at(1.0 / 3), {1, std::sqrt(3)});
+  const double c = std::numbers::sqrt2 / 2;
+  const Curve up_on_the_left({{arc, {{-c, -c}, {-1, 0}, {-c, c}}}});
+  EXPECT_NEAR(up_on_the_left.length(), std::numbers::pi / 2, rounding);
+  expect_near(up_on_the_left.at(0.5), {-1, 0});
   const Curve most_of_a_circle({{arc, {{1, 0}, {-1, 0}, {0, -1}}}});
   EXPECT_NEAR(most_of_a_circle.length(), 1.5 * std::numbers::pi, rounding);
   expect_near(most_of_a_circle.at(1.0 / 3), {0, 1});
