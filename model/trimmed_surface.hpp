@@ -27,7 +27,6 @@ class TrimmedSurface {
     std::array<int, 3> particles;
     Eigen::Vector3d weights;
   };
-  const std::vector<Vertex>& vertices() const { return vertices_; }
 
  private:
   std::vector<Vertex> vertices_;

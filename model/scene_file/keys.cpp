@@ -84,7 +84,7 @@ Data grid_size_data(const Scene& scene) { return List{scene.sheet.grid.size_u, s
 template <auto which>
 void read_outline(const Value& value, Scene& scene) {
   Grid& grid = scene.sheet.grid;
-  grid.outline.*which = read_side(value);
+  grid.outline.*which = read_side(rules(value));
   const Outline& o = grid.outline;
   if (o.lower.empty() || o.upper.empty() || o.left.empty() || o.right.empty()) return;
   const Vectors pattern = grid.parameters();

@@ -110,10 +110,7 @@ void check_lines(const Grid& grid, const std::string& origin) {
 
 }  // namespace
 
-std::vector<CurvePiece> read_side(const Value& value) {
-  constexpr std::size_t most = 1000;
-  const std::vector<Value> entries = value.list();
-  if (entries.size() > most) value.fail(fmt::format("at most {} pieces, not {}", most, entries.size()));
+std::vector<CurvePiece> read_side(const std::vector<Value>& entries) {
   std::vector<CurvePiece> side;
   for (const Value& entry : entries) {
     CurvePiece piece = read_piece(entry);

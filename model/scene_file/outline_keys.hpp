@@ -7,7 +7,7 @@
 namespace drape::model {
 
 /// A side of a panel in a scene file: pieces that follow each other. Throws SceneError.
-std::vector<CurvePiece> read_side(const Value& value);
+std::vector<CurvePiece> read_side(const std::vector<Value>& entries);
 
 /// Its pieces as a list.
 Data side_data(const std::vector<CurvePiece>& side);

@@ -36,6 +36,14 @@ inline std::vector<Cell> cells(const Grid& grid) {
   return all;
 }
 
+/// The area of a cell whose particles lie in the plane, counterclockwise [m²].
+inline double quad_area(const Vectors& pattern, const Cell& cell) {
+  const auto diagonal = [&](int from, int to) -> Eigen::RowVector3d { return pattern.row(to) - pattern.row(from); };
+  const Eigen::RowVector3d rising = diagonal(cell.corner[0][0], cell.corner[1][1]);
+  const Eigen::RowVector3d falling = diagonal(cell.corner[1][0], cell.corner[0][1]);
+  return (rising[0] * falling[1] - rising[1] * falling[0]) / 2;
+}
+
 inline Eigen::Vector3d difference(const Vectors& x, EdgeEnds edge) { return x.row(edge.end) - x.row(edge.begin); }
 
 }  // namespace drape::model

@@ -24,7 +24,7 @@ std::vector<Edge> uniform_edges(const Grid& grid) {
 std::vector<Edge> edges(const Grid& grid) {
   if (grid.uniform()) return uniform_edges(grid);
   const Vectors x = grid.parameters();
-  const Eigen::VectorXd quads = grid.quad_areas();
+  const Eigen::VectorXd quads = grid.quad_areas(x);
   const int columns = grid.nu - 1, lines = grid.nv - 1;
   std::vector<Edge> all;
   const auto add = [&](int i, int j, bool weft, int a, int b) {

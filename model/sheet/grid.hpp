@@ -49,8 +49,8 @@ struct Grid {
   /// The areas that particles stand for [m²].
   Eigen::VectorXd cell_areas() const;
 
-  /// The areas of the quadrilaterals between the lines, line by line [m²].
-  Eigen::VectorXd quad_areas() const;
+  /// The areas of the quadrilaterals between the lines, line by line, where the particles are at `pattern` [m²].
+  Eigen::VectorXd quad_areas(const Vectors& pattern) const;
 
   /// Positions (u, v) of all particles in the pattern as (x, y), z = 0: N × 3 [m].
   Vectors parameters() const;

@@ -26,10 +26,7 @@ double Metric::length(EdgeEnds edge) const {
 }
 
 double Metric::area(const Cell& cell) const {
-  if (grid_.uniform()) return grid_.spacing_u() * grid_.spacing_v();
-  const Eigen::Vector2d rising = place({cell.corner[0][0], cell.corner[1][1]});
-  const Eigen::Vector2d falling = place({cell.corner[1][0], cell.corner[0][1]});
-  return (rising.x() * falling.y() - rising.y() * falling.x()) / 2;
+  return grid_.uniform() ? grid_.spacing_u() * grid_.spacing_v() : quad_area(pattern_, cell);
 }
 
 std::pair<double, double> Metric::sides(const Cell& cell) const {

@@ -13,7 +13,7 @@ using Eigen::Vector2d;
 /// The circle through three points, and the angle that an arc from the first through the second to the third sweeps.
 struct Circle {
   Vector2d centre;
-  double begin, sweep;
+  double sweep;
 
   explicit Circle(const std::vector<Vector2d>& p) {
     const Vector2d a = p[1] - p[0], b = p[2] - p[0];
@@ -22,8 +22,7 @@ struct Circle {
         Vector2d(b.y() * a.squaredNorm() - a.y() * b.squaredNorm(), a.x() * b.squaredNorm() - b.x() * a.squaredNorm()) / twice;
     centre = p[0] + from_first;
     const auto angle = [this](const Vector2d& at) { return std::atan2(at.y() - centre.y(), at.x() - centre.x()); };
-    begin = angle(p[0]);
-    sweep = angle(p[2]) - begin;
+    sweep = angle(p[2]) - angle(p[0]);
     // Counterclockwise if the three points turn left.
     if (twice > 0 && sweep < 0) sweep += 2 * std::numbers::pi;
     if (twice < 0 && sweep > 0) sweep -= 2 * std::numbers::pi;
@@ -115,6 +114,14 @@ Vector2d Curve::at(double part) const {
   return bezier_point(p, t);
 }
 
+Outline parallelogram(const Vector2d& u, const Vector2d& v) {
+  const auto line = [](const Vector2d& from, const Vector2d& to) -> std::vector<CurvePiece> {
+    return {{CurvePiece::Kind::line, {from, to}}};
+  };
+  const Vector2d origin(0, 0);
+  return {.lower = line(origin, u), .upper = line(v, u + v), .left = line(origin, v), .right = line(u, u + v)};
+}
+
 std::vector<double> graded(int n, double grading) {
   std::vector<double> places(n, 0.0);
   const double growth = n > 2 ? std::pow(grading, 1.0 / (n - 2)) : 1;
@@ -125,8 +132,7 @@ std::vector<double> graded(int n, double grading) {
   return places;
 }
 
-Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor> transfinite(const Outline& outline, const std::vector<double>& u,
-                                                                      const std::vector<double>& v) {
+solver::Vectors transfinite(const Outline& outline, const std::vector<double>& u, const std::vector<double>& v) {
   const auto points = [](const std::vector<CurvePiece>& side, const std::vector<double>& parts) {
     const Curve curve(side);
     std::vector<Vector2d> all;
@@ -136,7 +142,7 @@ Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor> transfinite(const Outl
   const std::vector<Vector2d> lower = points(outline.lower, u), upper = points(outline.upper, u);
   const std::vector<Vector2d> left = points(outline.left, v), right = points(outline.right, v);
   const auto nu = static_cast<Eigen::Index>(u.size()), nv = static_cast<Eigen::Index>(v.size());
-  Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor> all(nu * nv, 3);
+  solver::Vectors all(nu * nv, 3);
   for (Eigen::Index b = 0; b < nv; ++b)
     for (Eigen::Index a = 0; a < nu; ++a) {
       const double s = u[a], t = v[b];

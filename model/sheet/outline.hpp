@@ -1,8 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <vector>
+
+#include "solver/state.hpp"
 
 namespace drape::model {
 
@@ -47,6 +48,9 @@ struct Outline {
   bool operator==(const Outline&) const = default;
 };
 
+/// The straight sides u and v from the origin and the two opposite ones.
+Outline parallelogram(const Eigen::Vector2d& u, const Eigen::Vector2d& v);
+
 /// The places of n particles on a side as parts of its length. `grading`: the last spacing over the first; they grow by a
 /// constant factor.
 std::vector<double> graded(int n, double grading);
@@ -55,7 +59,6 @@ std::vector<double> graded(int n, double grading);
 ///   s(u, v) = (1 − v) lower(u) + v upper(u) + (1 − u) left(v) + u right(v)
 ///             − (1 − u)(1 − v) P00 − u (1 − v) P10 − (1 − u) v P01 − u v P11.
 /// Row a + |u| b is the point of u[a], v[b]: x, y, and z = 0 [m].
-Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor> transfinite(const Outline& outline, const std::vector<double>& u,
-                                                                      const std::vector<double>& v);
+solver::Vectors transfinite(const Outline& outline, const std::vector<double>& u, const std::vector<double>& v);
 
 }  // namespace drape::model

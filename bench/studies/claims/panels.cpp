@@ -59,19 +59,11 @@ ClaimCase error_of(const std::string& where, const model::Grid& grid, double are
   return {where, value, std::abs(value - error(2 * e)), -fairly_good, fairly_good};
 }
 
-model::Outline four_lines(const Eigen::Vector2d& u, const Eigen::Vector2d& v) {
-  const auto line = [](const Eigen::Vector2d& from, const Eigen::Vector2d& to) -> std::vector<CurvePiece> {
-    return {{CurvePiece::Kind::line, {from, to}}};
-  };
-  const Eigen::Vector2d origin(0, 0);
-  return {.lower = line(origin, u), .upper = line(v, u + v), .left = line(origin, v), .right = line(u, u + v)};
-}
-
 /// Rhombi of unit sides whose angles are off by some degrees from right ones.
 ClaimCase slanted(double degrees) {
   const double angle = degrees * std::numbers::pi / 180;
   model::Grid grid{5, 5, 1, 1};
-  grid.outline = four_lines({1, 0}, {std::sin(angle), std::cos(angle)});
+  grid.outline = model::parallelogram({1, 0}, {std::sin(angle), std::cos(angle)});
   return error_of(fmt::format("{:g}° off right angles", degrees), grid, std::cos(angle));
 }
 

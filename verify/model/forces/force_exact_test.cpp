@@ -38,12 +38,8 @@ TEST(ExactForces, BendingForcesOfPlanesAreZero) {
 
 /// The patch test, on a square, and on a parallelogram with spacings that grow.
 TEST(ExactForces, HomogeneousStrainsHaveNoForceInside) {
-  const auto line = [](const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
-    return std::vector<model::CurvePiece>{{model::CurvePiece::Kind::line, {from, to}}};
-  };
-  const Eigen::Vector2d p00(0, 0), p10(1, 0.2), p01(0.4, 0.9), p11 = p10 + p01;
   Grid sheared{8, 7, 1.4, 1.1};
-  sheared.outline = {.lower = line(p00, p10), .upper = line(p01, p11), .left = line(p00, p01), .right = line(p10, p11)};
+  sheared.outline = model::parallelogram({1, 0.2}, {0.4, 0.9});
   sheared.grading_u = 3, sheared.grading_v = 0.5;
   for (const Grid& grid : {Grid{8, 7, 1, 1}, sheared})
     for (const ForceCase& force : force_cases()) {

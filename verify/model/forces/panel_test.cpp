@@ -23,12 +23,7 @@ constexpr double rounding = 1000 * std::numeric_limits<double>::epsilon();
 
 /// The rectangle of a grid as an outline.
 Grid outlined(Grid grid) {
-  using enum model::CurvePiece::Kind;
-  const Eigen::Vector2d p00(0, 0), p10(grid.size_u, 0), p01(0, grid.size_v), p11(grid.size_u, grid.size_v);
-  grid.outline = {.lower = {{line, {p00, p10}}},
-                  .upper = {{line, {p01, p11}}},
-                  .left = {{line, {p00, p01}}},
-                  .right = {{line, {p10, p11}}}};
+  grid.outline = model::parallelogram({grid.size_u, 0}, {0, grid.size_v});
   return grid;
 }
 

@@ -30,7 +30,8 @@ TEST(Metric, HasAreasThatAddUpToThePanel) {
     double weft = 0, warp = 0, cells_area = 0;
     for (const model::Edge& edge : edges(grid)) (edge.weft ? weft : warp) += edge.length * edge.width;
     for (const model::Cell& cell : cells(grid)) cells_area += metric.area(cell);
-    for (const double area : {weft, warp, cells_area, grid.quad_areas().sum()}) EXPECT_NEAR(area, whole, rounding * whole);
+    for (const double area : {weft, warp, cells_area, grid.quad_areas(grid.parameters()).sum()})
+      EXPECT_NEAR(area, whole, rounding * whole);
     for (const model::Edge& edge : edges(grid)) EXPECT_NEAR(metric.length({edge.i, edge.j}), edge.length, rounding);
   }
   EXPECT_NEAR(graded().cell_areas().sum(), 0.6, rounding);
@@ -49,22 +50,19 @@ TEST(Metric, HasWholeCellsOnBordersIfItIsAsked) {
       const int i = grid.index(a, b);
       EXPECT_NEAR(whole[i], (at_end(a, grid.nu) ? 2 : 1) * (at_end(b, grid.nv) ? 2 : 1) * dual[i], rounding);
     }
+  const std::vector<model::Edge> whole_edges = edges(grid);
   for (std::size_t k = 0; k < dual_edges.size(); ++k) {
-    const model::Edge &edge = dual_edges[k], whole_edge = edges(grid)[k];
+    const model::Edge& edge = dual_edges[k];
     const bool border = edge.weft ? at_end(edge.i / grid.nu, grid.nv) : at_end(edge.i % grid.nu, grid.nu);
-    EXPECT_NEAR(whole_edge.width, (border ? 2 : 1) * edge.width, rounding);
+    EXPECT_NEAR(whole_edges[k].width, (border ? 2 : 1) * edge.width, rounding);
   }
 }
 
 /// A rectangle in a box that is a square.
 TEST(Metric, KnowsTheShortestEdges) {
-  using enum model::CurvePiece::Kind;
-  const Eigen::Vector2d origin(0, 0), u(0.6, 0.6), v(-0.1, 0.1);
+  const Eigen::Vector2d u(0.6, 0.6), v(-0.1, 0.1);
   Grid grid{4, 3, 0.7, 0.7};
-  grid.outline = {.lower = {{line, {origin, u}}},
-                  .upper = {{line, {v, u + v}}},
-                  .left = {{line, {origin, v}}},
-                  .right = {{line, {u, u + v}}}};
+  grid.outline = model::parallelogram(u, v);
   const auto [weft, warp] = shortest_edges(grid);
   EXPECT_NEAR(weft, u.norm() / 3, rounding);
   EXPECT_NEAR(warp, v.norm() / 2, rounding);
