@@ -199,7 +199,12 @@ SparseMatrix Forces::edge_matrix(const WeftWarp& modulus) const {
   return spring_matrix(grid_, [&](const Edge& edge) { return along(modulus, edge) * edge.width / edge.length; });
 }
 
-Eigen::VectorXd masses(const Sheet& sheet) { return sheet.material.density * sheet.grid.cell_areas(); }
+/// Particles that a cut leaves outside are pinned, with the mass of the others on average.
+Eigen::VectorXd masses(const Sheet& sheet) {
+  const Eigen::VectorXd areas = sheet.grid.cell_areas();
+  const double mean = areas.sum() / static_cast<double>((areas.array() > 0).count());
+  return sheet.material.density * (areas.array() > 0).select(areas, mean);
+}
 
 /// The sheet of a scene with its rest shape. `start`: positions at t = 0.
 Sheet sheet_of(const Scene& scene, const Vectors& start) {

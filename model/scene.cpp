@@ -39,19 +39,6 @@ constexpr NamedPlace places[] = {
     {"all", [](const Grid&, int, int) { return true; }},
 };
 
-std::vector<int> pinned_particles(const Grid& grid, const PinRule& rule) {
-  std::vector<int> found;
-  if (rule.where.empty()) {
-    for (const auto& [a, b] : rule.particles) found.push_back(grid.index(a, b));
-    return found;
-  }
-  const NamedPlace& place = base::find_named<NamedPlace>(places, "place", rule.where);
-  for (int b = 0; b < grid.nv; ++b)
-    for (int a = 0; a < grid.nu; ++a)
-      if (place.contains(grid, a, b)) found.push_back(grid.index(a, b));
-  return found;
-}
-
 /// Bends all lines along u, which are straight, into waves along z whose chords are as long as their edges are.
 void pleat(const Pleats& pleats, const Grid& grid, solver::Vectors& x) {
   const double l = x(1, 0) - x(0, 0), steepest = pleats.degrees * std::numbers::pi / 180;
@@ -76,6 +63,22 @@ const std::vector<std::string>& pin_places() {
   return names;
 }
 
+std::vector<int> pinned_particles(const Grid& grid, const PinRule& rule) {
+  std::vector<int> found;
+  for (const auto& [a, b] : rule.particles) found.push_back(grid.index(a, b));
+  if (const double radius = rule.circle[2]; radius > 0) {
+    const Vectors pattern = grid.parameters();
+    for (int i = 0; i < grid.particles(); ++i)
+      if ((pattern.row(i).head<2>() - rule.circle.head<2>().transpose()).norm() <= radius) found.push_back(i);
+  }
+  if (rule.where.empty()) return found;
+  const NamedPlace& place = base::find_named<NamedPlace>(places, "place", rule.where);
+  for (int b = 0; b < grid.nv; ++b)
+    for (int a = 0; a < grid.nu; ++a)
+      if (place.contains(grid, a, b)) found.push_back(grid.index(a, b));
+  return found;
+}
+
 std::vector<solver::Pin> pins(const Scene& scene) {
   std::map<int, solver::Pin> merged;
   for (const PinRule& rule : scene.pins)
@@ -87,6 +90,11 @@ std::vector<solver::Pin> pins(const Scene& scene) {
         pin.velocity[c] = rule.velocity[c];
       }
     }
+  if (scene.sheet.grid.is_cut()) {
+    const Eigen::VectorXd areas = scene.sheet.grid.cell_areas();
+    for (int i = 0; i < areas.size(); ++i)
+      if (areas[i] == 0) merged[i] = {i, {true, true, true}};
+  }
   std::vector<solver::Pin> all;
   for (const auto& [particle, pin] : merged) all.push_back(pin);
   return all;

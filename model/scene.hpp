@@ -15,8 +15,9 @@ namespace drape::model {
 
 /// Prescribes the motion of some particles.
 struct PinRule {
-  std::string where;                           ///< a name from `pin_places()`, or empty
-  std::vector<std::pair<int, int>> particles;  ///< (a, b) along u and v, if `where` is empty
+  std::string where;                                 ///< a name from `pin_places()`, or empty
+  std::vector<std::pair<int, int>> particles;        ///< (a, b) along u and v, if `where` is empty
+  Eigen::Vector3d circle = Eigen::Vector3d::Zero();  ///< x, y and radius on the pattern [m], if there are none
   std::array<bool, 3> directions{true, true, true};
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< [m/s]
 };
@@ -67,7 +68,11 @@ struct Scene {
 /// The names that `PinRule::where` knows.
 const std::vector<std::string>& pin_places();
 
-/// The pins of a scene, at most one for a particle. Later rules win where directions overlap.
+/// The particles that a rule names.
+std::vector<int> pinned_particles(const Grid& grid, const PinRule& rule);
+
+/// The pins of a scene, at most one for a particle. Later rules win where directions overlap. What a cut leaves outside is
+/// pinned where it is.
 std::vector<solver::Pin> pins(const Scene& scene);
 
 /// What finds the contacts of its obstacles. Throws as Contacts does.

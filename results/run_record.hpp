@@ -54,7 +54,7 @@ struct ContactRecord {
 };
 
 /// What a particle is in a frame of a trajectory.
-enum class Constraint : int { free, pinned, in_contact };
+enum class Constraint : int { free, pinned, in_contact, no_cloth };
 
 /// The motion of a sheet of `nu` × `nv` particles, F frames of N = nu nv; the particle (a, b) is row a + nu b. Cells have the
 /// corners (a, b), (a + 1, b), (a + 1, b + 1), (a, b + 1).

@@ -67,12 +67,15 @@ export function colourAt(share) {
   return new THREE.Color(viridis[below]).lerp(new THREE.Color(viridis[below + 1]), at - below);
 }
 
-/** Two triangles for every cell; none for a chain. */
-function cellTriangles({nu, nv}) {
+const noCloth = 3;  // the constraint of particles outside of a cut
+
+/** Two triangles for every cell whose corners are in the cloth; none for a chain. */
+function cellTriangles({nu, nv, constraint}) {
   const triangles = [];
   for (let b = 0; b + 1 < nv; ++b)
     for (let a = 0; a + 1 < nu; ++a) {
       const i = a + nu * b;
+      if ([i, i + 1, i + nu, i + nu + 1].some((corner) => constraint[corner] === noCloth)) continue;
       triangles.push(i, i + 1, i + nu + 1, i, i + nu + 1, i + nu);
     }
   return triangles;

@@ -11,14 +11,14 @@
 namespace drape::bench {
 namespace {
 
-/// The mean strain of the edges that meet in each particle.
+/// The mean strain of the edges that meet in each particle; 0 if none do.
 Eigen::VectorXd mean_strain(const std::vector<model::Edge>& edges, const solver::Vectors& x) {
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(x.rows()), count = sum;
   for (const model::Edge& edge : edges) {
     const double strain = (x.row(edge.i) - x.row(edge.j)).norm() / edge.length - 1;
     for (const int end : {edge.i, edge.j}) sum[end] += strain, count[end] += 1;
   }
-  return sum.cwiseQuotient(count);
+  return sum.cwiseQuotient(count.cwiseMax(1));
 }
 
 std::vector<int> constraints(const model::Scene& scene, const model::Cloth& cloth, double t, const solver::Vectors& x) {
@@ -28,6 +28,11 @@ std::vector<int> constraints(const model::Scene& scene, const model::Cloth& clot
     if (touching[i]) kinds[i] = int(results::Constraint::in_contact);
   for (const solver::Pin& pin : cloth.ode.pins)
     kinds[static_cast<std::size_t>(pin.particle)] = int(results::Constraint::pinned);
+  if (scene.sheet.grid.is_cut()) {
+    const Eigen::VectorXd areas = scene.sheet.grid.cell_areas();
+    for (std::size_t i = 0; i < kinds.size(); ++i)
+      if (areas[static_cast<Eigen::Index>(i)] == 0) kinds[i] = int(results::Constraint::no_cloth);
+  }
   return kinds;
 }
 

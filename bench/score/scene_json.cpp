@@ -66,7 +66,8 @@ Json particles(const model::Scene& scene, const model::Cloth& cloth) {
           {"spacing_v", spacing(grid.spacing_v())},
           {"pattern", grid.uniform() ? Json() : rows(grid.parameters())},
           {"mass_rule",
-           grid.border_cells == model::BorderCells::dual
+           !grid.uniform() ? "lumped: density times a quarter of the cloth in each cell around the particle"
+           : grid.border_cells == model::BorderCells::dual
                ? "lumped: density times the area of the dual cell; half of an inner one on borders, a quarter in corners"
                : "lumped: density times spacing_u spacing_v, also on borders"},
           {"mass", std::vector<double>(cloth.ode.mass.begin(), cloth.ode.mass.end())}};

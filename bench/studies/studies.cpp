@@ -64,6 +64,9 @@ std::span<const Study> studies() {
            "a laboratory: fabrics are stretched, sheared and bent to and fro, hang over an edge, are let go by all methods",
        .answer = fabrics,
        .any_methods = true},
+      {.name = "drape",
+       .description = "Cusick's drape test of measured fabrics on three meshes: drape coefficients beside published ones",
+       .answer = drape_study},
       {.name = "scaling",
        .description =
            "time of a step and of a CG iteration from 20 x 20 to a million particles, beside the machine's bandwidth",

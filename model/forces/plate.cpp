@@ -10,12 +10,12 @@ SparseMatrix plate_matrix(const Grid& grid, const WeftWarp& B) {
   std::vector<Eigen::Triplet<double>> entries;
   const auto along = [&](int a, int b, bool weft) {
     const auto [stencil, l] = metric.second_difference(a, b, weft);
-    add_quadratic(entries, stencil, metric.area(grid.index(a, b)) * (weft ? B.weft : B.warp) / (l * l * l * l));
+    add_quadratic(entries, stencil, metric.bent_area(a, b, weft) * (weft ? B.weft : B.warp) / (l * l * l * l));
   };
   for (int b = 0; b < grid.nv; ++b)
     for (int a = 0; a < grid.nu; ++a) {
-      if (a > 0 && a < grid.nu - 1) along(a, b, true);
-      if (b > 0 && b < grid.nv - 1) along(a, b, false);
+      for (const bool weft : {true, false})
+        if (metric.bends(a, b, weft)) along(a, b, weft);
       if (a == 0 || b == 0) continue;
       const Cell cell = cell_at(grid, a - 1, b - 1);
       const auto [stencil, lu, lv] = metric.mixed_difference(cell);

@@ -84,7 +84,7 @@ Data grid_size_data(const Scene& scene) { return List{scene.sheet.grid.size_u, s
 template <auto which>
 void read_outline(const Value& value, Scene& scene) {
   Grid& grid = scene.sheet.grid;
-  grid.outline.*which = read_side(rules(value));
+  grid.outline.*which = read_curve(rules(value));
   const Outline& o = grid.outline;
   if (o.lower.empty() || o.upper.empty() || o.left.empty() || o.right.empty()) return;
   const Vectors pattern = grid.parameters();
@@ -94,8 +94,12 @@ void read_outline(const Value& value, Scene& scene) {
 
 template <auto which>
 Data outline_data(const Scene& scene) {
-  return side_data(scene.sheet.grid.outline.*which);
+  return curve_data(scene.sheet.grid.outline.*which);
 }
+
+void read_cut(const Value& value, Scene& scene) { scene.sheet.grid.cut = read_curve(rules(value)); }
+
+Data cut_data(const Scene& scene) { return curve_data(scene.sheet.grid.cut); }
 
 void read_grading(const Value& value, Scene& scene) {
   const WeftWarp grading = value.weft_warp(&Value::positive);
@@ -325,6 +329,8 @@ std::span<const SceneKey> scene_key_table() {
       {"grid.right", "", "up from where lower ends", read_outline<&Outline::right>, outline_data<&Outline::right>},
       {"grid.upper", "", "from left to right", read_outline<&Outline::upper>, outline_data<&Outline::upper>},
       {"grid.left", "", "up from where lower begins", read_outline<&Outline::left>, outline_data<&Outline::left>},
+      {"grid.cut", "", "a closed curve on the pattern, inside of which there is cloth: list of pieces as those of the sides", read_cut,
+       cut_data},
 
       {"material.fabric", "", "a measured cloth, see bench_integrators list fabrics: its density and moduli, which other keys change",
        read_fabric, fabric_data},
@@ -405,7 +411,7 @@ std::span<const SceneKey> scene_key_table() {
       {"forces.air", "N s/m³", "c_w ρ_air: resistance of the air to motion across the sheet",
        in_sheet<&Sheet::air>, check::non_negative},
 
-      {"pins", "", "list of { where | particles, directions, velocity }: prescribed motion", read_pins, pins_data},
+      {"pins", "", "list of { where | particles | circle, directions, velocity }: prescribed motion", read_pins, pins_data},
       {"obstacles", "", of_obstacles, read_obstacles, obstacles_data},
 
       {"contact.distance", "m", "d: what is nearer to an obstacle than this is in its collision area",

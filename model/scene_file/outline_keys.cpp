@@ -7,6 +7,8 @@
 #include <string>
 
 #include "model/keys/key.hpp"
+#include "model/sheet/cells.hpp"
+#include "model/sheet/cut.hpp"
 
 namespace drape::model {
 namespace {
@@ -108,22 +110,32 @@ void check_lines(const Grid& grid, const std::string& origin) {
     }
 }
 
-}  // namespace
-
-std::vector<CurvePiece> read_side(const std::vector<Value>& entries) {
-  std::vector<CurvePiece> side;
-  for (const Value& entry : entries) {
-    CurvePiece piece = read_piece(entry);
-    if (!side.empty() && !same(side.back().points.back(), piece.points.front(), Curve({piece}).length()))
-      entry.fail(fmt::format("a piece that begins where the one before ends, at {}", shown(side.back().points.back())));
-    side.push_back(std::move(piece));
-  }
-  return side;
+void check_cut(const Grid& grid, const std::string& origin) {
+  const Vector2d &begin = grid.cut.front().points.front(), &end = grid.cut.back().points.back();
+  if (!same(begin, end, Curve(grid.cut).length()))
+    fail(origin, fmt::format("grid.cut: expected to end where it begins, at {}, not at {}: the curve is open", shown(begin),
+                             shown(end)));
+  if (crosses_itself(closed_polygon(grid.cut))) fail(origin, "grid.cut: expected a curve that does not cross itself");
+  if (grid.border_cells == BorderCells::whole) fail(origin, "grid.border_cells: expected \"dual\" beside a cut");
+  if (cells(grid).empty()) fail(origin, "grid.cut: expected a curve with cloth inside, it lies beside the grid");
 }
 
-Data side_data(const std::vector<CurvePiece>& side) {
+}  // namespace
+
+std::vector<CurvePiece> read_curve(const std::vector<Value>& entries) {
+  std::vector<CurvePiece> curve;
+  for (const Value& entry : entries) {
+    CurvePiece piece = read_piece(entry);
+    if (!curve.empty() && !same(curve.back().points.back(), piece.points.front(), Curve({piece}).length()))
+      entry.fail(fmt::format("a piece that begins where the one before ends, at {}", shown(curve.back().points.back())));
+    curve.push_back(std::move(piece));
+  }
+  return curve;
+}
+
+Data curve_data(const std::vector<CurvePiece>& curve) {
   List pieces;
-  for (const CurvePiece& piece : side) {
+  for (const CurvePiece& piece : curve) {
     List points;
     for (const Vector2d& point : piece.points) points.emplace_back(List{point.x(), point.y()});
     pieces.emplace_back(Entries{{std::string(kind_of(piece).name), points}});
@@ -136,7 +148,8 @@ void check_outline(const Grid& grid, const std::string& origin) {
   const auto is_graded = [](double grading, int n) { return grading != 1 && n < 3; };
   if (is_graded(grid.grading_u, grid.nu) || is_graded(grid.grading_v, grid.nv))
     fail(origin, "grid.grading: expected 1 along lines of fewer than 3 particles, which have no second spacing");
-  if (grid.nu < 2 || grid.nv < 2) fail(origin, "grid: expected no sides and a grading of 1, a chain has equal spacings");
+  if (grid.nu < 2 || grid.nv < 2)
+    fail(origin, "grid: expected no sides, no cut and a grading of 1, a chain has equal spacings");
   const Outline& o = grid.outline;
   if (o.given()) {
     for (const auto& [name, side] : {std::pair("lower", &o.lower), {"right", &o.right}, {"upper", &o.upper}, {"left", &o.left}})
@@ -144,6 +157,7 @@ void check_outline(const Grid& grid, const std::string& origin) {
     check_corners(o, origin);
   }
   check_lines(grid, origin);
+  if (grid.is_cut()) check_cut(grid, origin);
 }
 
 }  // namespace drape::model

@@ -6,14 +6,14 @@
 
 namespace drape::model {
 
-/// A side of a panel in a scene file: pieces that follow each other. Throws SceneError.
-std::vector<CurvePiece> read_side(const std::vector<Value>& entries);
+/// A curve in a scene file: pieces that follow each other. Throws SceneError.
+std::vector<CurvePiece> read_curve(const std::vector<Value>& entries);
 
 /// Its pieces as a list.
-Data side_data(const std::vector<CurvePiece>& side);
+Data curve_data(const std::vector<CurvePiece>& curve);
 
-/// Throws SceneError unless the sides of a grid's outline meet in four corners, and its lines do not cross. `origin`: of the
-/// scene.
+/// Throws SceneError unless the sides of a grid's outline meet in four corners, its lines do not cross, and its cut is closed,
+/// does not cross itself and leaves cloth. `origin`: of the scene.
 void check_outline(const Grid& grid, const std::string& origin);
 
 }  // namespace drape::model

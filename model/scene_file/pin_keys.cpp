@@ -38,7 +38,18 @@ void read_particles(const Value& value, PinOfGrid& rule) {
 Data particles_data(const PinOfGrid& rule) {
   List pairs;
   for (const auto& [a, b] : rule.pin.particles) pairs.emplace_back(List{double(a), double(b)});
-  return rule.pin.where.empty() ? Data(pairs) : Data();
+  return rule.pin.particles.empty() ? Data() : Data(pairs);
+}
+
+void read_circle(const Value& value, PinOfGrid& rule) {
+  rule.pin.circle = value.vector(&Value::number);
+  if (!(rule.pin.circle[2] > 0)) value.fail("[x, y, radius] with a radius > 0");
+  if (pinned_particles(rule.grid, rule.pin).empty()) value.fail("a circle with particles of the grid inside");
+}
+
+Data circle_data(const PinOfGrid& rule) {
+  const Eigen::Vector3d& circle = rule.pin.circle;
+  return circle[2] > 0 ? Data(List{circle[0], circle[1], circle[2]}) : Data();
 }
 
 void read_directions(const Value& value, PinOfGrid& rule) {
@@ -61,6 +72,7 @@ Data directions_data(const PinOfGrid& rule) {
 constexpr Key<PinOfGrid> pin_keys[] = {
     {"where", "", "the name of a place", read_where, where_data},
     {"particles", "", "[a, b] along u and v", read_particles, particles_data},
+    {"circle", "m", "[x, y, radius] on the pattern: all particles inside", read_circle, circle_data},
     {"directions", "", "letters of x, y and z", read_directions, directions_data},
     {"velocity", "m/s", "[x, y, z]", at<&PinOfGrid::pin, &PinRule::velocity>, check::number},
 };
@@ -70,7 +82,8 @@ constexpr Key<PinOfGrid> pin_keys[] = {
 PinRule read_pin(const Value& value, const Grid& grid) {
   PinOfGrid rule{grid};
   read_table<PinOfGrid>(value, "pin", pin_keys, rule);
-  if (rule.pin.where.empty() == rule.pin.particles.empty()) value.fail("either 'where' or 'particles' in every pin");
+  if (!rule.pin.where.empty() + !rule.pin.particles.empty() + (rule.pin.circle[2] > 0) != 1)
+    value.fail("one of 'where', 'particles' and 'circle' in every pin");
   return std::move(rule.pin);
 }
 

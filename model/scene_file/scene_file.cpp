@@ -102,6 +102,8 @@ void check_together(const Scene& scene, const std::string& origin) {
       fail("material.shear_form: expected \"conservative\", the others are those of a rectangle with equal spacings");
     if (m.bend_form == BendForm::printed || m.bend_form == BendForm::printed_is_border)
       fail("material.bend_form: expected \"plate\" or \"membrane\", the others are those of a rectangle with equal spacings");
+    if (grid.is_cut() && m.bend_form == BendForm::membrane)
+      fail("material.bend_form: expected \"plate\", a membrane does not know the border of a cut");
     if (by_tables(m)) fail("material.law: expected \"linear\", tables are those of a rectangle with equal spacings");
     if (scene.start.pleats.count > 0) fail("start.pleats: expected 0 waves, they are those of a rectangle with equal spacings");
   }

@@ -28,11 +28,13 @@ inline Cell cell_at(const Grid& grid, int a, int b) {
   return {{{grid.index(a, b), grid.index(a, b + 1)}, {grid.index(a + 1, b), grid.index(a + 1, b + 1)}}};
 }
 
-/// All cells, line by line.
+/// All cells that have cloth, line by line.
 inline std::vector<Cell> cells(const Grid& grid) {
+  const Eigen::VectorXd areas = grid.is_cut() ? grid.quad_areas(grid.parameters()) : Eigen::VectorXd();
   std::vector<Cell> all;
   for (int b = 0; b + 1 < grid.nv; ++b)
-    for (int a = 0; a + 1 < grid.nu; ++a) all.push_back(cell_at(grid, a, b));
+    for (int a = 0; a + 1 < grid.nu; ++a)
+      if (!grid.is_cut() || areas[a + static_cast<Eigen::Index>(grid.nu - 1) * b] > 0) all.push_back(cell_at(grid, a, b));
   return all;
 }
 

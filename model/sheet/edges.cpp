@@ -33,6 +33,7 @@ std::vector<Edge> edges(const Grid& grid) {
     int count = 0;
     if (before_a >= 0 && before_b >= 0) sum += quads[before_a + columns * before_b], ++count;
     if (a < columns && b < lines) sum += quads[a + columns * b], ++count;
+    if (sum == 0) return;
     const double length = (x.row(j) - x.row(i)).norm();
     all.push_back({i, j, weft, length, sum / (grid.border_cells == BorderCells::whole ? count : 2) / length});
   };

@@ -16,7 +16,7 @@ struct Edge {
   double width;   ///< width of the strip the edge stands for [m]: of a uniform grid the other spacing, half of it on a border
 };
 
-/// All edges: weft first, then warp.
+/// All edges that have cloth: weft first, then warp.
 std::vector<Edge> edges(const Grid& grid);
 
 /// The shortest rest lengths along weft and warp [m]; of a chain across it the width it stands for.

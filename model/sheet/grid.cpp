@@ -1,11 +1,32 @@
 #include "model/sheet/grid.hpp"
 
-#include <iterator>
+#include <algorithm>
 #include <vector>
 
 #include "model/sheet/cells.hpp"
+#include "model/sheet/cut.hpp"
 
 namespace drape::model {
+namespace {
+
+using Eigen::Vector2d;
+
+constexpr double negligible = 1e-6;  ///< part of a quadrilateral
+
+/// The part of a quadrilateral that a cut leaves. `nearby`: all of the cut that lies in it, or more.
+double part_inside(const std::vector<Vector2d>& nearby, const Vectors& pattern, const Cell& cell) {
+  const auto place = [&](int i) -> Vector2d { return pattern.row(i).head<2>(); };
+  const auto& k = cell.corner;
+  const int around[] = {k[0][0], k[1][0], k[1][1], k[0][1]};
+  std::vector<Vector2d> inside = nearby;
+  for (int side = 0; side < 4 && !inside.empty(); ++side)
+    inside = left_part(inside, place(around[side]), place(around[(side + 1) % 4]));
+  const double part = inside.empty() ? 0 : polygon_area(inside) / quad_area(pattern, cell);
+  return part < negligible ? 0 : part > 1 - negligible ? 1 : part;
+}
+
+}  // namespace
+
 Vectors Grid::parameters() const {
   if (!uniform())
     return transfinite(outline.given() ? outline : parallelogram({size_u, 0}, {0, size_v}), graded(nu, grading_u),
@@ -17,9 +38,21 @@ Vectors Grid::parameters() const {
 }
 
 Eigen::VectorXd Grid::quad_areas(const Vectors& pattern) const {
-  const std::vector<Cell> all = cells(*this);
-  Eigen::VectorXd areas(std::ssize(all));
-  for (std::size_t k = 0; k < all.size(); ++k) areas[static_cast<Eigen::Index>(k)] = quad_area(pattern, all[k]);
+  Eigen::VectorXd areas(static_cast<Eigen::Index>(nu - 1) * (nv - 1));
+  const std::vector<Vector2d> polygon = closed_polygon(cut);
+  for (int b = 0; b + 1 < nv; ++b) {
+    std::vector<Vector2d> nearby = polygon;
+    if (is_cut()) {
+      const auto heights = pattern.col(1).segment(index(0, b), 2 * static_cast<Eigen::Index>(nu));
+      const Vector2d lower(0, heights.minCoeff()), upper(0, heights.maxCoeff());
+      nearby = left_part(left_part(polygon, lower, lower + Vector2d::UnitX()), upper, upper - Vector2d::UnitX());
+    }
+    for (int a = 0; a + 1 < nu; ++a) {
+      const Cell cell = cell_at(*this, a, b);
+      areas[a + static_cast<Eigen::Index>(nu - 1) * b] =
+          quad_area(pattern, cell) * (is_cut() ? part_inside(nearby, pattern, cell) : 1);
+    }
+  }
   return areas;
 }
 

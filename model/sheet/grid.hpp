@@ -15,7 +15,7 @@ using solver::Vectors;
 enum class BorderCells { dual, whole };
 
 /// The parameter domain of a panel: nu × nv particles; u is the weft direction, v the warp direction. It is a rectangle with
-/// equal spacings, unless it has an outline or a grading.
+/// equal spacings, unless it has an outline or a grading. A cut leaves the cloth inside a curve.
 ///
 /// A direction with a single particle makes a chain [Etzmuß 2002, 2.2]: its spacing is then the width of the strip that
 /// the chain stands for.
@@ -28,8 +28,10 @@ struct Grid {
   Outline outline = {};  ///< in the place of the rectangle, whose sides are then those of the box around it
   double grading_u = 1;  ///< the last spacing over the first
   double grading_v = 1;
+  std::vector<CurvePiece> cut = {};  ///< closed, on the pattern; empty: none
 
-  bool uniform() const { return !outline.given() && grading_u == 1 && grading_v == 1; }
+  bool is_cut() const { return !cut.empty(); }
+  bool uniform() const { return !outline.given() && grading_u == 1 && grading_v == 1 && !is_cut(); }
   int particles() const { return nu * nv; }
   int index(int a, int b) const { return a + nu * b; }
 
@@ -46,10 +48,10 @@ struct Grid {
 
   // Any grid:
 
-  /// The areas that particles stand for [m²].
+  /// The areas that particles stand for; 0 of those that a cut leaves outside [m²].
   Eigen::VectorXd cell_areas() const;
 
-  /// The areas of the quadrilaterals between the lines, line by line, where the particles are at `pattern` [m²].
+  /// The areas of cloth between the lines, line by line, where the particles are at `pattern` [m²].
   Eigen::VectorXd quad_areas(const Vectors& pattern) const;
 
   /// Positions (u, v) of all particles in the pattern as (x, y), z = 0: N × 3 [m].

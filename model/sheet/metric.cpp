@@ -1,7 +1,6 @@
 #include "model/sheet/metric.hpp"
 
 #include <Eigen/LU>
-#include <algorithm>
 
 namespace drape::model {
 namespace {
@@ -16,7 +15,9 @@ Eigen::Vector2d components(const Eigen::Vector2d& sum, const Eigen::Vector2d& u,
 }  // namespace
 
 Metric::Metric(const Grid& grid) : grid_(grid), areas_(grid.cell_areas()) {
-  if (!grid.uniform()) pattern_ = grid.parameters();
+  if (grid.uniform()) return;
+  pattern_ = grid.parameters();
+  quads_ = grid.quad_areas(pattern_);
 }
 
 double Metric::length(EdgeEnds edge) const {
@@ -26,7 +27,9 @@ double Metric::length(EdgeEnds edge) const {
 }
 
 double Metric::area(const Cell& cell) const {
-  return grid_.uniform() ? grid_.spacing_u() * grid_.spacing_v() : quad_area(pattern_, cell);
+  if (grid_.uniform()) return grid_.spacing_u() * grid_.spacing_v();
+  const int i = cell.corner[0][0];
+  return quads_[i % grid_.nu + static_cast<Eigen::Index>(grid_.nu - 1) * (i / grid_.nu)];
 }
 
 std::pair<double, double> Metric::sides(const Cell& cell) const {
@@ -42,10 +45,33 @@ double Metric::quadrant_measure(const Cell& cell, EdgeEnds p, EdgeEnds q) const 
   return grid_.uniform() ? lengths : lengths * lengths / area(cell);
 }
 
+double Metric::strip_area(int a, int b, bool weft) const {
+  if (a < 0 || b < 0 || a + weft >= grid_.nu || b + !weft >= grid_.nv) return 0;
+  if (!grid_.is_cut()) return 1;
+  const auto quad = [&](int column, int line) {
+    const bool exists = column >= 0 && line >= 0 && column + 1 < grid_.nu && line + 1 < grid_.nv;
+    return exists ? quads_[column + static_cast<Eigen::Index>(grid_.nu - 1) * line] : 0;
+  };
+  return (quad(a, b) + (weft ? quad(a, b - 1) : quad(a - 1, b))) / 2;
+}
+
+bool Metric::bends(int a, int b, bool weft) const {
+  return joined(a, b, weft) && joined(weft ? a - 1 : a, weft ? b : b - 1, weft);
+}
+
+/// The harmonic mean of the strips on both sides: a border particle with little mass gets no more stiffness than its strip has
+/// mass.
+double Metric::bent_area(int a, int b, bool weft) const {
+  if (!grid_.is_cut()) return area(grid_.index(a, b));
+  const double after = strip_area(a, b, weft), before = strip_area(weft ? a - 1 : a, weft ? b : b - 1, weft);
+  return 2 * before * after / (before + after);
+}
+
 LineDifference Metric::second_difference(int a, int b, bool weft) const {
   const int i = grid_.index(a, b);
-  const int left = grid_.index(std::max(a - 1, 0), b), right = grid_.index(std::min(a + 1, grid_.nu - 1), b);
-  const int lower = grid_.index(a, std::max(b - 1, 0)), upper = grid_.index(a, std::min(b + 1, grid_.nv - 1));
+  const int left = joined(a - 1, b, true) ? grid_.index(a - 1, b) : i, right = joined(a, b, true) ? grid_.index(a + 1, b) : i;
+  const int lower = joined(a, b - 1, false) ? grid_.index(a, b - 1) : i,
+            upper = joined(a, b, false) ? grid_.index(a, b + 1) : i;
   const int before = weft ? left : lower, after = weft ? right : upper;
   const int across_before = weft ? lower : left, across_after = weft ? upper : right;
   LineDifference found{{{{before, 1}, {i, -2}, {after, 1}, {across_before, 0}, {across_after, 0}}},

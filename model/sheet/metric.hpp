@@ -25,7 +25,7 @@ struct CellDifference {
   double length_u, length_v;  ///< means of the opposite edges [m]
 };
 
-/// Lengths, areas and differences of a grid at rest.
+/// Lengths, areas and differences of a grid at rest; areas are those of cloth.
 ///
 /// Differences vanish on all affine images of the pattern: what lines have of them there, since they are curved or not
 /// parallel, is taken off along the tangents.
@@ -48,6 +48,15 @@ class Metric {
   /// |P|²|Q|²/A of two edges of a cell of area A [m²]; the area itself if the grid is uniform.
   double quadrant_measure(const Cell& cell, EdgeEnds p, EdgeEnds q) const;
 
+  /// Whether cloth joins particle (a, b) to the next along u or v; of a chain or without a cut, whether there is one.
+  bool joined(int a, int b, bool weft) const { return strip_area(a, b, weft) > 0; }
+
+  /// Whether it is joined on both sides.
+  bool bends(int a, int b, bool weft) const;
+
+  /// The area that stands for the curvature along u or v at a particle that bends [m²]: its own, unless there is a cut.
+  double bent_area(int a, int b, bool weft) const;
+
   /// Along u or v at particle (a, b), which is not on the ends of the line.
   LineDifference second_difference(int a, int b, bool weft) const;
 
@@ -57,9 +66,13 @@ class Metric {
   Eigen::Vector2d place(int i) const { return pattern_.row(i).head<2>(); }
   Eigen::Vector2d place(EdgeEnds edge) const { return place(edge.end) - place(edge.begin); }
 
+  /// Half of the areas beside the edge from particle (a, b) to the next along u or v; 1 if there is no cut, 0 if there is no
+  /// edge.
+  double strip_area(int a, int b, bool weft) const;
+
   Grid grid_;
-  Vectors pattern_;  ///< empty if the grid is uniform
-  Eigen::VectorXd areas_;
+  Vectors pattern_;  ///< this and quads_: empty if the grid is uniform
+  Eigen::VectorXd areas_, quads_;
 };
 
 }  // namespace drape::model

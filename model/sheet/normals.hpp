@@ -2,15 +2,17 @@
 
 #include <array>
 #include <utility>
+#include <vector>
 
-#include "model/sheet/grid.hpp"
+#include "model/sheet/metric.hpp"
 
 namespace drape::model {
 
-/// Vertex normals N = (t_u × t_v)° of a grid, the tangents being differences of the neighbours, one-sided on borders.
+/// Vertex normals N = (t_u × t_v)° of a grid, the tangents being differences of the neighbours, one-sided on borders and
+/// along a cut.
 class Normals {
  public:
-  explicit Normals(const Grid& grid) : grid_(grid) {}
+  explicit Normals(const Grid& grid);
 
   /// Sets n (N × 3). NaN where the tangents are parallel.
   void evaluate(const Vectors& x, Vectors& n) const;
@@ -25,6 +27,7 @@ class Normals {
   Neighbours neighbours(int i) const;
 
   Grid grid_;
+  std::vector<Neighbours> along_cut_;  ///< of all particles; empty if there is no cut
 };
 
 /// The matrix of a × ·.

@@ -65,7 +65,7 @@ Strain Strain::of_curvature(const Metric& metric, int a, int b, bool weft) {
   Strain strain;
   strain.kind_ = Kind::curvature;
   strain.count_ = 5, strain.vectors_ = 3;
-  strain.area_ = metric.area(metric.grid().index(a, b));
+  strain.area_ = metric.bent_area(a, b, weft);
   const LineDifference difference = metric.second_difference(a, b, weft);
   const double per_square = 1 / (difference.length * difference.length);
   // The particle itself, left, right, lower, upper; on a border it is one of the neighbours that span its normal as well.
@@ -210,8 +210,8 @@ std::vector<LineCurvature> line_curvatures(const Grid& grid) {
   const Metric metric(grid);
   for (int b = 0; b < grid.nv; ++b)
     for (int a = 0; a < grid.nu; ++a) {
-      if (a > 0 && a < grid.nu - 1) all.push_back({Strain::of_curvature(metric, a, b, true), true});
-      if (b > 0 && b < grid.nv - 1) all.push_back({Strain::of_curvature(metric, a, b, false), false});
+      for (const bool weft : {true, false})
+        if (metric.bends(a, b, weft)) all.push_back({Strain::of_curvature(metric, a, b, weft), weft});
     }
   return all;
 }

@@ -7,6 +7,7 @@
 #include "reference/reference.hpp"
 #include "reference/sundials/cvode.hpp"
 #include "verify/support/convergence.hpp"
+#include "verify/support/slow.hpp"
 #include "verify/support/small_problems.hpp"
 
 namespace drape::verify::hung_sheet_test {
@@ -67,6 +68,7 @@ INSTANTIATE_TEST_SUITE_P(, HungSheetWith, testing::ValuesIn(names(solver::thesis
                          [](const auto& test) { return identifier(test.param); });
 
 TEST_P(HungSheetWith, AgreesWithCvodeAtTheDeclaredRate) {
+  DRAPE_SLOW();
   Convergence x, v;
   for (int steps = coarsest(method); steps <= 8 * coarsest(method); steps *= 2) {
     const Distance e = error(method, steps);

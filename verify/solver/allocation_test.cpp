@@ -122,6 +122,7 @@ TEST_P(Allocations, DoNotHappenInStepsOfAHungSheet) {
 }
 
 TEST_P(Allocations, DoNotHappenInStepsWithAllForces) {
+  DRAPE_SLOW();
   const model::Override windy[] = {{"forces.wind", "[1, 2, 3]"},
                                    {"forces.lift", "0.5"},
                                    {"forces.air", "0.1"},

@@ -90,8 +90,8 @@ INSTANTIATE_TEST_SUITE_P(, ToleranceOf,
                          [](const auto& test) { return identifier(std::get<0>(test.param)) + "_" + std::get<1>(test.param); });
 
 TEST_P(ToleranceOf, IsThatOfTheError) {
+  DRAPE_SLOW();
   const Method& method = solver::method(std::get<0>(GetParam()));
-  DRAPE_SLOW_IF(!method.in_thesis);
   const Sheet sheet(setting_named(std::get<1>(GetParam())));
   if (method.needs_energies && !sheet.cloth.ode.without_energy.empty()) GTEST_SKIP() << "not for this sheet";
   const Motion truth = sheet.run("esdirk4", sheet.control(1e-9, false));
@@ -189,6 +189,7 @@ TEST(Tolerance, OfTheLocalErrorEndsAfterTheMostSteps) {
 }
 
 TEST(Tolerance, OfAPulledSheetIsReached) {
+  DRAPE_SLOW();
   const Sheet sheet({"", "pulled", {{"end.time", "0.05"}}});
   const Motion truth = sheet.run("esdirk4", sheet.control(1e-9, false));
   for (const char* method : {"bdf2", "midpoint"}) {

@@ -69,17 +69,30 @@ Grid curved() {
   return grid;
 }
 
+Grid cut() {
+  using enum model::CurvePiece::Kind;
+  Grid grid = five_by_four();
+  grid.cut = {{line, {{-0.1, -0.1}, {1.1, -0.1}}},
+              {line, {{1.1, -0.1}, {1.1, 0.1}}},
+              {line, {{1.1, 0.1}, {0.3, 0.6}}},
+              {line, {{0.3, 0.6}, {-0.1, 0.7}}},
+              {arc, {{-0.1, 0.7}, {0.1, 0.3}, {-0.1, -0.1}}}};
+  return grid;
+}
+
 bool exists_on(const Grid& grid, const ForceCase& force) {
   const Material& m = force.material;
   if (is_chain(grid) && !force.exists_on_chains) return false;
   return grid.uniform() || (m.shear_form == ShearForm::conservative && !by_tables(m) &&
-                            (m.bend_form == BendForm::plate || m.bend_form == BendForm::membrane));
+                            (m.bend_form == BendForm::plate || (m.bend_form == BendForm::membrane && !grid.is_cut())));
 }
 
 std::vector<NamedGrid> grids() {
-  return {{"2x2", {2, 2, 0.3, 0.2}},     {"3x2", {3, 2, 0.5, 0.2}}, {"2x4", {2, 4, 0.3, 0.6}},
-          {"3x3", {3, 3, 0.5, 0.4}},     {"5x4", five_by_four()},   {"chain_6x1", {6, 1, 1, 0.25}},
-          {"chain_1x5", {1, 5, 0.2, 1}}, {"graded", graded()},      {"curved", curved()}};
+  return {{"2x2", {2, 2, 0.3, 0.2}},     {"3x2", {3, 2, 0.5, 0.2}},
+          {"2x4", {2, 4, 0.3, 0.6}},     {"3x3", {3, 3, 0.5, 0.4}},
+          {"5x4", five_by_four()},       {"chain_6x1", {6, 1, 1, 0.25}},
+          {"chain_1x5", {1, 5, 0.2, 1}}, {"graded", graded()},
+          {"curved", curved()},          {"cut", cut()}};
 }
 
 Scene scene_of(const ForceCase& force, const Grid& grid) {

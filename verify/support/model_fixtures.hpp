@@ -96,16 +96,18 @@ std::vector<ForceCase> force_cases();
 
 ForceCase force_case(const std::string& name);
 
-/// Grids with spacings that differ. The smallest have borders only; chains run along u and along v; two are not uniform.
+/// Grids with spacings that differ. The smallest have borders only; chains run along u and along v; three are not uniform.
 struct NamedGrid {
   std::string name;
   Grid grid;
 };
 
-/// One with an inside, borders and corners; a rectangle whose spacings grow; a panel with curved sides and no right angle.
+/// One with an inside, borders and corners; a rectangle whose spacings grow; a panel with curved sides and no right angle; a
+/// rectangle of which a curve cuts cells and takes the corner off, one particle of which is left outside.
 Grid five_by_four();
 Grid graded();
 Grid curved();
+Grid cut();
 
 std::vector<NamedGrid> grids();
 

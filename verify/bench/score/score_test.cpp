@@ -71,6 +71,7 @@ Motion delayed(const Motion& motion, std::size_t frames) {
 }
 
 TEST(Score, OfTheReferenceIsNothingAndOfADelayedOneItsDelay) {
+  DRAPE_SLOW();
   const BenchIntegrators program;
   program.output(Words{"export"} + sheet + Words{"--every", "0.01", "--out", "a"});
   const json with_velocities = score(program, sheet, {"a/reference.h5"}), &same = with_velocities.at("score-summary")[0];
@@ -199,6 +200,7 @@ TEST(Score, OfARunIsWhatTheRunRecordsHoweverItIsWritten) {
 }
 
 TEST(Score, ComparesErrorAndCostWithOurs) {
+  DRAPE_SLOW();
   const BenchIntegrators program;
   const results::RunRecord bdf2 = run(program, {"--method", "bdf2", "--step", "0.01", "--trajectory", "every=0.02"});
   write(program, "bdf2.h5", motion_of(bdf2));

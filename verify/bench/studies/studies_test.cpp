@@ -280,6 +280,7 @@ TEST_F(ProgramStudies, OrdersAreAsDeclared) {
 }
 
 TEST_F(ProgramStudies, TheChoiceIsTheQuickestWithItsError) {
+  DRAPE_SLOW();
   const auto all = tables("choice");  // in the order of their names
   ASSERT_THAT(all, SizeIs(3));
   const Table &choice = all[0], &trials = all[1];
@@ -457,6 +458,7 @@ TEST_F(ProgramStudies, EveryStageSolverSolvesEveryStage) {
 }
 
 TEST_F(ProgramStudies, StepsByPassesAreComparedWithConstantOnes) {
+  DRAPE_SLOW();
   const auto all = tables("step-control");
   ASSERT_THAT(all, SizeIs(1));
   ASSERT_EQ(rows(all[0]), 5u + 6 + 3);
@@ -494,6 +496,7 @@ TEST_F(ProgramStudies, LimitsAreThoseOfTheTheory) {
 }
 
 TEST_F(ProgramStudies, FabricsBendAsWasPublished) {
+  DRAPE_SLOW();
   program.output({"study", "fabrics", "--quick", "--method", "verlet", "--out", "study.h5"});
   std::map<std::string, std::vector<std::string>> judged;
   for (const Table& table : results::read_tables(program.folder() / "study.h5")) judged[table.name] = verdicts(table);
@@ -503,7 +506,19 @@ TEST_F(ProgramStudies, FabricsBendAsWasPublished) {
   EXPECT_TRUE(judged.contains("field-winners"));
 }
 
+/// The sample is stiff: on coarse meshes its coefficient lies near the published 0.83.
+TEST_F(ProgramStudies, DrapeComesToRestNearWhatWasPublished) {
+  DRAPE_SLOW();
+  const auto all = tables("drape");
+  ASSERT_THAT(all, SizeIs(3));
+  const Table& samples = all[0];
+  EXPECT_THAT(verdicts(samples), AllOf(SizeIs(4), Each("met: at rest")));
+  const std::vector<double> coefficients = numbers(samples, "coefficient", "fabric", "cotton-broad");
+  EXPECT_THAT(coefficients, AllOf(SizeIs(4), Each(testing::DoubleNear(0.83, 0.08))));
+}
+
 TEST_F(ProgramStudies, ScalingTellsWhatWasChosenAndWhatAnIterationMoves) {
+  DRAPE_SLOW();
   const auto all = tables("scaling");  // in the order of their names
   ASSERT_THAT(all, SizeIs(3));
   EXPECT_THAT(numbers(all[0], "n", "linear_solver", "cholesky"), ElementsAre(20, 20, 40, 40));

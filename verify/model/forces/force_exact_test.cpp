@@ -61,7 +61,7 @@ TEST(ExactForces, EnergiesOfHomogeneousStrainsAreDensityTimesArea) {
       {"contraction", m.contraction * e11 * e22}};
   for (const auto& [name, grid] : grids())
     for (const auto& [force, density] : expected) {
-      if (is_chain(grid) || grid.outline.given()) continue;
+      if (is_chain(grid) || grid.outline.given() || grid.is_cut()) continue;
       const double exact = density * grid.size_u * grid.size_v;
       EXPECT_NEAR(ode_of(force_case(force), grid).potential_energy(0, affine(grid, s_u, s_v)), exact,
                   1000 * epsilon * std::abs(exact))

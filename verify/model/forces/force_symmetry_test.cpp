@@ -36,7 +36,8 @@ Grid transposed(const Grid& grid) {
   other.grading_u = grid.grading_v, other.grading_v = grid.grading_u;
   other.outline = {
       .lower = grid.outline.left, .upper = grid.outline.right, .left = grid.outline.lower, .right = grid.outline.upper};
-  for (auto* side : {&other.outline.lower, &other.outline.upper, &other.outline.left, &other.outline.right})
+  other.cut = grid.cut;
+  for (auto* side : {&other.outline.lower, &other.outline.upper, &other.outline.left, &other.outline.right, &other.cut})
     for (model::CurvePiece& piece : *side)
       for (Eigen::Vector2d& point : piece.points) std::swap(point.x(), point.y());
   return other;
@@ -70,7 +71,7 @@ INSTANTIATE_TEST_SUITE_P(, SymmetryOf, ValuesIn(sheets_where([](const Sheet&) { 
 TEST_P(SymmetryOf, ShiftedSheetsHaveTheSameForcesAndEnergy) {
   const State moved{shifted(y.x, shift), force.air == 0 ? shifted(y.v, spin) : y.v};  // the air is at rest
   EXPECT_LE(largest(evaluate(ode.force, moved) - f), rounding * size);
-  const double work = ode.mass.sum() * force.gravity.dot(shift);
+  const double work = force.material.density * grid.cell_areas().sum() * force.gravity.dot(shift);
   const double energy = ode.potential_energy(0, y.x);
   EXPECT_NEAR(ode.potential_energy(0, moved.x), energy - work, rounding * (std::abs(energy) + std::abs(work)));
 }

@@ -12,6 +12,7 @@
 #include "reference/sundials/cvode.hpp"
 #include "verify/support/convergence.hpp"
 #include "verify/support/model_fixtures.hpp"
+#include "verify/support/slow.hpp"
 #include "verify/support/small_problems.hpp"
 
 namespace drape::verify::friction_test {
@@ -174,6 +175,7 @@ std::vector<std::pair<std::string, Scene>> sheets_with_memory() {
 }
 
 TEST(SheetWithHysteresis, MovesAsCvodeSays) {
+  DRAPE_SLOW();
   for (const auto& [name, scene] : sheets_with_memory()) {
     const Cloth cloth = model::compile(scene);
     const std::vector<double> times{scene.end};

@@ -121,6 +121,7 @@ std::vector<int> refinements(const Method& method) {
 }
 
 TEST_P(Remembering, HasTheDeclaredOrder) {
+  DRAPE_SLOW();
   const double tolerance = method.order == 5 ? 0.15 : 0.1;  // round-off comes before the fifth order has settled
   for (const double unequal : {0.0, 0.2}) {
     Convergence x, v, z;

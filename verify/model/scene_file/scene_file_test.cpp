@@ -259,7 +259,7 @@ TEST(SceneFile, HasARowForEveryKeyAndEveryEntryOfAList) {
   for (const model::KeyValue& row : model::key_values(parsed(complete))) keys.push_back(row.key);
   EXPECT_EQ(std::ranges::count(keys, "pins"), 2);
   EXPECT_EQ(std::ranges::count(keys, "obstacles"), 4);
-  const std::size_t empty = 18;  // sides, curves, tables and elements of relaxation
+  const std::size_t empty = 19;  // sides, a cut, curves, tables and elements of relaxation
   EXPECT_EQ(keys.size(), model::scene_keys().size() + 1 + 3 - empty);
 }
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "verify/support/convergence.hpp"
+#include "verify/support/slow.hpp"
 #include "verify/support/small_problems.hpp"
 
 namespace drape::verify::amplification_test {
@@ -45,6 +46,7 @@ INSTANTIATE_TEST_SUITE_P(, Amplification, testing::ValuesIn(methods_with_theory(
 constexpr double whole_to_implicit[] = {1, 0.3 / 1.3, 1e-3 / 1.001};
 
 TEST_P(Amplification, IsThatOfTheCharacteristicPolynomial) {
+  DRAPE_SLOW();
   const bool is_explicit = method(GetParam()).explicit_springs();
   for (const double ratio : whole_to_implicit)
     for (int decade = -2; decade <= 6; ++decade)
@@ -133,6 +135,7 @@ TEST(FixedPointLoop, ContractsAsTheModeSays) {
 // --- Stability --------------------------------------------------------------------------------------------------------------
 
 TEST_P(Amplification, IsStableUpToTheLimitInClosedForm) {
+  DRAPE_SLOW();
   for (const LinearMode& mode : {LinearMode{1, 1, 0}, {2, 3, 0}, {0.3, 1, 0}, {0.3, 1, 0.5}, {1e-3, 1, 0.2}, {1e3, 1, 3}}) {
     const double h = stability_limit(method(GetParam()), mode);
     if (std::isinf(h)) {

@@ -130,17 +130,17 @@ INSTANTIATE_TEST_SUITE_P(, Order,
                          [](const auto& test) { return identifier(std::get<0>(test.param)) + "_" + std::get<1>(test.param); });
 
 TEST_P(Order, IsTheDeclaredOneWithEqualSteps) {
-  DRAPE_SLOW_IF(!method.in_thesis);
+  DRAPE_SLOW();
   EXPECT_TRUE(has_order(with_equal_steps(problem, method), method.order));
 }
 
 TEST_P(Order, IsTheDeclaredOneWithAClippedLastStep) {
-  DRAPE_SLOW_IF(!method.in_thesis);
+  DRAPE_SLOW();
   EXPECT_TRUE(has_order(with_a_clipped_last_step(problem, method), method.order));
 }
 
 TEST_P(Order, IsTheDeclaredOneWithVariableSteps) {
-  DRAPE_SLOW_IF(!method.in_thesis);
+  DRAPE_SLOW();
   for (const Pattern& pattern : patterns)
     EXPECT_TRUE(has_order(with_variable_steps(problem, method, pattern), method.order)) << pattern.name;
 }

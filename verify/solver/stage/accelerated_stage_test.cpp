@@ -60,6 +60,7 @@ TEST(AcceleratedStages, ServeTheNextOnes) {
 
 /// Folds that tumble: what one update reduces the error by says little of the next.
 TEST(AcceleratedStages, CountOnNoReductionsWhereConvergenceIsIrregular) {
+  DRAPE_SLOW();
   const model::Scene scene = model::load_scene("wind");
   const model::Cloth cloth = model::compile(scene);
   const Ended usual = run(cloth, "esdirk4", stage("auto"), 0.01, 0.5),
@@ -76,7 +77,7 @@ INSTANTIATE_TEST_SUITE_P(, StageKinds,
                          [](const auto& test) { return identifier(test.param); });
 
 TEST_P(StageKinds, SolveTheSameEquationAsTheFixedPointLoop) {
-  DRAPE_SLOW_IF(GetParam() != "newton" && GetParam() != "auto");
+  DRAPE_SLOW();
   const model::Cloth cloth = sheet({{"material.damping", "5"}});
   for (const char* method : {"implicit-euler", "bdf2", "midpoint", "tr-bdf2", "esdirk4", "bdf4"}) {
     const Ended exact = run(cloth, method, tight(), 0.01);
@@ -233,12 +234,14 @@ TEST_P(ErrorControlOf, FollowsTheTolerance) {
 }
 
 TEST_P(ErrorControlOf, TakesMoreStepsForLess) {
+  DRAPE_SLOW();
   const auto steps = [&](double tolerance) { return run(cloth, GetParam().c_str(), within(tolerance), 0.1, 0.3).result.steps; };
   const int coarse = steps(1e-3), fine = steps(1e-5);
   EXPECT_GE(fine, GetParam() == "verlet" ? coarse : 1.5 * coarse);  // stability keeps verlet accurate
 }
 
 TEST_P(ErrorControlOf, EndsAtTheEnd) {
+  DRAPE_SLOW();
   Integrator integrator(cloth.ode, solver::method(GetParam()), within(1e-3), cloth.start);
   EXPECT_EQ(integrate(integrator, 0.2345, 0.1).outcome, Outcome::success);
   EXPECT_NEAR(integrator.time(), 0.2345, 1e-9);

@@ -8,6 +8,7 @@
 #include "model/scene_file/scene_file.hpp"
 #include "reference/theory/amplification.hpp"
 #include "solver/stage/chebyshev.hpp"
+#include "verify/support/slow.hpp"
 #include "verify/support/small_problems.hpp"
 
 namespace drape::verify::stage_iteration_test {
@@ -156,6 +157,7 @@ INSTANTIATE_TEST_SUITE_P(, IterationsOnCloth, testing::Values("printed-loop", "c
                          [](const auto& test) { return identifier(test.param); });
 
 TEST_P(IterationsOnCloth, SolveTheSameEquationAsTheFixedPointLoop) {
+  DRAPE_SLOW();
   for (const char* damping : {"50", "5"}) {
     const model::Cloth cloth = sheet(damping);
     const State exact = end(cloth, tight(), "implicit-euler");
