@@ -15,11 +15,11 @@ namespace drape::model {
 
 /// Prescribes the motion of some particles.
 struct PinRule {
-  std::string where;                                 ///< a name from `pin_places()`, or empty
-  std::vector<std::pair<int, int>> particles;        ///< (a, b) along u and v, if `where` is empty
-  Eigen::Vector3d circle = Eigen::Vector3d::Zero();  ///< x, y and radius on the pattern [m], if there are none
+  std::string where;                           ///< a name from `pin_places()`, or empty
+  std::vector<std::pair<int, int>> particles;  ///< (a, b) along u and v, if `where` is empty
   std::array<bool, 3> directions{true, true, true};
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< [m/s]
+  Eigen::Vector3d circle = Eigen::Vector3d::Zero();    ///< x, y and radius on the pattern [m], if nothing else is named
 };
 
 enum class Plane { horizontal, vertical };  ///< u along x; v along y or along z

@@ -97,7 +97,11 @@ Data outline_data(const Scene& scene) {
   return curve_data(scene.sheet.grid.outline.*which);
 }
 
-void read_cut(const Value& value, Scene& scene) { scene.sheet.grid.cut = read_curve(rules(value)); }
+void read_cut(const Value& value, Scene& scene) {
+  scene.sheet.grid.cut = read_curve(rules(value));
+  constexpr std::size_t most = 64;
+  if (scene.sheet.grid.cut.size() > most) value.fail(fmt::format("at most {} pieces", most));
+}
 
 Data cut_data(const Scene& scene) { return curve_data(scene.sheet.grid.cut); }
 

@@ -7,7 +7,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr int chords = 1024;
+constexpr int chords = 1024;  // of a curved piece
 
 double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
@@ -43,13 +43,25 @@ std::vector<Vector2d> left_part(std::span<const Vector2d> polygon, const Vector2
 }
 
 bool crosses_itself(std::span<const Vector2d> polygon) {
-  const std::size_t n = polygon.size();
-  const auto between = [](const Vector2d& p, const Vector2d& q, const Vector2d& r, const Vector2d& s) {
-    return cross(q - p, r - p) * cross(q - p, s - p) < 0 && cross(s - r, p - r) * cross(s - r, q - r) < 0;
+  struct Side {
+    std::size_t place;
+    Vector2d from, to;
+    double left() const { return std::min(from.x(), to.x()); }
+    double right() const { return std::max(from.x(), to.x()); }
   };
-  for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t j = i + 2; j < n; ++j)
-      if (between(polygon[i], polygon[i + 1], polygon[j], polygon[(j + 1) % n])) return true;
+  std::vector<Side> sides;
+  for (std::size_t k = 0; k < polygon.size(); ++k) sides.push_back({k, polygon[k], polygon[(k + 1) % polygon.size()]});
+  std::ranges::sort(sides, {}, &Side::left);
+  const auto parts = [](const Side& line, const Side& other) {
+    const Vector2d along = line.to - line.from;
+    return cross(along, other.from - line.from) * cross(along, other.to - line.from) < 0;
+  };
+  for (auto one = sides.begin(); one != sides.end(); ++one)
+    for (auto other = one + 1; other != sides.end() && other->left() <= one->right(); ++other) {
+      const std::size_t apart = std::max(one->place, other->place) - std::min(one->place, other->place);
+      const bool neighbours = apart == 1 || apart == polygon.size() - 1;
+      if (!neighbours && parts(*one, *other) && parts(*other, *one)) return true;
+    }
   return false;
 }
 

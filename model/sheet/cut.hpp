@@ -8,7 +8,8 @@
 
 namespace drape::model {
 
-/// A closed curve as a polygon, counterclockwise: curved pieces have 1024 chords, whose circle has its area to 7e-6.
+/// A closed curve as a polygon, counterclockwise: curved pieces have 1024 chords, so that half a circle has its
+/// area to 2e-6.
 std::vector<Eigen::Vector2d> closed_polygon(const std::vector<CurvePiece>& curve);
 
 /// Positive if counterclockwise [m²].

@@ -149,6 +149,7 @@ const std::vector<BadScene> bad_scenes = {
     {"open_cut", "grid.cut = [{line = [[0, 0], [1, 0]]}, {line = [[1, 0], [1, 1]]}]", "a.toml: grid.cut: expected to end where it begins, at [0, 0], not at [1, 1]: the curve is open"},
     {"cut_that_crosses_itself", "grid.cut = [{line = [[0, 0], [1, 1]]}, {line = [[1, 1], [1, 0]]}, {line = [[1, 0], [0, 1]]}, {line = [[0, 1], [0, 0]]}]",
      "a.toml: grid.cut: expected a curve that does not cross itself"},
+    {"cut_of_many_pieces", "grid.cut = [" + repeated(65, "{line = [[0, 0], [1, 0]]}, {line = [[1, 0], [0, 0]]}, ") + "]", "a.toml:2: grid.cut = "},
     {"cut_beside_the_grid", "grid.cut = [{arc = [[8, 0], [7, 1], [6, 0]]}, {line = [[6, 0], [8, 0]]}]", "a.toml: grid.cut: expected a curve with cloth inside, it lies beside the grid"},
     {"cut_of_a_chain", "grid = {n = [5, 1], cut = [{arc = [[1, 0], [0, 1], [-1, 0]]}, {line = [[-1, 0], [1, 0]]}]}", "a.toml: grid: expected no sides, no cut and a grading of 1, a chain has equal spacings"},
     {"cut_with_whole_cells", "grid = {border_cells = 'whole', cut = [{arc = [[1, 0], [0, 1], [-1, 0]]}, {line = [[-1, 0], [1, 0]]}]}", "a.toml: grid.border_cells: expected \"dual\" beside a cut"},
