@@ -424,7 +424,7 @@ function curvesFigures(file, table) {
         layout: {
           ...baseLayout(width, colours, kinds.length),
           xaxis: axis(axisTitle(x), colours),
-          yaxis: axis(axisTitle(y), colours)
+          yaxis: {...axis(axisTitle(y), colours), ...(x.unit === y.unit && {scaleanchor: "x"})}  // shapes keep theirs
         }
       };
     };
