@@ -90,11 +90,7 @@ std::vector<solver::Pin> pins(const Scene& scene) {
         pin.velocity[c] = rule.velocity[c];
       }
     }
-  if (scene.sheet.grid.is_cut()) {
-    const Eigen::VectorXd areas = scene.sheet.grid.cell_areas();
-    for (int i = 0; i < areas.size(); ++i)
-      if (areas[i] == 0) merged[i] = {i, {true, true, true}};
-  }
+  for (const int i : scene.sheet.grid.outside()) merged[i] = {i, {true, true, true}};
   std::vector<solver::Pin> all;
   for (const auto& [particle, pin] : merged) all.push_back(pin);
   return all;

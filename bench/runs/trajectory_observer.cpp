@@ -28,11 +28,7 @@ std::vector<int> constraints(const model::Scene& scene, const model::Cloth& clot
     if (touching[i]) kinds[i] = int(results::Constraint::in_contact);
   for (const solver::Pin& pin : cloth.ode.pins)
     kinds[static_cast<std::size_t>(pin.particle)] = int(results::Constraint::pinned);
-  if (scene.sheet.grid.is_cut()) {
-    const Eigen::VectorXd areas = scene.sheet.grid.cell_areas();
-    for (std::size_t i = 0; i < kinds.size(); ++i)
-      if (areas[static_cast<Eigen::Index>(i)] == 0) kinds[i] = int(results::Constraint::no_cloth);
-  }
+  for (const int i : scene.sheet.grid.outside()) kinds[static_cast<std::size_t>(i)] = int(results::Constraint::no_cloth);
   return kinds;
 }
 

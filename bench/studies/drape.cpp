@@ -16,6 +16,7 @@
 #include "model/scene_file/scene_file.hpp"
 #include "results/columns.hpp"
 #include "results/verdict.hpp"
+#include "solver/base/largest.hpp"
 #include "solver/base/noise.hpp"
 #include "solver/integrator.hpp"
 
@@ -116,7 +117,7 @@ Drape let_fall(const Fabric& fabric, const DrapeCase& one) {
   options.stage = &solver::stage_kind("newton");
   solver::Integrator integrator(cloth.ode, solver::method("implicit-euler"), options, cloth.start);
   Drape result{fabric.name, one.cells, one.seed, one.step};
-  result.coefficient = NAN;
+  result.coefficient = result.speed = NAN;
   do {
     if (integrator.step(one.step).outcome != solver::Outcome::success) return result;
     result.time += one.step;
@@ -148,7 +149,8 @@ std::vector<DrapeCoefficient> coefficients(const std::vector<Drape>& all) {
     DrapeCoefficient& summed = found.emplace_back(DrapeCoefficient{
         fabric.name, finest->coefficient, std::abs(finest->coefficient - own[0].coefficient), 0, fabric.drape});
     for (const Drape& one : own)
-      if (one.cells == own[0].cells) summed.by_rest = std::max(summed.by_rest, std::abs(one.coefficient - own[0].coefficient));
+      if (one.cells == own[0].cells)
+        summed.by_rest = base::larger(summed.by_rest, std::abs(one.coefficient - own[0].coefficient));
   }
   return found;
 }

@@ -34,7 +34,7 @@ inline std::vector<Cell> cells(const Grid& grid) {
   std::vector<Cell> all;
   for (int b = 0; b + 1 < grid.nv; ++b)
     for (int a = 0; a + 1 < grid.nu; ++a)
-      if (!grid.is_cut() || areas[a + static_cast<Eigen::Index>(grid.nu - 1) * b] > 0) all.push_back(cell_at(grid, a, b));
+      if (!grid.is_cut() || areas[grid.quad(a, b)] > 0) all.push_back(cell_at(grid, a, b));
   return all;
 }
 

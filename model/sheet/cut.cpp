@@ -42,26 +42,23 @@ std::vector<Vector2d> left_part(std::span<const Vector2d> polygon, const Vector2
   return part;
 }
 
+/// Sides that only meet do not cross: one end of one lies at an end of the other, exactly.
 bool crosses_itself(std::span<const Vector2d> polygon) {
   struct Side {
-    std::size_t place;
     Vector2d from, to;
     double left() const { return std::min(from.x(), to.x()); }
     double right() const { return std::max(from.x(), to.x()); }
   };
   std::vector<Side> sides;
-  for (std::size_t k = 0; k < polygon.size(); ++k) sides.push_back({k, polygon[k], polygon[(k + 1) % polygon.size()]});
+  for (std::size_t k = 0; k < polygon.size(); ++k) sides.push_back({polygon[k], polygon[(k + 1) % polygon.size()]});
   std::ranges::sort(sides, {}, &Side::left);
   const auto parts = [](const Side& line, const Side& other) {
     const Vector2d along = line.to - line.from;
     return cross(along, other.from - line.from) * cross(along, other.to - line.from) < 0;
   };
   for (auto one = sides.begin(); one != sides.end(); ++one)
-    for (auto other = one + 1; other != sides.end() && other->left() <= one->right(); ++other) {
-      const std::size_t apart = std::max(one->place, other->place) - std::min(one->place, other->place);
-      const bool neighbours = apart == 1 || apart == polygon.size() - 1;
-      if (!neighbours && parts(*one, *other) && parts(*other, *one)) return true;
-    }
+    for (auto other = one + 1; other != sides.end() && other->left() <= one->right(); ++other)
+      if (parts(*one, *other) && parts(*other, *one)) return true;
   return false;
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "model/sheet/metric.hpp"
+
 namespace drape::model {
 
 namespace {
@@ -20,27 +22,19 @@ std::vector<Edge> uniform_edges(const Grid& grid) {
 
 }  // namespace
 
-/// Elsewhere an edge's strip has half the area of the quadrilaterals beside it.
 std::vector<Edge> edges(const Grid& grid) {
   if (grid.uniform()) return uniform_edges(grid);
-  const Vectors x = grid.parameters();
-  const Eigen::VectorXd quads = grid.quad_areas(x);
-  const int columns = grid.nu - 1, lines = grid.nv - 1;
+  const Metric metric(grid);
   std::vector<Edge> all;
-  const auto add = [&](int i, int j, bool weft, int a, int b) {
-    const int before_a = weft ? a : a - 1, before_b = weft ? b - 1 : b;
-    double sum = 0;
-    int count = 0;
-    if (before_a >= 0 && before_b >= 0) sum += quads[before_a + columns * before_b], ++count;
-    if (a < columns && b < lines) sum += quads[a + columns * b], ++count;
-    if (sum == 0) return;
-    const double length = (x.row(j) - x.row(i)).norm();
-    all.push_back({i, j, weft, length, sum / (grid.border_cells == BorderCells::whole ? count : 2) / length});
-  };
-  for (int b = 0; b <= lines; ++b)
-    for (int a = 0; a < columns; ++a) add(grid.index(a, b), grid.index(a + 1, b), true, a, b);
-  for (int b = 0; b < lines; ++b)
-    for (int a = 0; a <= columns; ++a) add(grid.index(a, b), grid.index(a, b + 1), false, a, b);
+  for (const bool weft : {true, false})
+    for (int b = 0; b < grid.nv; ++b)
+      for (int a = 0; a < grid.nu; ++a) {
+        const double area = metric.strip_area(a, b, weft);
+        if (area == 0) continue;
+        const EdgeEnds ends{grid.index(a, b), weft ? grid.index(a + 1, b) : grid.index(a, b + 1)};
+        const double length = metric.length(ends);
+        all.push_back({ends.begin, ends.end, weft, length, area / length});
+      }
   return all;
 }
 

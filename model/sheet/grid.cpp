@@ -1,6 +1,5 @@
 #include "model/sheet/grid.hpp"
 
-#include <algorithm>
 #include <vector>
 
 #include "model/sheet/cells.hpp"
@@ -49,8 +48,7 @@ Eigen::VectorXd Grid::quad_areas(const Vectors& pattern) const {
     }
     for (int a = 0; a + 1 < nu; ++a) {
       const Cell cell = cell_at(*this, a, b);
-      areas[a + static_cast<Eigen::Index>(nu - 1) * b] =
-          quad_area(pattern, cell) * (is_cut() ? part_inside(nearby, pattern, cell) : 1);
+      areas[quad(a, b)] = quad_area(pattern, cell) * (is_cut() ? part_inside(nearby, pattern, cell) : 1);
     }
   }
   return areas;
@@ -69,10 +67,19 @@ Eigen::VectorXd Grid::cell_areas() const {
       int count = 0;
       for (const int line : {b - 1, b})
         for (const int column : {a - 1, a})
-          if (column >= 0 && column < nu - 1 && line >= 0 && line < nv - 1) sum += quads[column + (nu - 1) * line], ++count;
+          if (column >= 0 && column < nu - 1 && line >= 0 && line < nv - 1) sum += quads[quad(column, line)], ++count;
       areas[index(a, b)] = sum / (border_cells == BorderCells::whole ? count : 4);
     }
   return areas;
+}
+
+std::vector<int> Grid::outside() const {
+  std::vector<int> found;
+  if (!is_cut()) return found;
+  const Eigen::VectorXd areas = cell_areas();
+  for (int i = 0; i < particles(); ++i)
+    if (areas[i] == 0) found.push_back(i);
+  return found;
 }
 
 }  // namespace drape::model

@@ -34,6 +34,7 @@ struct Grid {
   bool uniform() const { return !outline.given() && grading_u == 1 && grading_v == 1 && !is_cut(); }
   int particles() const { return nu * nv; }
   int index(int a, int b) const { return a + nu * b; }
+  int quad(int a, int b) const { return a + (nu - 1) * b; }  ///< place of the quadrilateral whose lower left corner is (a, b)
 
   // A uniform grid only:
   double spacing_u() const { return nu > 1 ? size_u / (nu - 1) : size_u; }  ///< l_u [m]
@@ -50,6 +51,9 @@ struct Grid {
 
   /// The areas that particles stand for; 0 of those that a cut leaves outside [m²].
   Eigen::VectorXd cell_areas() const;
+
+  /// The particles that a cut leaves outside.
+  std::vector<int> outside() const;
 
   /// The areas of cloth between the lines, line by line, where the particles are at `pattern` [m²].
   Eigen::VectorXd quad_areas(const Vectors& pattern) const;

@@ -29,7 +29,7 @@ double Metric::length(EdgeEnds edge) const {
 double Metric::area(const Cell& cell) const {
   if (grid_.uniform()) return grid_.spacing_u() * grid_.spacing_v();
   const int i = cell.corner[0][0];
-  return quads_[i % grid_.nu + static_cast<Eigen::Index>(grid_.nu - 1) * (i / grid_.nu)];
+  return quads_[grid_.quad(i % grid_.nu, i / grid_.nu)];
 }
 
 std::pair<double, double> Metric::sides(const Cell& cell) const {
@@ -47,12 +47,19 @@ double Metric::quadrant_measure(const Cell& cell, EdgeEnds p, EdgeEnds q) const 
 
 double Metric::strip_area(int a, int b, bool weft) const {
   if (a < 0 || b < 0 || a + weft >= grid_.nu || b + !weft >= grid_.nv) return 0;
-  if (!grid_.is_cut()) return 1;
-  const auto quad = [&](int column, int line) {
-    const bool exists = column >= 0 && line >= 0 && column + 1 < grid_.nu && line + 1 < grid_.nv;
-    return exists ? quads_[column + static_cast<Eigen::Index>(grid_.nu - 1) * line] : 0;
-  };
-  return (quad(a, b) + (weft ? quad(a, b - 1) : quad(a - 1, b))) / 2;
+  if (grid_.uniform()) return weft ? grid_.spacing_u() * grid_.cell_width_v(b) : grid_.spacing_v() * grid_.cell_width_u(a);
+  const int before_a = weft ? a : a - 1, before_b = weft ? b - 1 : b;
+  double sum = 0;
+  int count = 0;
+  if (before_a >= 0 && before_b >= 0) sum += quads_[grid_.quad(before_a, before_b)], ++count;
+  if (a + 1 < grid_.nu && b + 1 < grid_.nv) sum += quads_[grid_.quad(a, b)], ++count;
+  return sum / (grid_.border_cells == BorderCells::whole ? count : 2);
+}
+
+Neighbours Metric::neighbours(int a, int b) const {
+  const int i = grid_.index(a, b);
+  return {joined(a - 1, b, true) ? i - 1 : i, joined(a, b, true) ? i + 1 : i, joined(a, b - 1, false) ? i - grid_.nu : i,
+          joined(a, b, false) ? i + grid_.nu : i};
 }
 
 bool Metric::bends(int a, int b, bool weft) const {
@@ -69,9 +76,7 @@ double Metric::bent_area(int a, int b, bool weft) const {
 
 LineDifference Metric::second_difference(int a, int b, bool weft) const {
   const int i = grid_.index(a, b);
-  const int left = joined(a - 1, b, true) ? grid_.index(a - 1, b) : i, right = joined(a, b, true) ? grid_.index(a + 1, b) : i;
-  const int lower = joined(a, b - 1, false) ? grid_.index(a, b - 1) : i,
-            upper = joined(a, b, false) ? grid_.index(a, b + 1) : i;
+  const auto [left, right, lower, upper] = neighbours(a, b);
   const int before = weft ? left : lower, after = weft ? right : upper;
   const int across_before = weft ? lower : left, across_after = weft ? upper : right;
   LineDifference found{{{{before, 1}, {i, -2}, {after, 1}, {across_before, 0}, {across_after, 0}}},

@@ -25,6 +25,11 @@ struct CellDifference {
   double length_u, length_v;  ///< means of the opposite edges [m]
 };
 
+/// The particles beside one along u and v; the particle itself where there is none.
+struct Neighbours {
+  int left, right, lower, upper;
+};
+
 /// Lengths, areas and differences of a grid at rest; areas are those of cloth.
 ///
 /// Differences vanish on all affine images of the pattern: what lines have of them there, since they are curved or not
@@ -48,8 +53,12 @@ class Metric {
   /// |P|²|Q|²/A of two edges of a cell of area A [m²]; the area itself if the grid is uniform.
   double quadrant_measure(const Cell& cell, EdgeEnds p, EdgeEnds q) const;
 
-  /// Whether cloth joins particle (a, b) to the next along u or v; of a chain or without a cut, whether there is one.
-  bool joined(int a, int b, bool weft) const { return strip_area(a, b, weft) > 0; }
+  /// The area of the strip that the edge from particle (a, b) to the next along u or v stands for: half of the cloth beside it
+  /// [m²]; 0 if there is no such edge.
+  double strip_area(int a, int b, bool weft) const;
+
+  /// Those that cloth joins to particle (a, b).
+  Neighbours neighbours(int a, int b) const;
 
   /// Whether it is joined on both sides.
   bool bends(int a, int b, bool weft) const;
@@ -66,9 +75,7 @@ class Metric {
   Eigen::Vector2d place(int i) const { return pattern_.row(i).head<2>(); }
   Eigen::Vector2d place(EdgeEnds edge) const { return place(edge.end) - place(edge.begin); }
 
-  /// Half of the areas beside the edge from particle (a, b) to the next along u or v; 1 if there is no cut, 0 if there is no
-  /// edge.
-  double strip_area(int a, int b, bool weft) const;
+  bool joined(int a, int b, bool weft) const { return strip_area(a, b, weft) > 0; }
 
   Grid grid_;
   Vectors pattern_;  ///< this and quads_: empty if the grid is uniform

@@ -10,15 +10,13 @@ Normals::Normals(const Grid& grid) : grid_(grid) {
   const Metric metric(grid);
   std::vector<Neighbours> found;
   for (int i = 0; i < grid.particles(); ++i) {
-    const int a = i % grid.nu, b = i / grid.nu;
-    const Neighbours cloth{metric.joined(a - 1, b, true) ? i - 1 : i, metric.joined(a, b, true) ? i + 1 : i,
-                           metric.joined(a, b - 1, false) ? i - grid.nu : i, metric.joined(a, b, false) ? i + grid.nu : i};
+    const Neighbours cloth = metric.neighbours(i % grid.nu, i / grid.nu);
     found.push_back(metric.area(i) > 0 ? cloth : neighbours(i));  // what is outside has some normal as well
   }
   along_cut_ = std::move(found);
 }
 
-Normals::Neighbours Normals::neighbours(int i) const {
+Neighbours Normals::neighbours(int i) const {
   if (!along_cut_.empty()) return along_cut_[i];
   const int a = i % grid_.nu, b = i / grid_.nu;
   return {grid_.index(std::max(a - 1, 0), b), grid_.index(std::min(a + 1, grid_.nu - 1), b), grid_.index(a, std::max(b - 1, 0)),

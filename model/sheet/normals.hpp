@@ -21,9 +21,6 @@ class Normals {
   std::array<std::pair<int, Eigen::Matrix3d>, 4> derivative(const Vectors& x, int i) const;
 
  private:
-  struct Neighbours {
-    int left, right, lower, upper;
-  };
   Neighbours neighbours(int i) const;
 
   Grid grid_;

@@ -190,6 +190,8 @@ TEST(Cuts, ThatCrossThemselvesAreFound) {
   const std::vector<Vector2d> bow{{0, 0}, {1, 1}, {1, 0}, {0, 1}};
   EXPECT_TRUE(model::crosses_itself(bow));
   EXPECT_FALSE(model::crosses_itself(model::closed_polygon(disc(5).cut)));
+  const std::vector<Vector2d> notched{{0, 0}, {2, 0}, {2, 1}, {1, 0.2}, {0, 1}};  // lines cross sides, sides do not
+  EXPECT_FALSE(model::crosses_itself(notched));
 }
 
 }  // namespace
