@@ -21,6 +21,9 @@ constexpr double smallest_step = 1e-6;
 /// The same where steps are cut for their accuracy: where a pin jerks, steps are as short as its neighbours' motion.
 constexpr double smallest_accurate_step = 1e-12;
 
+/// Part of a step in which all kinks of forces are one: else where some are at the same time steps would end at each.
+constexpr double same_kink = 1e-6;
+
 /// Part of the kinetic energy that an impact must stop to be a hard one.
 constexpr double hard_impact = 1e-2;
 
@@ -79,7 +82,8 @@ Integrator::Integrator(const SplitOde& ode, const Method& method, const Options&
       tolerance_(options.error_control.tolerance),
       steps_(ode.work->counter("steps", "accepted steps")),
       rejected_(ode.work->counter("rejected_steps", "steps that failed and were not passed on")),
-      starting_(ode.work->counter("starting_steps", "accepted steps by the method that starts this one")) {
+      starting_(ode.work->counter("starting_steps", "accepted steps by the method that starts this one")),
+      kinks_(ode.work->counter("kinks", "steps that were taken again to end at a kink of a force")) {
   if (ode.contacts && !method.meets_obstacles)
     throw std::invalid_argument("method '" + std::string(method.name) +
                                 "': expected a method that responds to obstacles, which this scene has");
@@ -104,6 +108,24 @@ Integrator::Integrator(const SplitOde& ode, const Method& method, const Options&
 }
 
 StageResult Integrator::step(double h) {
+  bool hard = attempt(h);
+  const double part = part_to_kink(same_kink * h);
+  if (part < 1) hard = end_behind_kink(part);
+  StageResult& result = step_.result;
+  if (result.outcome != Outcome::success) {
+    ++rejected_;
+    return result;
+  }
+  ++steps_;
+  starting_ += step_.starting ? 1 : 0;
+  step_.after_impact = hard;
+  finish_contacts();
+  remember(step_.h, hard || part < 1);
+  return result;
+}
+
+/// Everything of a step that may still be rejected. Returns whether it met an obstacle hard.
+bool Integrator::attempt(double h) {
   step_.t = time();
   step_.h = h;
   if (history_.last_step() > 0) step_.after_impact = false;  // true if a rejected step was repeated without history
@@ -125,16 +147,45 @@ StageResult Integrator::step(double h) {
     error_ = estimate_error(h);
     if (error_ > 1) result.outcome = Outcome::inaccurate;
   }
-  if (result.outcome != Outcome::success) {
-    ++rejected_;
-    return result;
+  return hard;
+}
+
+/// Part of a successful step after which a force has a kink; 1 if none has, or if that is not asked for. `least`: kinks in so
+/// short a time from the beginning belong to the step before [s].
+double Integrator::part_to_kink(double least) const {
+  if (!options_.ends_at_kinks || !step_.ode.memory || step_.result.outcome != Outcome::success) return 1;
+  return step_.ode.memory->first_kink(step_.h, least / step_.h, state(), next_.y);
+}
+
+/// Takes the step again, to end behind the kink at this part of it, by not much: slopes are to be those behind. Where the step
+/// was too long for its cubic to say where that is, shorter ones do.
+bool Integrator::end_behind_kink(double part) {
+  constexpr int most_attempts = 40;
+  constexpr double precision = 1e-5, least_more = 1e-8, growth = 100;
+  ++kinks_;
+  bool hard = false;
+  const double least = same_kink * step_.h;
+  double before = least, behind = step_.h, h = part * behind, more = least_more;
+  for (int attempts = 0; attempts < most_attempts; ++attempts) {
+    hard = attempt_again(h);
+    if (step_.result.outcome != Outcome::success) break;
+    part = part_to_kink(least);
+    if (part < 1 && h - std::max(before, part * h) < precision * h) break;
+    (part < 1 ? behind : before) = h;
+    const double guess = part < 1 ? part * h : (1 + more) * h, middle = std::sqrt(before * behind);
+    if (part == 1) more *= growth;
+    h = part < 1 ? (guess > before ? guess : middle) : std::min(guess, middle);
   }
-  ++steps_;
-  starting_ += step_.starting ? 1 : 0;
-  step_.after_impact = hard;
-  finish_contacts();
-  remember(h, hard);
-  return result;
+  return hard;
+}
+
+/// In the place of another step, whose work is added.
+bool Integrator::attempt_again(double h) {
+  const StageResult other = step_.result;
+  const bool hard = attempt(h);
+  step_.result.updates += other.updates;
+  step_.result.cg_iterations += other.cg_iterations;
+  return hard;
 }
 
 /// The explicit forces of the history are those without K x: the K of now.
@@ -214,14 +265,14 @@ double Integrator::first_step() const {
 
 /// Adds the step to the history. The motion is not smooth where its extrapolation is worse than no change at all: later
 /// extrapolations begin there.
-void Integrator::remember(double h, bool hard) {
+void Integrator::remember(double h, bool restart) {
   const Vectors& v1 = next_.y.v;
   const bool rough =
       extrapolates_ && history_.smooth() > 1 && (v1 - scratch_.av).squaredNorm() > (v1 - state().v).squaredNorm();
   if (step_.ode.memory) step_.ode.memory->carry(step_.t + h, next_.y);
   next_.t = end_of_step(h);
   history_.push(next_, h);
-  if (hard) history_.restart();
+  if (restart) history_.restart();
   if (rough && history_.smooth() > 2) history_.begin_smooth();
 }
 
@@ -315,9 +366,10 @@ RunResult advance(Integrator& integrator, double t_end, double h, const Observer
     if (result.outcome == Outcome::success) {
       ++run.steps;
       run.last_good_time = integrator.time();
+      const double taken = integrator.last_step();
       if (observer)
-        observer({integrator.time(), size, result.updates, result.cg_iterations, integrator.state(), integrator.contacts()});
-      sizes.accepted(size, result.updates, integrator.error());
+        observer({integrator.time(), taken, result.updates, result.cg_iterations, integrator.state(), integrator.contacts()});
+      if (taken == size) sizes.accepted(size, result.updates, integrator.error());  // what ends at a kink says nothing of sizes
       continue;
     }
     ++run.rejected_steps;

@@ -24,9 +24,12 @@ class Integrator {
   Integrator(const Integrator&) = delete;
   Integrator& operator=(const Integrator&) = delete;
 
-  /// One step of size h > 0; methods with history take the steps before into account. `inaccurate` if the options limit the
-  /// error and its estimate is too large.
+  /// One step of size h > 0, or of less if it ends at a kink; methods with history take the steps before into account.
+  /// `inaccurate` if the options limit the error and its estimate is too large.
   StageResult step(double h);
+
+  /// The size of the last step that was accepted [s].
+  double last_step() const { return step_.h; }
 
   /// Estimated error of the last step, accepted or not, over its tolerance; 0 if that is not limited or not known yet.
   double error() const { return error_; }
@@ -48,6 +51,10 @@ class Integrator {
   ContactReport contacts() const;
 
  private:
+  bool attempt(double h);
+  double part_to_kink(double least) const;
+  bool end_behind_kink(double part);
+  bool attempt_again(double h);
   void follow_stiffness();
   void begin_contacts(double h);
   bool hit_hard() const;
@@ -55,7 +62,7 @@ class Integrator {
   void finish_contacts();
   void predict(double h);
   double estimate_error(double h);
-  void remember(double h, bool hard);
+  void remember(double h, bool restart);
   double end_of_step(double h);
 
   const Options options_;
@@ -78,7 +85,7 @@ class Integrator {
   double error_ = 0;
   std::int64_t stiffness_changes_ = 0;
   double lost_time_ = 0;  ///< round-off added to the time [s]
-  std::int64_t &steps_, &rejected_, &starting_;
+  std::int64_t &steps_, &rejected_, &starting_, &kinks_;
 };
 
 /// An accepted step, for observers.

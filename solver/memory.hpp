@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "solver/state.hpp"
 
@@ -33,6 +34,13 @@ class Memory {
 
   /// For such a solver's Newton method, at a state: d.z of (1 − γ ∂g/∂z) d.z = r.z + γ (∂g/∂x d.x + ∂g/∂v d.v), about.
   virtual void respond(double gamma, const State& y, const Eigen::VectorXd& r, State& d) const = 0;
+
+  /// Branches of laws whose forces have kinks in between, each a number, at a state with its z; empty: all forces are smooth.
+  virtual void branches(const State& y, std::vector<int>& now) const = 0;
+
+  /// The part of a step of h [s] from y0, with its z, to y1 at which the first of those ends that are there at the part `from`,
+  /// positions being cubic in time; 1 if none does.
+  virtual double first_kink(double h, double from, const State& y0, const State& y1) const = 0;
 
   /// How often K has changed since the motion began, and K as it is now: SplitOde::stiffness follows at the beginnings of
   /// steps.

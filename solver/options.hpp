@@ -57,6 +57,7 @@ struct Options {
   int sweeps = 1;                ///< over all constraints a sub-step, or over all rows of the matrix a step
   StepControl control;
   ErrorControl error_control;
+  bool ends_at_kinks = false;   ///< whether steps end where forces that remember the motion have kinks: event location
   double stage_accuracy = 0.1;  ///< error left in an accelerated stage over the error of the time step
   int passes = 0;  ///< updates after which a stage that is not accelerated counts as solved [Etzmuß 2002, 3.4.3], 0: its kind's
 

@@ -155,6 +155,7 @@ void add_solver_options(CLI::App& command, RunArguments& a) {
   command.add_option("--passes", a.options.passes, "updates after which a stage counts as solved, whatever its residual")
       ->type_name("M")
       ->check(between(1, 1000000));
+  command.add_flag("--events", a.options.ends_at_kinks, "ends steps at kinks of forces that remember the motion");
   command.add_option("--control", a.control, "step control by the number of updates a step")
       ->option_text("MIN MAX")
       ->check(between(0, 1000000))

@@ -10,11 +10,12 @@ namespace drape::bench {
 namespace {
 
 std::string all_of(const solver::Options& o, int threads) {
-  return fmt::format("{} {} {} {} {} {} {}\n{} {} {}\n{} {} {} {} {}\n{} {} {}x{}\n{} {}\n", o.loop_tolerance, o.cg_tolerance,
-                     o.max_updates, o.max_cg_iterations, o.verlet_fraction, o.stage_accuracy, threads, o.control.min_updates,
-                     o.control.max_updates, o.control.factor, o.error_control.tolerance, o.error_control.length,
-                     o.error_control.duration, o.error_control.global, o.error_control.most_steps, o.stage->name,
-                     o.linear_solver->name, o.sub_steps, o.sweeps, o.passes, o.chebyshev_radius);
+  return fmt::format("{} {} {} {} {} {} {}\n{} {} {}\n{} {} {} {} {}\n{} {} {}x{}\n{} {} {}\n", o.loop_tolerance,
+                     o.cg_tolerance, o.max_updates, o.max_cg_iterations, o.verlet_fraction, o.stage_accuracy, threads,
+                     o.control.min_updates, o.control.max_updates, o.control.factor, o.error_control.tolerance,
+                     o.error_control.length, o.error_control.duration, o.error_control.global, o.error_control.most_steps,
+                     o.stage->name, o.linear_solver->name, o.sub_steps, o.sweeps, o.passes, o.chebyshev_radius,
+                     o.ends_at_kinks);
 }
 
 }  // namespace

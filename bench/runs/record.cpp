@@ -51,6 +51,7 @@ std::vector<results::Parameter> parameters(const RunSpec& spec, int particles) {
     all.push_back({"tolerance", o.error_control.tolerance, "1",
                    o.error_control.global ? "of the largest error at the tenths of the run, over the size"
                                           : "of the local error, over the size"});
+  if (o.ends_at_kinks) all.push_back({"events", 1, "1", "steps end at kinks of forces"});
   if (o.control.enabled()) {
     all.push_back({"control_min_updates", double(o.control.min_updates), "1", "the step grows after fewer updates"});
     all.push_back({"control_max_updates", double(o.control.max_updates), "1", "the step shrinks after more updates"});

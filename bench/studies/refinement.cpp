@@ -120,6 +120,12 @@ struct OrdersOnScene {
   std::vector<RefinedRun> runs;
 };
 
+bool has_kinks(const model::Cloth& cloth) {
+  std::vector<int> branches;
+  if (cloth.ode.memory) cloth.ode.memory->branches(cloth.start, branches);
+  return !branches.empty();
+}
+
 OrdersOnScene compute_orders(const model::Scene& scene, double most_work, const std::vector<const solver::Method*>& methods,
                              Checkpoint& checkpoint) {
   const model::Cloth cloth = model::compile(scene);
@@ -133,9 +139,15 @@ OrdersOnScene compute_orders(const model::Scene& scene, double most_work, const 
     if (method->needs_energies && !cloth.plan.without_energy.empty()) continue;
     checkpoint.show(fmt::format("{} on {}", method->name, scene.name));
     const std::string name(method->name);
-    auto curve = refine(tight(scene, name), name, cloth, reference, most_work, checkpoint);
-    fit_curve(curve, method->order);
-    std::ranges::move(curve, std::back_inserter(runs));
+    const bool high = method->order > 2;  // a few kinks cost a lower order nothing
+    for (const bool events : {false, true}) {
+      if (events && !(high && has_kinks(cloth))) continue;
+      RunSpec spec = tight(scene, name);
+      spec.options.ends_at_kinks = events;
+      auto curve = refine(spec, events ? name + ", events" : name, cloth, reference, most_work, checkpoint);
+      fit_curve(curve, method->order);
+      std::ranges::move(curve, std::back_inserter(runs));
+    }
     checkpoint.advance();
   }
   return {fmt::format("{} + {}", reference.name, reference.witness), std::move(runs)};

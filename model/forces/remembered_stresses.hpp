@@ -30,6 +30,8 @@ class RememberedStresses final : public TermMemory {
   void respond(double gamma, const solver::State& y, const Variables& r, const solver::State& d,
                MutableVariables dz) const override;
   double energy(const solver::State& y, const Variables& z) const override;
+  void add_branches(const solver::State& y, const Variables& z, std::vector<int>& now) const override;
+  double first_kink(double h, double from, const solver::State& y0, const Variables& z, const solver::State& y1) const override;
   std::int64_t stiffness_changes() const override { return changes_; }
   void add_stiffness(std::vector<Eigen::Triplet<double>>& entries) const override;
 

@@ -1,5 +1,6 @@
 #include "model/memory/cloth_memory.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace drape::model {
@@ -43,6 +44,18 @@ void ClothMemory::respond(double gamma, const State& y, const Eigen::VectorXd& r
     const int count = part.memory->variables();
     part.memory->respond(gamma, y, r.segment(part.first, count), d, d.z.segment(part.first, count));
   }
+}
+
+void ClothMemory::branches(const State& y, std::vector<int>& now) const {
+  now.clear();
+  for (const Part& part : parts_) part.memory->add_branches(y, y.z.segment(part.first, part.memory->variables()), now);
+}
+
+double ClothMemory::first_kink(double h, double from, const State& y0, const State& y1) const {
+  double first = 1;
+  for (const Part& part : parts_)
+    first = std::min(first, part.memory->first_kink(h, from, y0, y0.z.segment(part.first, part.memory->variables()), y1));
+  return first;
 }
 
 std::int64_t ClothMemory::stiffness_changes() const {

@@ -21,6 +21,8 @@ class ClothMemory final : public solver::Memory {
   void carry(double t, solver::State& y) override;
   void rate(const solver::State& y, Eigen::VectorXd& dz) const override;
   void respond(double gamma, const solver::State& y, const Eigen::VectorXd& r, solver::State& d) const override;
+  void branches(const solver::State& y, std::vector<int>& now) const override;
+  double first_kink(double h, double from, const solver::State& y0, const solver::State& y1) const override;
   std::int64_t stiffness_changes() const override;
   const solver::SparseMatrix& stiffness() override;
   double energy(const solver::State& y) const override;

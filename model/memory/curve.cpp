@@ -3,6 +3,12 @@
 #include <algorithm>
 
 namespace drape::model {
+namespace {
+
+/// Difference from the largest strain that errors of solvers may explain; and over it.
+constexpr double same_strain = 1e-7;
+
+}  // namespace
 
 /// That before x ends the piece which holds x; the first and the last go on for ever.
 std::size_t Polyline::piece(double x) const {
@@ -84,6 +90,14 @@ double StressCurve::slope(double strain, double largest) const {
 
 double StressCurve::branch_slope(double strain, double largest) const {
   return slope_by([](const Polyline& of, double x) { return of.chord_slope(x); }, strain, largest);
+}
+
+/// Pieces of the loading branch are 0, 1, …; those of the unloading branch −1, −2, …, the first up to the residual strain.
+int StressCurve::branch(double strain, bool grows, double largest) const {
+  const bool loads = strain >= largest - same_strain * (1 + largest) && grows;
+  if (unloading.empty() || loads || largest <= 0 || strain < 0) return loading.straight_piece(strain);
+  const double part = std::min(strain / largest, 1 - same_strain);
+  return part < unloading.points().front()[0] ? -1 : -2 - unloading.straight_piece(part);
 }
 
 StressCurve StressCurve::smoothed() const { return {loading.smoothed(), unloading.smoothed()}; }

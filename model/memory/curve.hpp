@@ -27,6 +27,9 @@ class Polyline {
   double slope(double x) const;
   double chord_slope(double x) const;  ///< between the points about x
 
+  /// Which of the pieces that join with a kink, from 0 on.
+  int straight_piece(double x) const { return slopes_.empty() ? static_cast<int>(piece(x)) : 0; }
+
   /// From the first point to x.
   double integral(double x) const;
 
@@ -57,6 +60,9 @@ struct StressCurve {
   /// dσ/dε of the branch on which the strain is [N/m], and that of the piece between two of its points.
   double slope(double strain, double largest) const;
   double branch_slope(double strain, double largest) const;
+
+  /// Where the strain is, and whether it grows: two that differ have a kink in between.
+  int branch(double strain, bool grows, double largest) const;
 
   StressCurve smoothed() const;
 

@@ -4,6 +4,14 @@
 #include <cmath>
 
 namespace drape::model {
+namespace {
+
+/// Rate of a strain that stands still but for errors of solvers [1/s], of curvatures [1/ms].
+constexpr double still = 1e-7;
+
+constexpr double same_stress = 1e-6;  ///< relative difference from the limit that they explain as well
+
+}  // namespace
 
 Stress CurveLaw::stress(double strain, double, double z) const {
   const double s = sign(strain), size = s * strain, largest = std::max(z, size);
@@ -26,6 +34,11 @@ double CurveLaw::branch_slope(double strain, double z) const {
   return curve_.branch_slope(size, std::max(z, size)) - linear_;
 }
 
+int CurveLaw::branch(double strain, double strain_rate, double z) const {
+  const double s = sign(strain);
+  return curve_.branch(s * strain, s * strain_rate > still, z);
+}
+
 double FrictionLaw::rate(double strain, double strain_rate, double z) const {
   return variable_slope(strain, strain_rate, z) * strain_rate;
 }
@@ -39,6 +52,12 @@ double JenkinLaw::variable_slope(double, double strain_rate, double z) const {
   return std::abs(z) >= limit() && z * strain_rate > 0 ? 0 : limit() / onset();
 }
 
+/// Slides to either side, or sticks.
+int JenkinLaw::branch(double, double strain_rate, double z) const {
+  const bool slides = std::abs(z) >= limit() * (1 - same_stress) && std::copysign(strain_rate, z * strain_rate) > still;
+  return !slides ? 0 : z < 0 ? -1 : 1;
+}
+
 double JenkinLaw::energy(double, double z) const { return 0.5 * z * z * onset() / limit(); }
 
 Stress DahlLaw::stress(double strain, double from, double z) const {
@@ -49,6 +68,8 @@ Stress DahlLaw::stress(double strain, double from, double z) const {
 double DahlLaw::variable_slope(double, double strain_rate, double z) const {
   return (limit() - (strain_rate < 0 ? -z : z)) / onset();
 }
+
+int DahlLaw::branch(double, double strain_rate, double) const { return strain_rate < -still ? -1 : 1; }
 
 /// ∫ F dε on the way to no stress.
 double DahlLaw::energy(double, double z) const {

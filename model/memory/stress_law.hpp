@@ -28,6 +28,10 @@ class StressLaw {
   /// What can be got back, by area.
   virtual double energy(double strain, double z) const = 0;
 
+  /// The branch on which a motion goes on from here: within one the stress is a smooth function of the strain, between two
+  /// there is a kink. Strains that stand still stay on theirs.
+  virtual int branch(double strain, double strain_rate, double z) const = 0;
+
   /// The stiffness that K takes: it changes from branch to branch.
   virtual double branch_slope(double strain, double z) const = 0;
 };
@@ -44,6 +48,7 @@ class CurveLaw final : public StressLaw {
   double rate(double strain, double strain_rate, double z) const override;
   double variable_slope(double, double, double) const override { return 0; }
   double energy(double strain, double z) const override;
+  int branch(double strain, double strain_rate, double z) const override;
   double branch_slope(double strain, double z) const override;
 
  private:
@@ -78,6 +83,7 @@ class JenkinLaw final : public FrictionLaw {
   Stress stress(double strain, double from, double z) const override;
   double variable_slope(double strain, double strain_rate, double z) const override;
   double energy(double strain, double z) const override;
+  int branch(double strain, double strain_rate, double z) const override;
 };
 
 class DahlLaw final : public FrictionLaw {
@@ -86,6 +92,7 @@ class DahlLaw final : public FrictionLaw {
   Stress stress(double strain, double from, double z) const override;
   double variable_slope(double strain, double strain_rate, double z) const override;
   double energy(double strain, double z) const override;
+  int branch(double strain, double strain_rate, double z) const override;
 };
 
 }  // namespace drape::model

@@ -24,6 +24,13 @@ class TermMemory {
                        MutableVariables dz) const = 0;
   virtual double energy(const solver::State& y, const Variables& z) const = 0;
 
+  /// Adds its branches, if it has any.
+  virtual void add_branches(const solver::State& /*y*/, const Variables& /*z*/, std::vector<int>& /*now*/) const {}
+  virtual double first_kink(double /*h*/, double /*from*/, const solver::State& /*y0*/, const Variables& /*z*/,
+                            const solver::State& /*y1*/) const {
+    return 1;
+  }
+
   /// How often its part of K has changed, and that part; the places of its entries never change.
   virtual std::int64_t stiffness_changes() const { return 0; }
   virtual void add_stiffness(std::vector<Eigen::Triplet<double>>& /*entries*/) const {}

@@ -2,17 +2,26 @@
 
 #include <algorithm>
 #include <limits>
+#include <memory>
+#include <utility>
 
 namespace drape::model {
 namespace {
 
 constexpr double pose_step = 1e-4;  ///< over the time of a reaction: of the times whose poses give velocities
 
+std::vector<Obstacle> parts_of(std::span<const ObstacleRule> rules) {
+  std::vector<Obstacle> all;
+  for (const ObstacleRule& rule : rules)
+    for (std::unique_ptr<const Shape>& part : rule.shape->parts()) all.emplace_back(rule, std::move(part));
+  return all;
+}
+
 }  // namespace
 
 Contacts::Contacts(std::span<const ObstacleRule> obstacles, const ContactRule& rule, double gravity, int particles,
                    solver::Counters& work)
-    : obstacles_(obstacles.begin(), obstacles.end()),
+    : obstacles_(parts_of(obstacles)),
       distance_(rule.distance),
       relaxation_(rule.relaxation),
       moment_(pose_step * rule.reaction_time),

@@ -16,7 +16,11 @@ Pose pose_of(const KeyFrame& frame) { return {frame.position, orientation(frame)
 
 }  // namespace
 
-Obstacle::Obstacle(const ObstacleRule& rule) : shape_(rule.shape->make()), motion_(rule.motion), friction_(rule.friction) {}
+std::vector<std::unique_ptr<const Shape>> ShapeRule::parts() const {
+  std::vector<std::unique_ptr<const Shape>> all;
+  all.push_back(make());
+  return all;
+}
 
 Pose Obstacle::pose(double t) const {
   const auto next = std::ranges::upper_bound(motion_, t, {}, &KeyFrame::t);

@@ -4,6 +4,7 @@
 #include <memory>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "model/obstacles/polygons.hpp"
@@ -48,6 +49,9 @@ class ShapeRule {
   /// Throws std::invalid_argument, naming the file, if a mesh cannot be read or is not closed.
   virtual std::unique_ptr<const Shape> make() const = 0;
 
+  /// Shapes whose union it is, each to be met for itself: a convex one is never tunnelled. Throws as make() does.
+  virtual std::vector<std::unique_ptr<const Shape>> parts() const;
+
   /// The surface in its own frame, for looking at; of a plane a square with the given side [m]. Throws as make() does.
   virtual Polygons surface(double plane_side) const = 0;
 };
@@ -79,7 +83,11 @@ struct ObstacleRule {
 class Obstacle {
  public:
   /// Throws as ShapeRule::make() does.
-  explicit Obstacle(const ObstacleRule& rule);
+  explicit Obstacle(const ObstacleRule& rule) : Obstacle(rule, rule.shape->make()) {}
+
+  /// One of its parts.
+  Obstacle(const ObstacleRule& rule, std::shared_ptr<const Shape> part)
+      : shape_(std::move(part)), motion_(rule.motion), friction_(rule.friction) {}
 
   Pose pose(double t) const;
   double friction() const { return friction_; }

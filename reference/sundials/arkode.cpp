@@ -43,7 +43,9 @@ class Arkode {
   const solver::State& advance(double t) {
     require(ARKStepSetStopTime(memory_.get(), t));
     double reached;
-    require(ARKStepEvolve(memory_.get(), t, y_.get(), &reached, ARK_NORMAL));
+    while (require(ARKStepEvolve(memory_.get(), t, y_.get(), &reached, ARK_NORMAL)) == ARK_ROOT_RETURN &&
+           !same_time(reached, t))
+      restart(reached, t);
     return state(y_.get());
   }
 
@@ -56,11 +58,21 @@ class Arkode {
  private:
   void set_newton(Implicit implicit, const SolveOptions& options);
   void set_steps(const Tuning& tuning);
+  void set_control(const SolveOptions& options);
 
-  void require(int flag, FlagName flag_name = ARKStepGetReturnFlagName) const {
+  /// Behind a kink stages are not predicted from before it.
+  void restart(double t, double stop) {
+    ++problem_.ode.ode().work->counter("arkode/restarts", "kinks of forces at which ARKODE began again");
+    problem_.begin_part(state(y_.get()));
+    require(ARKStepReset(memory_.get(), t, y_.get()));
+    require(ARKStepSetStopTime(memory_.get(), stop));
+  }
+
+  int require(int flag, FlagName flag_name = ARKStepGetReturnFlagName) const {
     double reached = 0;
     ARKStepGetCurrentTime(memory_.get(), &reached);
     session_.require(flag, flag_name, reached);
+    return flag;
   }
 
   Session session_;
@@ -94,8 +106,14 @@ Arkode::Arkode(const FirstOrderOde& ode, Implicit implicit, double t0, double en
   if (options.tuning.step > 0)
     set_steps(options.tuning);
   else
-    require(ARKStepSetOrder(arkode, options.max_order));
+    set_control(options);
   if (implicit != Implicit::nothing) set_newton(implicit, options);
+}
+
+/// Steps that follow the error end at kinks.
+void Arkode::set_control(const SolveOptions& options) {
+  require(ARKStepSetOrder(memory_.get(), options.max_order));
+  require(ARKStepRootInit(memory_.get(), problem_.begin_part(problem_.ode.initial()), FirstOrderProblem::roots));
 }
 
 /// Lagrange's interpolant of states predicts stages: Hermite's would need forces at the ends of steps.

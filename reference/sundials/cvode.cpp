@@ -20,7 +20,8 @@ class Cvode {
   /// y at time t, which must not be before that of the last call.
   const solver::State& advance(double t) {
     double reached;
-    require(CVode(memory_.get(), t, y_.get(), &reached, CV_NORMAL));
+    while (require(CVode(memory_.get(), t, y_.get(), &reached, CV_NORMAL)) == CV_ROOT_RETURN && !same_time(reached, t))
+      restart(reached);
     return state(y_.get());
   }
 
@@ -35,10 +36,20 @@ class Cvode {
  private:
   void set_newton(const SolveOptions& options);
 
-  void require(int flag, FlagName flag_name = CVodeGetReturnFlagName) const {
+  /// Behind a kink the formulas begin with the first order: their polynomials do not reach across.
+  void restart(double t) {
+    solver::Counters& work = *problem_.ode.ode().work;
+    count_work(work);  // CVODE counts from zero again
+    ++work.counter("cvode/restarts", "kinks of forces at which CVODE began again");
+    problem_.begin_part(state(y_.get()));
+    require(CVodeReInit(memory_.get(), t, y_.get()));
+  }
+
+  int require(int flag, FlagName flag_name = CVodeGetReturnFlagName) const {
     double reached = 0;
     CVodeGetCurrentTime(memory_.get(), &reached);
     session_.require(flag, flag_name, reached);
+    return flag;
   }
 
   Session session_;
@@ -63,6 +74,7 @@ Cvode::Cvode(const FirstOrderOde& ode, int formulas, double t0, double end, cons
   require(CVodeSetMaxNumSteps(cvode, options.max_steps));
   require(CVodeSetStopTime(cvode, end));
   require(CVodeSetMaxOrd(cvode, options.max_order));
+  require(CVodeRootInit(cvode, problem_.begin_part(ode.initial()), FirstOrderProblem::roots));
   if (options.tuning.nonlinear > 0) require(CVodeSetNonlinConvCoef(cvode, options.tuning.nonlinear));
   if (options.tuning.max_iterations > 0) require(CVodeSetMaxNonlinIters(cvode, options.tuning.max_iterations));
   if (formulas == CV_BDF) {

@@ -39,6 +39,22 @@ struct FirstOrderProblem {
   const FirstOrderOde& ode;
   Session& session;
   std::optional<FirstOrderNewton> newton = {};
+  std::vector<int> branches = {}, branches_now = {};  ///< of laws with kinks: of this part of the motion; scratch
+
+  /// A smooth part of the motion begins. Returns the number of roots(): one if forces have kinks.
+  int begin_part(const solver::State& y) {
+    if (ode.ode().memory) ode.ode().memory->branches(y, branches);
+    return branches.empty() ? 0 : 1;
+  }
+
+  /// Changes its sign where the first branch of this part ends.
+  static int roots(realtype, N_Vector y, realtype* root, void* self) {
+    auto& problem = *static_cast<FirstOrderProblem*>(self);
+    return problem.session.guarded([&] {
+      problem.ode.ode().memory->branches(state(y), problem.branches_now);
+      root[0] = problem.branches_now == problem.branches ? 1 : -1;
+    });
+  }
 
   template <Part part>
   static int derivative(realtype t, N_Vector y, N_Vector dy, void* self) {

@@ -3,6 +3,7 @@
 #include <cvode/cvode.h>
 #include <sundials/sundials_context.h>
 
+#include <cmath>
 #include <initializer_list>
 #include <memory>
 #include <stdexcept>
@@ -88,6 +89,9 @@ class Session {
   bool threw_ = false;
   sundials::Context context_;
 };
+
+/// Whether no step of a solver leads from one to the other [s].
+inline bool same_time(double a, double b) { return std::abs(a - b) <= 1e-12 * std::abs(b); }
 
 /// A counter of a solver's own, added to ours.
 struct SolverCount {

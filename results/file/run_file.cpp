@@ -54,6 +54,11 @@ void write(const Handle& group, const auto& field, const solver::Vectors& values
   hdf5::write_numbers(group, field.name, values.data(), {rows, 3}, field.unit, field.description);
 }
 
+void write(const Handle& group, const auto& field, const Eigen::VectorXd& values) {
+  hdf5::write_numbers(group, field.name, values.data(), {static_cast<std::uint64_t>(values.size())}, field.unit,
+                      field.description);
+}
+
 void read(const Handle& group, const char* name, std::string& value) { value = hdf5::read_text(group, name); }
 
 void read(const Handle& group, const char* name, solver::Outcome& outcome) {
@@ -75,6 +80,11 @@ void read(const Handle& group, const char* name, solver::Vectors& values) {
   values = Eigen::Map<const solver::Vectors>(numbers.data(), static_cast<Eigen::Index>(numbers.size() / 3), 3);
 }
 
+void read(const Handle& group, const char* name, Eigen::VectorXd& values) {
+  const auto numbers = hdf5::read_numbers<double>(group, name);
+  values = Eigen::Map<const Eigen::VectorXd>(numbers.data(), static_cast<Eigen::Index>(numbers.size()));
+}
+
 template <class Record>
 void write_fields(const Handle& group, const auto& fields, const Record& record) {
   for_each(fields, [&](const auto& field) { write(group, field, record.*field.member); });
@@ -85,6 +95,17 @@ Record read_fields(const Handle& group, const auto& fields) {
   Record record;
   for_each(fields, [&](const auto& field) { read(group, field.name, record.*field.member); });
   return record;
+}
+
+void write_state(const Handle& group, const solver::State& y) {
+  write_fields(group, state_fields, y);
+  if (y.z.size() > 0) write(group, memory_field, y.z);
+}
+
+solver::State read_state(const Handle& group) {
+  auto y = read_fields<solver::State>(group, state_fields);
+  if (hdf5::has(group, memory_field.name)) read(group, memory_field.name, y.z);
+  return y;
 }
 
 void write_steps(const Handle& group, const std::vector<StepRecord>& steps) {
@@ -134,7 +155,7 @@ void write_run(const Handle& runs, const std::string& name, const RunRecord& run
   for (const Parameter& p : run.parameters) hdf5::write_numbers(parameters, p.name, &p.value, {}, p.unit, p.description);
   const Handle work = hdf5::create_group(group, "work", "how often each kind of work was done");
   for (const WorkCount& w : run.work) hdf5::write_numbers(work, w.name, &w.count, {}, "1", w.description);
-  write_fields(hdf5::create_group(group, "final_state", "where the run ended"), state_fields, run.final_state);
+  write_state(hdf5::create_group(group, "final_state", "where the run ended"), run.final_state);
   if (run.error)
     write_fields(hdf5::create_group(group, "error", "distance of the final positions from a reference"), error_fields,
                  *run.error);
@@ -156,7 +177,7 @@ RunRecord read_run(const Handle& group) {
   const Handle work = hdf5::open_group(group, "work");
   for (const auto& [name, unit, description] : hdf5::datasets(work))
     run.work.push_back({name, description, hdf5::read_number<std::int64_t>(work, name)});
-  run.final_state = read_fields<solver::State>(hdf5::open_group(group, "final_state"), state_fields);
+  run.final_state = read_state(hdf5::open_group(group, "final_state"));
   if (hdf5::has(group, "error")) run.error = read_fields<ErrorRecord>(hdf5::open_group(group, "error"), error_fields);
   if (hdf5::has(group, "motion_error"))
     run.motion_error = read_fields<MotionErrorRecord>(hdf5::open_group(group, "motion_error"), motion_error_fields);

@@ -71,6 +71,10 @@ inline constexpr std::tuple state_fields{
     Field{"v", &solver::State::v, "m/s", "velocities, one row for each particle"},
 };
 
+/// Beside these where forces remember the motion.
+inline constexpr Field memory_field{"z", &solver::State::z, "1",
+                                    "internal variables of forces that remember the motion, in SI units"};
+
 /// Datasets of `trajectory`, with a frame for each of the times t; the states' frames are written under the names of
 /// state_fields.
 inline constexpr std::tuple trajectory_fields{

@@ -169,6 +169,8 @@ void check_state(Check& check, const std::string& group) {
   for_each(state_fields, [&]<class Value>(const Field<solver::State, Value>& field) {
     particles.see(fmt::format("{}/{}", group, field.name), member(check, group, field, static_cast<const Value*>(nullptr)));
   });
+  const std::string memory = fmt::format("{}/{}", group, memory_field.name);
+  if (check.find(memory) != nullptr) check.numbers(memory, "float64", 1, memory_field.unit);
 }
 
 /// A '/' in the name of a count makes groups.

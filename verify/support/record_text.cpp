@@ -25,7 +25,8 @@ std::string as_text(const results::RunRecord& run) {
   for (const auto& [t, h, updates, cg, kinetic, potential, contacts] : steps)
     text += fmt::format("{} {} {} {} {} {} {}\n", t, h, updates, cg, kinetic, potential, contacts);
   for (const auto& [name, description, count] : work) text += fmt::format("{} {} {}\n", name, description, count);
-  text += fmt::format("{}\n{}\n{}\n", times_ms, vectors_as_text(state.x), vectors_as_text(state.v));
+  text +=
+      fmt::format("{}\n{}\n{}\n{}\n", times_ms, vectors_as_text(state.x), vectors_as_text(state.v), fmt::join(state.z, " "));
   if (contact) {
     const auto& [clearance, rise, area, reference_area] = *contact;
     text += fmt::format("{} {} {} {}\n", clearance, rise, area, reference_area);

@@ -9,7 +9,7 @@
 /// The shapes: a file each defines one, this list and the table in shape_kinds.cpp name it.
 namespace drape::model::shapes {
 
-extern const ShapeKind plane, sphere, box, cylinder, mesh;
+extern const ShapeKind plane, sphere, box, cylinder, mannequin, mesh;
 
 /// For their rows.
 template <class Rule>

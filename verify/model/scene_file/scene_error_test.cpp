@@ -178,7 +178,7 @@ const std::vector<BadScene> bad_scenes = {
 
     {"obstacle_without_a_shape", "obstacles = [{radius = 1}]", "a.toml:2: obstacles = { radius = 1 }: expected 'shape' in every obstacle"},
     {"unknown_shape", "[[obstacles]]\nshape = 'cone'",
-     "a.toml:3: obstacles.shape = 'cone': expected one of \"plane\", \"sphere\", \"box\", \"cylinder\", \"mesh\""},
+     "a.toml:3: obstacles.shape = 'cone': expected one of \"plane\", \"sphere\", \"box\", \"cylinder\", \"mannequin\", \"mesh\""},
     {"obstacle_that_is_none", "obstacles = ['sphere']", "a.toml:2: obstacles = 'sphere': expected a table"},
     {"unknown_key_in_an_obstacle", "[[obstacles]]\nshape = 'plane'\nheigth = 1", "a.toml:4: obstacles.heigth = 1: expected no such key; "},
     {"key_of_another_shape", "[[obstacles]]\nshape = 'sphere'\nradius = 1\nheight = 2",
@@ -190,6 +190,8 @@ const std::vector<BadScene> bad_scenes = {
     {"mesh_without_file", "obstacles = [{shape = 'mesh'}]", "a.toml:2: obstacles = { shape = 'mesh' }: expected 'file' in every mesh"},
     {"flat_box", "obstacles = [{shape = 'box', size = [1, 0, 1]}]", "a.toml:2: obstacles.size = 0: expected a number above 0"},
     {"sphere_inside_out", "obstacles = [{shape = 'sphere', radius = -1}]", "a.toml:2: obstacles.radius = -1: expected a number above 0"},
+    {"arms_over_the_head", "obstacles = [{shape = 'mannequin', arms = 120}]",
+     "a.toml:2: obstacles.arms = 120: expected an angle with the vertical of at most 90 degrees"},
     {"negative_friction", "obstacles = [{shape = 'plane', friction = -1}]",
      "a.toml:2: obstacles.friction = -1: expected a number of at least 0"},
     {"position_and_motion", "obstacles = [{shape = 'plane', position = [0, 0, 1], motion = [{time = 0}]}]",
