@@ -142,9 +142,11 @@ OrdersOnScene compute_orders(const model::Scene& scene, double most_work, const 
     const bool high = method->order > 2;  // a few kinks cost a lower order nothing
     for (const bool events : {false, true}) {
       if (events && !(high && has_kinks(cloth))) continue;
+      constexpr double more_work = 16;  // a sheet has kinks by the hundred, and a step ends at each
       RunSpec spec = tight(scene, name);
       spec.options.ends_at_kinks = events;
-      auto curve = refine(spec, events ? name + ", events" : name, cloth, reference, most_work, checkpoint);
+      auto curve =
+          refine(spec, events ? name + ", events" : name, cloth, reference, (events ? more_work : 1) * most_work, checkpoint);
       fit_curve(curve, method->order);
       std::ranges::move(curve, std::back_inserter(runs));
     }

@@ -6,7 +6,7 @@
 namespace drape::model {
 namespace {
 
-/// Rate of a strain that stands still but for errors of solvers [1/s], of curvatures [1/ms].
+/// Rate of a strain that stands still except for errors of solvers [1/s], of curvatures [1/ms].
 constexpr double still = 1e-7;
 
 constexpr double same_stress = 1e-6;  ///< relative difference from the limit that they explain as well

@@ -85,7 +85,7 @@ class KinkedSwing {
     std::int64_t kinks, steps;
   };
 
-  /// After one period, by about so many steps.
+  /// After one period, by about this number of steps.
   Result run(const char* method, int steps, bool events) const {
     const Cloth cloth = model::compile(scene_);
     solver::State y = cloth.start;
