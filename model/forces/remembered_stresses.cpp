@@ -85,8 +85,8 @@ double RememberedStresses::first_kink(double h, double from, const State& y0, co
     now.clear();
     for (int e = 0; e < variables(); ++e) {
       const auto& [strain, law, stiff, passed, passed_z, slope] = elements_[e];
-      const double at = strain.value(y.x);
-      now.push_back(law->branch(at, strain.rate(y.x, y.v), law->carry(at, strain.value(y0.x), z[e])));
+      const double value = strain.value(y.x);
+      now.push_back(law->branch(value, strain.rate(y.x, y.v), law->carry(value, strain.value(y0.x), z[e])));
     }
   };
   if (from >= 1) return 1;

@@ -162,7 +162,7 @@ TEST(References, BeginAgainAtKinks) {
   m.damping = {0.05, 0.05};
   m.shear = 4;
   m.weft_curve = {Polyline({{0, 0}, {0.01, 0.4}, {0.2, 30}}), Polyline({{0, 0}, {0.5, 0.3}, {1, 1}})};
-  m.friction = {.law = model::FrictionKind::jenkin, .shear = 0.1, .shear_onset = 0.02};
+  m.friction = {.law = model::FrictionKind::jenkin, .shear = 0.1, .shear_onset = 0.02, .bend = {}};
   scene.sheet.gravity = {6, -4, -7};
   scene.pins = {{.where = "left edge", .particles = {}}};
   const Cloth cloth = model::compile(scene);

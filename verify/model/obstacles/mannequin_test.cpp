@@ -44,7 +44,9 @@ TEST(Mannequin, IsTheUnionOfItsParts) {
     for (const auto& part : parts) least = std::min(least, part->nearest(p).distance);
     const auto [distance, normal] = whole.nearest(p);
     EXPECT_EQ(distance, least);
-    if (distance > 0) EXPECT_NEAR(whole.nearest(p - distance * normal).distance, 0, 1e-14);
+    if (distance > 0) {
+      EXPECT_NEAR(whole.nearest(p - distance * normal).distance, 0, 1e-14);
+    }
   }
 }
 
