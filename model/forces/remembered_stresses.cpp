@@ -4,20 +4,11 @@
 #include <cmath>
 #include <utility>
 
+#include "solver/dense_output.hpp"
+
 namespace drape::model {
 
 using solver::State;
-
-namespace {
-
-/// The part s of the way from y0 to y1 in h: Hermite's cubic.
-void go_along(double h, const State& y0, const State& y1, double s, State& y) {
-  const double r = 1 - s;
-  y.x = r * r * ((1 + 2 * s) * y0.x + s * h * y0.v) + s * s * ((3 - 2 * s) * y1.x - r * h * y1.v);
-  y.v = (6 * s * r / h) * (y1.x - y0.x) + r * (1 - 3 * s) * y0.v + s * (3 * s - 2) * y1.v;
-}
-
-}  // namespace
 
 void RememberedStresses::add(const Strain& strain, std::shared_ptr<const StressLaw> law, bool stiff) {
   elements_.push_back({strain, std::move(law), stiff});
@@ -78,27 +69,23 @@ void RememberedStresses::add_branches(const State& y, const Variables& z, std::v
 
 double RememberedStresses::first_kink(double h, double from, const State& y0, const Variables& z, const State& y1) const {
   constexpr double precision = 1e-9;
-  State y;
-  std::vector<int> now, before;
-  const auto find_branches = [&](double part) {
-    go_along(h, y0, y1, part, y);
-    now.clear();
+  if (from >= 1) return 1;
+  const auto branches_at = [&](double part) {
+    const State y = solver::state_within(part * h, 0, y0, h, y1);
+    std::vector<int> now;
     for (int e = 0; e < variables(); ++e) {
       const auto& [strain, law, stiff, passed, passed_z, slope] = elements_[e];
       const double value = strain.value(y.x);
       now.push_back(law->branch(value, strain.rate(y.x, y.v), law->carry(value, strain.value(y0.x), z[e])));
     }
+    return now;
   };
-  if (from >= 1) return 1;
-  find_branches(from);
-  before = now;
-  find_branches(1);
-  if (now == before) return 1;
+  const std::vector<int> before = branches_at(from);
+  if (branches_at(1) == before) return 1;
   double low = from, high = 1;
   while (high - low > precision) {
     const double middle = 0.5 * (low + high);
-    find_branches(middle);
-    (now == before ? low : high) = middle;
+    (branches_at(middle) == before ? low : high) = middle;
   }
   return high;
 }
