@@ -134,14 +134,15 @@ OrdersOnScene compute_orders(const model::Scene& scene, double most_work, const 
   References references(SweepOptions().agreement, {.say = say}, 1e-12);  // the more of a curve is resolved
   const reference::Reference reference = references(scene, cloth);
   checkpoint.advance();
+  const bool kinks = has_kinks(cloth);
   std::vector<RefinedRun> runs;
   for (const solver::Method* method : methods) {
     if (method->needs_energies && !cloth.plan.without_energy.empty()) continue;
     checkpoint.show(fmt::format("{} on {}", method->name, scene.name));
     const std::string name(method->name);
-    const bool high = method->order > 2;  // a few kinks cost a lower order nothing
+    const bool ends_at_kinks = kinks && method->order > 2;  // a few kinks cost a lower order nothing
     for (const bool events : {false, true}) {
-      if (events && !(high && has_kinks(cloth))) continue;
+      if (events && !ends_at_kinks) continue;
       constexpr double more_work = 16;  // a sheet has kinks by the hundred, and a step ends at each
       RunSpec spec = tight(scene, name);
       spec.options.ends_at_kinks = events;

@@ -17,44 +17,37 @@ void ClothMemory::add(std::shared_ptr<TermMemory> memory) {
 }
 
 void ClothMemory::begin(int order, double t, const State& y) {
-  for (const Part& part : parts_) part.memory->begin(order, t, y, y.z.segment(part.first, part.memory->variables()));
+  for (const Part& part : parts_) part.memory->begin(order, t, y, part.of(y.z));
 }
 
 void ClothMemory::pass(double t, const State& y) {
-  for (const Part& part : parts_) part.memory->pass(t, y, y.z.segment(part.first, part.memory->variables()));
+  for (const Part& part : parts_) part.memory->pass(t, y, part.of(y.z));
 }
 
 void ClothMemory::carry(double t, State& y) {
   ++updates_;
   y.z.resize(variables_);
-  for (const Part& part : parts_) part.memory->carry(t, y, y.z.segment(part.first, part.memory->variables()));
+  for (const Part& part : parts_) part.memory->carry(t, y, part.of(y.z));
 }
 
 void ClothMemory::rate(const State& y, Eigen::VectorXd& dz) const {
   dz.resize(variables_);
-  for (const Part& part : parts_) {
-    const int count = part.memory->variables();
-    part.memory->rate(y, y.z.segment(part.first, count), dz.segment(part.first, count));
-  }
+  for (const Part& part : parts_) part.memory->rate(y, part.of(y.z), part.of(dz));
 }
 
 void ClothMemory::respond(double gamma, const State& y, const Eigen::VectorXd& r, State& d) const {
   d.z.resize(variables_);
-  for (const Part& part : parts_) {
-    const int count = part.memory->variables();
-    part.memory->respond(gamma, y, r.segment(part.first, count), d, d.z.segment(part.first, count));
-  }
+  for (const Part& part : parts_) part.memory->respond(gamma, y, part.of(r), d, part.of(d.z));
 }
 
 void ClothMemory::branches(const State& y, std::vector<int>& now) const {
   now.clear();
-  for (const Part& part : parts_) part.memory->add_branches(y, y.z.segment(part.first, part.memory->variables()), now);
+  for (const Part& part : parts_) part.memory->add_branches(y, part.of(y.z), now);
 }
 
 double ClothMemory::first_kink(double h, double from, const State& y0, const State& y1) const {
   double first = 1;
-  for (const Part& part : parts_)
-    first = std::min(first, part.memory->first_kink(h, from, y0, y0.z.segment(part.first, part.memory->variables()), y1));
+  for (const Part& part : parts_) first = std::min(first, part.memory->first_kink(h, from, y0, part.of(y0.z), y1));
   return first;
 }
 
@@ -79,7 +72,7 @@ const solver::SparseMatrix& ClothMemory::stiffness() {
 double ClothMemory::energy(const State& y) const {
   if (y.z.size() == 0) return 0;  // a motion from elsewhere
   double energy = 0;
-  for (const Part& part : parts_) energy += part.memory->energy(y, y.z.segment(part.first, part.memory->variables()));
+  for (const Part& part : parts_) energy += part.memory->energy(y, part.of(y.z));
   return energy;
 }
 

@@ -34,6 +34,12 @@ class ClothMemory final : public solver::Memory {
   struct Part {
     std::shared_ptr<TermMemory> memory;
     int first;  ///< of its variables
+
+    /// Its variables in z or in a change of z.
+    template <class Vector>
+    auto of(Vector& z) const {
+      return z.segment(first, memory->variables());
+    }
   };
 
   std::vector<Part> parts_;
