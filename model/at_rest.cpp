@@ -10,8 +10,10 @@ namespace {
 /// By what needs no forces.
 bool is_driven(const Scene& scene) {
   const bool pulled = std::ranges::any_of(scene.pins, [](const PinRule& rule) { return !rule.velocity.isZero(0); });
-  const bool pushed = std::ranges::any_of(scene.obstacles, [](const ObstacleRule& rule) { return rule.motion.size() > 1; });
-  return pulled || pushed || !scene.sheet.gravity.isZero(0) || scene.sheet.wind.blows() || !scene.start.velocity.isZero(0);
+  const bool pushed = std::ranges::any_of(scene.obstacles, [](const ObstacleRule& rule) { return moves(rule); });
+  const bool thrown = std::ranges::any_of(scene.panels, [](const PanelRule& panel) { return !panel.start.velocity.isZero(0); });
+  return pulled || pushed || thrown || !scene.sheet.gravity.isZero(0) || scene.sheet.wind.blows() ||
+         !scene.start.velocity.isZero(0);
 }
 
 }  // namespace

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "model/garment.hpp"
 #include "model/obstacles/contacts.hpp"
-#include "model/scene.hpp"
 
 namespace drape::model {
 
@@ -21,8 +21,9 @@ struct Plan {
   int stiffness_entries = 0, damping_entries = 0;
 };
 
-/// A scene ready to be integrated.
+/// A scene ready to be integrated. Particles of the solver are the nodes of the garment.
 struct Cloth {
+  std::shared_ptr<const Garment> garment;
   solver::SplitOde ode;
   solver::State start;
   Plan plan;
@@ -37,8 +38,8 @@ struct Cloth {
 /// Compiles a scene: only forces with nonzero coefficients are built, and normals only if one of these asks for them.
 Cloth compile(const Scene& scene);
 
-/// Plan::without_energy of a sheet that is not compiled.
-std::vector<std::string> forces_without_energy(const Sheet& sheet);
+/// Plan::without_energy of a scene that is not compiled.
+std::vector<std::string> forces_without_energy(const Scene& scene);
 
 /// The plan in one line, for users.
 std::string to_string(const Plan& plan);

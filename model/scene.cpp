@@ -1,5 +1,6 @@
 #include "model/scene.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,6 +9,7 @@
 #include <string_view>
 #include <tuple>
 
+#include "model/garment.hpp"
 #include "model/obstacles/mesh_shape.hpp"
 #include "model/sheet/edges.hpp"
 #include "solver/base/registry.hpp"
@@ -52,6 +54,49 @@ void pleat(const Pleats& pleats, const Grid& grid, solver::Vectors& x) {
   }
 }
 
+/// Lengths of the half of an ellipse of half width 1 from −x on, by equidistant angles.
+std::vector<double> lengths_of_half_ellipse(double depth) {
+  constexpr int chords = 4096;
+  std::vector<double> passed{0};
+  Eigen::Vector2d last(-1, 0);
+  for (int k = 1; k <= chords; ++k) {
+    const double angle = std::numbers::pi * k / chords;
+    const Eigen::Vector2d point(-std::cos(angle), -depth * std::sin(angle));
+    passed.push_back(passed.back() + (point - last).norm());
+    last = point;
+  }
+  return passed;
+}
+
+/// Lays every line along u on the half of an ellipse around the z axis at its mean height.
+void wrap(double depth, const Grid& grid, solver::Vectors& x) {
+  const std::vector<double> passed = lengths_of_half_ellipse(depth);
+  for (int b = 0; b < grid.nv; ++b) {
+    std::vector<double> along{0};
+    double height = x(grid.index(0, b), 2);
+    for (int a = 1; a < grid.nu; ++a) {
+      along.push_back(along.back() + (x.row(grid.index(a, b)) - x.row(grid.index(a - 1, b))).norm());
+      height += x(grid.index(a, b), 2);
+    }
+    const double half_width = along.back() / passed.back();
+    for (int a = 0; a < grid.nu; ++a) {
+      const double wanted = along[static_cast<std::size_t>(a)] / half_width;
+      const auto next = std::clamp(std::ranges::upper_bound(passed, wanted), passed.begin() + 1, passed.end() - 1);
+      const double part = (wanted - *(next - 1)) / (*next - *(next - 1));
+      const double angle =
+          std::numbers::pi * (static_cast<double>(next - 1 - passed.begin()) + part) / static_cast<double>(passed.size() - 1);
+      x.row(grid.index(a, b)) << -half_width * std::cos(angle), -depth * half_width * std::sin(angle), height / grid.nu;
+    }
+  }
+}
+
+/// Turns about the origin, then moves.
+void move(const Start& start, solver::Vectors& x) {
+  if (const double degrees = start.rotation.norm(); degrees > 0)
+    x *= Eigen::AngleAxisd(degrees * std::numbers::pi / 180, start.rotation / degrees).toRotationMatrix().transpose();
+  if (!start.position.isZero(0)) x.rowwise() += start.position.transpose();
+}
+
 }  // namespace
 
 const std::vector<std::string>& pin_places() {
@@ -79,10 +124,17 @@ std::vector<int> pinned_particles(const Grid& grid, const PinRule& rule) {
   return found;
 }
 
+const Grid& pinned_grid(const Scene& scene, const PinRule& rule) {
+  return scene.panels.empty() ? scene.sheet.grid : find_panel(scene, rule.panel).grid;
+}
+
 std::vector<solver::Pin> pins(const Scene& scene) {
+  const Garment garment(scene);
   std::map<int, solver::Pin> merged;
-  for (const PinRule& rule : scene.pins)
-    for (const int i : pinned_particles(scene.sheet.grid, rule)) {
+  for (const PinRule& rule : scene.pins) {
+    const Garment::Panel& panel = garment.panel(rule.panel);
+    for (const int particle : pinned_particles(panel.sheet.grid, rule)) {
+      const int i = panel.node(particle);
       solver::Pin& pin = merged.try_emplace(i, solver::Pin{i, {false, false, false}}).first->second;
       for (int c = 0; c < 3; ++c) {
         if (!rule.directions[c]) continue;
@@ -90,26 +142,31 @@ std::vector<solver::Pin> pins(const Scene& scene) {
         pin.velocity[c] = rule.velocity[c];
       }
     }
-  for (const int i : scene.sheet.grid.outside()) merged[i] = {i, {true, true, true}};
+  }
+  for (const int i : garment.outside()) merged[i] = {i, {true, true, true}};
   std::vector<solver::Pin> all;
   for (const auto& [particle, pin] : merged) all.push_back(pin);
   return all;
 }
 
 Contacts contacts(const Scene& scene, solver::Counters& work) {
-  return {scene.obstacles, scene.contact, scene.sheet.gravity.norm(), scene.sheet.grid.particles(), work};
+  return {scene.obstacles, scene.contact, scene.sheet.gravity.norm(), Garment(scene).nodes(), work};
 }
 
-solver::State start(const Scene& scene) {
+solver::State start_of(const Grid& grid, const Start& start) {
   solver::State y;
-  y.x = scene.sheet.grid.parameters();
-  y.x.col(0) *= scene.start.stretch.weft;
-  y.x.col(1) *= scene.start.stretch.warp;
-  if (scene.start.pleats.count > 0) pleat(scene.start.pleats, scene.sheet.grid, y.x);
-  if (scene.start.plane == Plane::vertical) y.x.col(1).swap(y.x.col(2));
-  y.v = scene.start.velocity.transpose().replicate(y.x.rows(), 1);
+  y.x = grid.parameters();
+  y.x.col(0) *= start.stretch.weft;
+  y.x.col(1) *= start.stretch.warp;
+  if (start.pleats.count > 0) pleat(start.pleats, grid, y.x);
+  if (start.plane == Plane::vertical) y.x.col(1).swap(y.x.col(2));
+  if (start.wrap > 0) wrap(start.wrap, grid, y.x);
+  move(start, y.x);
+  y.v = start.velocity.transpose().replicate(y.x.rows(), 1);
   return y;
 }
+
+solver::State start(const Scene& scene) { return Garment(scene).start(); }
 
 std::optional<TrimmedSurface> trimmed_surface(const Scene& scene) {
   if (scene.trim.file.empty()) return {};
@@ -123,22 +180,38 @@ Scene without_trim(Scene scene) {
   return scene;
 }
 
-double size(const Scene& scene) { return std::max(scene.sheet.grid.size_u, scene.sheet.grid.size_v); }
+double size(const Scene& scene) {
+  double longest = 0;
+  const Garment garment(scene);
+  for (const Garment::Panel& panel : garment.panels())
+    longest = std::max({longest, panel.sheet.grid.size_u, panel.sheet.grid.size_v});
+  return longest;
+}
 
 double numerical_stiffness(const Scene& scene, double h) {
-  const Grid& grid = scene.sheet.grid;
-  const Material& material = scene.sheet.material;
-  const auto [lu, lv] = shortest_edges(grid);
-  return h * h / material.density * std::max(material.tension.weft / (lu * lu), material.tension.warp / (lv * lv));
+  double largest = 0;
+  const Garment garment(scene);
+  for (const Garment::Panel& panel : garment.panels()) {
+    const Material& material = panel.sheet.material;
+    const auto [lu, lv] = shortest_edges(panel.sheet.grid);
+    const double stiffness = std::max(material.tension.weft / (lu * lu), material.tension.warp / (lv * lv));
+    largest = std::max(largest, h * h / material.density * stiffness);
+  }
+  return largest;
 }
 
 double stiffness_to_damping(const Scene& scene, double h) {
-  const auto& [k, d] = std::tie(scene.sheet.material.tension, scene.sheet.material.damping);
   const auto ratio = [h](double modulus, double damping) {
     if (modulus == 0) return 0.0;
     return damping == 0 ? std::numeric_limits<double>::infinity() : h * modulus / damping;
   };
-  return std::max(ratio(k.weft, d.weft), ratio(k.warp, d.warp));
+  double largest = 0;
+  const Garment garment(scene);
+  for (const Garment::Panel& panel : garment.panels()) {
+    const auto& [k, d] = std::tie(panel.sheet.material.tension, panel.sheet.material.damping);
+    largest = std::max({largest, ratio(k.weft, d.weft), ratio(k.warp, d.warp)});
+  }
+  return largest;
 }
 
 }  // namespace drape::model

@@ -15,6 +15,7 @@ namespace drape::model {
 
 /// Prescribes the motion of some particles.
 struct PinRule {
+  std::string panel;                           ///< whose particles they are; empty: of the sheet
   std::string where;                           ///< a name from `pin_places()`, or empty
   std::vector<std::pair<int, int>> particles;  ///< (a, b) along u and v, if `where` is empty
   std::array<bool, 3> directions{true, true, true};
@@ -36,11 +37,17 @@ enum class RestShape {
   start,  ///< the shape that the sheet begins with, as far as bending knows: pleats stay
 };
 
-/// Where and how the sheet begins: flat or pleated, stretched, moving as a whole.
+/// Where and how a sheet begins: flat, pleated or wrapped, stretched, moved to its place, moving as a whole.
 struct Start {
   Plane plane = Plane::horizontal;
   WeftWarp stretch{1, 1};
   Pleats pleats;
+
+  /// Depth over half the width of the ellipse on whose half each line along the weft is laid, from −x by −y to x, as long as it
+  /// is; 0: they stay straight.
+  double wrap = 0;
+  Eigen::Vector3d rotation = Eigen::Vector3d::Zero();  ///< axis times angle [degrees], about the origin
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< of the origin [m]
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< [m/s]
 };
 
@@ -50,12 +57,38 @@ struct Trim {
   double scale = 1;  ///< metres for a unit of the file
 };
 
+/// A panel of a garment. What its sheet has besides is the same for all.
+struct PanelRule {
+  std::string name;
+  std::string fabric;  ///< as Scene::fabric
+  Grid grid;
+  Material material;
+  Start start;
+};
+
+enum class PanelSide { lower, right, upper, left };
+
+/// A side of a panel, or a part of it, that a seam joins.
+struct SeamSide {
+  std::string panel;
+  PanelSide side = PanelSide::left;
+  std::vector<int> ends;  ///< the first and the last particle along the side, as the seam goes; empty: all of them, upwards
+};
+
+/// Joins two sides particle by particle.
+struct SeamRule {
+  SeamSide one, other;
+  double ease = 0.02;  ///< part by which one may be longer than the other
+};
+
 /// A scene as users describe it. A value: copy it, change it, compile it.
 struct Scene {
   std::string name;
   std::string description;
   std::string fabric;  ///< the measured cloth that the material began with; empty if it has none
-  Sheet sheet;
+  Sheet sheet;         ///< with panels without grid
+  std::vector<PanelRule> panels;
+  std::vector<SeamRule> seams;
   std::vector<PinRule> pins;
   std::vector<ObstacleRule> obstacles;
   ContactRule contact;
@@ -71,7 +104,10 @@ const std::vector<std::string>& pin_places();
 /// The particles that a rule names.
 std::vector<int> pinned_particles(const Grid& grid, const PinRule& rule);
 
-/// The pins of a scene, at most one for a particle. Later rules win where directions overlap. What a cut leaves outside is
+/// The grid whose particles a rule names. Throws std::invalid_argument if there is no such panel.
+const Grid& pinned_grid(const Scene& scene, const PinRule& rule);
+
+/// The pins of a scene, at most one for a node. Later rules win where directions overlap. What a cut leaves outside is
 /// pinned where it is.
 std::vector<solver::Pin> pins(const Scene& scene);
 
@@ -81,6 +117,9 @@ Contacts contacts(const Scene& scene, solver::Counters& work);
 /// The state at t = 0 without prescribed velocities.
 solver::State start(const Scene& scene);
 
+/// The same of one sheet.
+solver::State start_of(const Grid& grid, const Start& start);
+
 /// The mesh that is drawn in the place of the grid, if there is one. Throws std::invalid_argument as read_mesh and
 /// TrimmedSurface do.
 std::optional<TrimmedSurface> trimmed_surface(const Scene& scene);
@@ -88,13 +127,14 @@ std::optional<TrimmedSurface> trimmed_surface(const Scene& scene);
 /// The scene without what changes no motion.
 Scene without_trim(Scene scene);
 
-/// Length by which errors are divided: the longer side, of a panel that of the box around its particles [m].
+/// Length by which errors are divided: the longer side, of a curved panel that of the box around its particles, of panels the
+/// longest [m].
 double size(const Scene& scene);
 
-/// Numerical stiffness ν_h = h² k/(ρ l²), the larger of weft and warp [Etzmuß 2002, 3.4.4].
+/// Numerical stiffness ν_h = h² k/(ρ l²), the largest of panels, weft and warp [Etzmuß 2002, 3.4.4].
 double numerical_stiffness(const Scene& scene, double h);
 
-/// h k/d, the larger of weft and warp; infinite without damping, 0 without tension.
+/// h k/d, the largest of panels, weft and warp; infinite without damping, 0 without tension.
 double stiffness_to_damping(const Scene& scene, double h);
 
 }  // namespace drape::model

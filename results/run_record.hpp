@@ -60,6 +60,7 @@ enum class Constraint : int { free, pinned, in_contact, no_cloth };
 /// corners (a, b), (a + 1, b), (a + 1, b + 1), (a, b + 1).
 struct TrajectoryRecord {
   int nu = 0, nv = 0;                        ///< particles along u (weft) and v (warp); 1: a chain
+  std::vector<std::array<int, 2>> panels;    ///< their nu and nv, if there are several, one after the other; then nv = 1
   std::vector<double> times;                 ///< F, ascending, from the start on [s]
   std::vector<solver::State> states;         ///< F
   std::vector<Eigen::VectorXd> stretch;      ///< F × N: mean strain of the edges that meet in a particle

@@ -56,7 +56,7 @@ std::string for_obstacles() { return names_of(solver::methods(), std::mem_fn(&so
 
 /// The elastic forces without a mean force that keep the method from the scene; empty if none does.
 std::string in_the_way(const solver::Method& method, const model::Scene& scene) {
-  return method.needs_energies ? fmt::format("{}", fmt::join(model::forces_without_energy(scene.sheet), ", ")) : "";
+  return method.needs_energies ? fmt::format("{}", fmt::join(model::forces_without_energy(scene), ", ")) : "";
 }
 
 /// "all" is every method that the scene is for, with the chosen stage and linear solvers.

@@ -70,15 +70,27 @@ export function colourAt(share) {
 const noCloth = 3;  // the constraint of particles outside of a cut
 
 /** Two triangles for every cell whose corners are in the cloth; none for a chain. */
-function cellTriangles({nu, nv, constraint}) {
+function cellTriangles({panels, constraint}) {
   const triangles = [];
-  for (let b = 0; b + 1 < nv; ++b)
-    for (let a = 0; a + 1 < nu; ++a) {
-      const i = a + nu * b;
-      if ([i, i + 1, i + nu, i + nu + 1].some((corner) => constraint[corner] === noCloth)) continue;
-      triangles.push(i, i + 1, i + nu + 1, i, i + nu + 1, i + nu);
-    }
+  let first = 0;
+  for (const [nu, nv] of panels) {
+    for (let b = 0; b + 1 < nv; ++b)
+      for (let a = 0; a + 1 < nu; ++a) {
+        const i = first + a + nu * b;
+        if ([i, i + 1, i + nu, i + nu + 1].some((corner) => constraint[corner] === noCloth)) continue;
+        triangles.push(i, i + 1, i + nu + 1, i, i + nu + 1, i + nu);
+      }
+    first += nu * nv;
+  }
   return triangles;
+}
+
+/** What a particle is called: "particle (a, b)", of several panels with its panel, counted from 1. */
+export function particleName({panels}, i) {
+  let panel = 0;
+  for (; i >= panels[panel][0] * panels[panel][1]; ++panel) i -= panels[panel][0] * panels[panel][1];
+  const [nu] = panels[panel], place = `particle (${i % nu}, ${Math.floor(i / nu)})`;
+  return panels.length > 1 ? `${place} of panel ${panel + 1}` : place;
 }
 
 /** The geometry of a surface, made once: runs share it. */
@@ -173,7 +185,7 @@ export const hasMarks = (motion, mark) => motion.constraint.includes(mark.kind);
 
 /** The sheet, or the line of a chain, with its mesh. */
 function makeCloth(motion, geometry) {
-  const chain = motion.nu === 1 || motion.nv === 1;
+  const chain = motion.panels.every(([nu, nv]) => nu === 1 || nv === 1);
   if (!chain) geometry.setIndex(cellTriangles(motion));
   const cloth = chain ?
       new THREE.Line(geometry, new THREE.LineBasicMaterial({vertexColors: THREE.VertexColors})) :

@@ -55,12 +55,11 @@ std::string packed(const std::vector<Number>& numbers) {
   return base64(std::as_bytes(std::span(numbers)));
 }
 
-Json page_surface(const model::ObstacleRule& rule, double plane_side) {
-  const model::Polygons polygons = rule.shape->surface(plane_side);
+Json page_surface(const model::Polygons& polygons, bool smooth) {
   std::vector<float> places;
   for (const Eigen::Vector3d& vertex : polygons.vertices)
     for (const double x : vertex) places.push_back(static_cast<float>(x));
-  return {{"vertices", packed(places)}, {"triangles", packed(triangles(polygons))}, {"smooth", rule.kind->smooth}};
+  return {{"vertices", packed(places)}, {"triangles", packed(triangles(polygons))}, {"smooth", smooth}};
 }
 
 std::size_t index_of(Json surface, Json& surfaces) {
@@ -72,7 +71,7 @@ std::size_t index_of(Json surface, Json& surfaces) {
 
 std::string packed_poses(const model::ObstacleRule& rule, const model::Obstacle& obstacle, const std::vector<double>& times) {
   std::vector<float> numbers;
-  for (std::size_t k = 0; k < (rule.motion.size() > 1 ? times.size() : 1); ++k) {
+  for (std::size_t k = 0; k < (moves(rule) ? times.size() : 1); ++k) {
     const model::Pose pose = obstacle.pose(times[k]);
     for (const double x : pose.position) numbers.push_back(static_cast<float>(x));
     for (const double q : pose.rotation.coeffs()) numbers.push_back(static_cast<float>(q));
@@ -92,8 +91,17 @@ Json drawn_obstacles(const Readable& read, const results::TrajectoryRecord& traj
   Json drawn = Json::array();
   for (std::size_t k = 0; k < read.scene.obstacles.size(); ++k) {
     const model::ObstacleRule& rule = read.scene.obstacles[k];
-    drawn.push_back({{"surface", index_of(page_surface(rule, 4 * model::size(read.scene)), surfaces)},
-                     {"poses", packed_poses(rule, model::Obstacle(rule), trajectory.times)}});
+    const double plane_side = 4 * model::size(read.scene);
+    const auto draw = [&](const model::Polygons& surface, const model::Obstacle& obstacle) {
+      drawn.push_back({{"surface", index_of(page_surface(surface, rule.kind->smooth), surfaces)},
+                       {"poses", packed_poses(rule, obstacle, trajectory.times)}});
+    };
+    if (!rule.shape->moves()) {
+      draw(rule.shape->surface(plane_side), model::Obstacle(rule));
+      continue;
+    }
+    const std::vector<model::Obstacle> parts = parts_of(rule);
+    for (std::size_t part = 0; part < parts.size(); ++part) draw(rule.shape->surface_of_part(part, plane_side), parts[part]);
   }
   return drawn;
 }

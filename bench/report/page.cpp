@@ -106,6 +106,7 @@ Json page_trajectory(const results::RunRecord& run, Json& surfaces) {
   const results::TrajectoryRecord& trajectory = *run.trajectory;
   return {{"nu", trajectory.nu},
           {"nv", trajectory.nv},
+          {"panels", trajectory.panels.empty() ? Json{{trajectory.nu, trajectory.nv}} : Json(trajectory.panels)},
           {"times", trajectory.times},
           {"positions", packed_positions(trajectory.states)},
           {"constraint", packed_constraints(trajectory.constraint)},

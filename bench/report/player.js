@@ -2,7 +2,7 @@
 
 import {commandLine, element, files, groupBy, shortNumber, unique} from "./data.js";
 import {bounds, colourAt, colourScale, constraints, constraintsAt, distances, hasMarks, makeView} from "./motion.js";
-import {markPicture, placeMarks, placeObstacle, positionsAt, rootMeanSquare, runLabel, viridis} from "./motion.js";
+import {markPicture, particleName, placeMarks, placeObstacle, positionsAt, rootMeanSquare, runLabel, viridis} from "./motion.js";
 import {along, axis, baseLayout, labelled, lineStyle, logTicks, style, timeAxis} from "./plots.js";
 import {comparedRuns} from "./run_figures.js";
 
@@ -79,10 +79,10 @@ function hover(player, view, event) {
   if (!hit) return void (view.canvas.title = "");
   const {array} = view.geometry.attributes.position;
   const far = (i) => hit.point.distanceToSquared(new THREE.Vector3(...array.subarray(3 * i, 3 * i + 3)));
-  const i = [hit.face.a, hit.face.b, hit.face.c].sort((p, q) => far(p) - far(q))[0], {nu} = view.motion;
+  const i = [hit.face.a, hit.face.b, hit.face.c].sort((p, q) => far(p) - far(q))[0];
   const place = [...array.subarray(3 * i, 3 * i + 3)].map((x) => x.toFixed(4)).join(", ");
   const constrained = constraints.find(({kind}) => kind === constraintsAt(view.motion, player.t)[i]);
-  view.canvas.title = view.says.textContent = `particle (${i % nu}, ${Math.floor(i / nu)})${
+  view.canvas.title = view.says.textContent = `${particleName(view.motion, i)}${
       constrained ? `, ${constrained.name}` : ""}: (${place}) m, ${view.off[i].toExponential(2)} m off`;
 }
 
@@ -118,7 +118,7 @@ function mostAccurate(views) {
   return [...views].sort((a, b) => error(a) - error(b) || a.run.step - b.run.step)[0];
 }
 
-const alike = (a, b) => a.motion.nu === b.motion.nu && a.motion.nv === b.motion.nv;
+const alike = (a, b) => String(a.motion.panels) === String(b.motion.panels);
 
 function scaleElement(player) {
   const bar = element("div", {className: "scale", role: "img", "aria-label": "colours of distances"});

@@ -8,6 +8,7 @@
 #include <limits>
 #include <string>
 
+#include "model/garment.hpp"
 #include "model/scene_file/scene_file.hpp"
 
 namespace drape::bench {
@@ -48,12 +49,12 @@ double available_memory() {
 
 void require_memory(const model::Scene& scene) {
   constexpr double bytes_per_particle = 1000;  // measured: the least that any method takes, without a reference
-  const double particles = scene.sheet.grid.particles(), available = available_memory();
+  const double particles = model::Garment(scene).particles(), available = available_memory();
   if (particles * bytes_per_particle > available)
     throw model::SceneError(fmt::format(
-        "{}: grid.n = [{}, {}]: {:g} particles need at least {:.3g} GB, {:.3g} GB are available: expected at most {:.0f}",
-        scene.name, scene.sheet.grid.nu, scene.sheet.grid.nv, particles, particles * bytes_per_particle / 1e9, available / 1e9,
-        available / bytes_per_particle));
+        "{}: {}: {:g} particles need at least {:.3g} GB, {:.3g} GB are available: expected at most {:.0f}", scene.name,
+        scene.panels.empty() ? fmt::format("grid.n = [{}, {}]", scene.sheet.grid.nu, scene.sheet.grid.nv) : "panels", particles,
+        particles * bytes_per_particle / 1e9, available / 1e9, available / bytes_per_particle));
 }
 
 }  // namespace drape::bench

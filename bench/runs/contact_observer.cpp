@@ -37,7 +37,7 @@ std::vector<bool> in_contact(const model::Scene& scene, const model::Cloth& clot
 }
 
 double contact_area(const model::Scene& scene, const model::Cloth& cloth, double t, const solver::Vectors& x) {
-  const Eigen::VectorXd areas = scene.sheet.grid.cell_areas();
+  const Eigen::VectorXd areas = cloth.garment->areas();
   const std::vector<bool> touching = in_contact(scene, cloth, t, x);
   double area = 0;
   for (std::size_t i = 0; i < touching.size(); ++i)

@@ -20,18 +20,18 @@ State start_of(const model::Cloth& cloth) {
   return start;
 }
 
-Vectors weight_of(const model::Sheet& sheet) {
-  return sheet.material.density * sheet.grid.cell_areas() * sheet.gravity.transpose();
+double noise_of(const model::Garment& garment, const Vectors& weight, const Vectors& x) {
+  double noise = round_off * weight.cwiseProduct(x).cwiseAbs().sum();
+  for (const model::Garment::Panel& panel : garment.panels()) {
+    const model::WeftWarp& k = panel.sheet.material.tension;
+    noise += std::max(k.weft, k.warp) * strain_noise * strain_noise * panel.sheet.grid.cell_areas().sum();
+  }
+  return noise;
 }
 
-double noise_of(const model::Sheet& sheet, const Vectors& weight, const Vectors& x) {
-  const double k = std::max(sheet.material.tension.weft, sheet.material.tension.warp);
-  return k * strain_noise * strain_noise * sheet.grid.cell_areas().sum() + round_off * weight.cwiseProduct(x).cwiseAbs().sum();
-}
-
-/// What a sheet that falls freely has after a second, and that grows with the square of time [J/s²].
-double fall_of(const model::Sheet& sheet, const Vectors& weight) {
-  return 0.5 * sheet.gravity.norm() * weight.rowwise().norm().sum();
+/// What cloth that falls freely has after a second, and that grows with the square of time [J/s²].
+double fall_of(const Eigen::Vector3d& gravity, const Vectors& weight) {
+  return 0.5 * gravity.norm() * weight.rowwise().norm().sum();
 }
 
 }  // namespace
@@ -65,12 +65,12 @@ void EnergyGuard::GivenWork::go_on(double t, const State& y) {
 EnergyGuard::EnergyGuard(const model::Scene& scene, const model::Cloth& cloth)
     : cloth_(cloth),
       wind_(scene.sheet.wind),
-      areas_(scene.sheet.grid.cell_areas()),
-      weight_(weight_of(scene.sheet)),
+      areas_(cloth.garment->areas()),
+      weight_(cloth.garment->cloth_masses() * scene.sheet.gravity.transpose()),
       x_(cloth.start.x),
       start_(kinetic_and_elastic(0, start_of(cloth))),
-      noise_(noise_of(scene.sheet, weight_, x_)),
-      fall_(fall_of(scene.sheet, weight_)),
+      noise_(noise_of(*cloth.garment, weight_, x_)),
+      fall_(fall_of(scene.sheet.gravity, weight_)),
       end_(scene.end),
       most_given_(std::max(0.0, start_)),
       work_(cloth.given, start_of(cloth), !scene.obstacles.empty() && scene.contact.response == model::ResponseKind::reaction) {

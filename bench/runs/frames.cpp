@@ -9,7 +9,7 @@
 #include <fstream>
 #include <optional>
 
-#include "model/obstacles/surface.hpp"
+#include "model/garment.hpp"
 #include "solver/base/atomic_file.hpp"
 
 namespace drape::bench {
@@ -38,7 +38,7 @@ class Writer {
   Writer(const RunSpec& spec, const Frames& frames)
       : folder_(frames.folder / run_name(spec)),
         every_(frames.every),
-        grid_(spec.scene.sheet.grid),
+        garment_(spec.scene),
         trimmed_(model::trimmed_surface(spec.scene)) {
     base::create_folder(folder_);
     for (const model::ObstacleRule& rule : spec.scene.obstacles) obstacles_.emplace_back(rule, 4 * model::size(spec.scene));
@@ -49,7 +49,7 @@ class Writer {
     if (periods < due_) return;
     due_ = periods + 1;
     write(folder_ / fmt::format("sheet-{:04}.obj", frame_), t,
-          trimmed_ ? trimmed_->at(y.x) : model::sheet_polygons(grid_, y.x));
+          trimmed_ ? trimmed_->at(y.x) : model::garment_polygons(garment_, y.x));
     for (std::size_t k = 0; k < obstacles_.size(); ++k)
       write(folder_ / fmt::format("obstacle-{}-{:04}.obj", k, frame_), t, obstacles_[k].at(t));
     ++frame_;
@@ -58,7 +58,7 @@ class Writer {
  private:
   fs::path folder_;
   double every_;
-  model::Grid grid_;
+  model::Garment garment_;
   std::optional<model::TrimmedSurface> trimmed_;
   std::vector<model::PosedObstacle> obstacles_;
   double due_ = 0;

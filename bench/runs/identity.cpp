@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "model/garment.hpp"
 #include "model/scene_file/scene_file.hpp"
 #include "solver/base/hash.hpp"
 #include "solver/base/threads.hpp"
@@ -24,8 +25,7 @@ std::string identity(const RunSpec& spec, const SweepOptions& options) {
   const std::string errors = options.reference ? fmt::format("errors to {}", options.agreement) : "no errors";
   const std::string frames = options.frames_every ? fmt::format("\nframes every {} s", *options.frames_every) : "";
   return base::long_hash_text(fmt::format("{}\n{} {}\n{}{}{}", model::to_toml(spec.scene), spec.method->name, spec.step,
-                                          all_of(spec.options, base::threads_for(spec.scene.sheet.grid.particles())), errors,
-                                          frames));
+                                          all_of(spec.options, base::threads_for(model::nodes(spec.scene))), errors, frames));
 }
 
 std::string identity(const std::vector<Group>& groups, const SweepOptions& options) {

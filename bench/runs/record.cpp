@@ -14,6 +14,7 @@
 #include "bench/runs/energy_guard.hpp"
 #include "bench/runs/trajectory_observer.hpp"
 #include "model/at_rest.hpp"
+#include "model/garment.hpp"
 #include "model/scene_file/scene_file.hpp"
 #include "solver/base/printable.hpp"
 #include "solver/base/threads.hpp"
@@ -85,7 +86,7 @@ results::RunRecord describe(const RunSpec& spec) {
   run.linear_solver = spec.method->implicit() ? spec.options.linear_solver->name : "none";
   run.step = spec.step;
   run.until = spec.scene.end;
-  run.parameters = parameters(spec, spec.scene.sheet.grid.particles());
+  run.parameters = parameters(spec, model::nodes(spec.scene));
   run.numerical_stiffness = model::numerical_stiffness(spec.scene, spec.step);
   run.stiffness_to_damping = model::stiffness_to_damping(spec.scene, spec.step);
   return run;

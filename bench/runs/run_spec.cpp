@@ -96,7 +96,7 @@ void choose_method(RunSpec& spec, const std::string& name) {
 std::string reason_against(const solver::Method& method, const model::Scene& scene) {
   if (!scene.obstacles.empty() && !method.meets_obstacles) return "meets no obstacles";
   if (method.needs_energies)
-    if (const auto forces = model::forces_without_energy(scene.sheet); !forces.empty())
+    if (const auto forces = model::forces_without_energy(scene); !forces.empty())
       return fmt::format("needs mean forces of {}", fmt::join(forces, ", "));
   return "";
 }

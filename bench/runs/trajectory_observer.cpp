@@ -11,6 +11,17 @@
 namespace drape::bench {
 namespace {
 
+/// All edges, by particles of the garment.
+std::vector<model::Edge> edges_of(const model::Garment& garment) {
+  std::vector<model::Edge> all;
+  for (const model::Garment::Panel& panel : garment.panels())
+    for (model::Edge edge : model::edges(panel.sheet.grid)) {
+      edge.i += panel.first, edge.j += panel.first;
+      all.push_back(edge);
+    }
+  return all;
+}
+
 /// The mean strain of the edges that meet in each particle; 0 if none do.
 Eigen::VectorXd mean_strain(const std::vector<model::Edge>& edges, const solver::Vectors& x) {
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(x.rows()), count = sum;
@@ -21,6 +32,7 @@ Eigen::VectorXd mean_strain(const std::vector<model::Edge>& edges, const solver:
   return sum.cwiseQuotient(count.cwiseMax(1));
 }
 
+/// Of all nodes.
 std::vector<int> constraints(const model::Scene& scene, const model::Cloth& cloth, double t, const solver::Vectors& x) {
   std::vector<int> kinds(static_cast<std::size_t>(cloth.ode.particles()), int(results::Constraint::free));
   const std::vector<bool> touching = in_contact(scene, cloth, t, x);
@@ -28,7 +40,7 @@ std::vector<int> constraints(const model::Scene& scene, const model::Cloth& clot
     if (touching[i]) kinds[i] = int(results::Constraint::in_contact);
   for (const solver::Pin& pin : cloth.ode.pins)
     kinds[static_cast<std::size_t>(pin.particle)] = int(results::Constraint::pinned);
-  for (const int i : scene.sheet.grid.outside()) kinds[static_cast<std::size_t>(i)] = int(results::Constraint::no_cloth);
+  for (const int i : cloth.garment->outside()) kinds[static_cast<std::size_t>(i)] = int(results::Constraint::no_cloth);
   return kinds;
 }
 
@@ -58,15 +70,23 @@ void TrajectoryObserver::begin(const model::Scene& scene, const model::Cloth& cl
 }
 
 void TrajectoryObserver::finish() {
-  const model::Grid& grid = scene_->sheet.grid;
-  const std::vector<model::Edge> edges = model::edges(grid);
+  const model::Garment& garment = *cloth_->garment;
+  const std::vector<model::Edge> edges = edges_of(garment);
   results::TrajectoryRecord& record = record_.emplace(results::TrajectoryRecord{
-      .nu = grid.nu, .nv = grid.nv, .times = {0}, .states = {start_}, .stretch = {}, .constraint = {}});
+      .nu = garment.particles(), .nv = 1, .panels = {}, .times = {0}, .states = {}, .stretch = {}, .constraint = {}});
+  for (const model::Garment::Panel& panel : garment.panels())
+    record.panels.push_back({panel.sheet.grid.nu, panel.sheet.grid.nv});
+  if (record.panels.size() == 1) {
+    record.nu = record.panels[0][0], record.nv = record.panels[0][1];
+    record.panels.clear();
+  }
   record.times.insert(record.times.end(), times_.begin(), times_.begin() + std::ssize(output_->states));
-  record.states.insert(record.states.end(), output_->states.begin(), output_->states.end());
+  std::vector<solver::State> states{start_};
+  states.insert(states.end(), output_->states.begin(), output_->states.end());
   for (std::size_t k = 0; k < record.times.size(); ++k) {
+    record.constraint.push_back(garment.spread(constraints(*scene_, *cloth_, record.times[k], states[k].x)));
+    record.states.push_back({garment.spread(states[k].x), garment.spread(states[k].v), states[k].z});
     record.stretch.push_back(mean_strain(edges, record.states[k].x));
-    record.constraint.push_back(constraints(*scene_, *cloth_, record.times[k], record.states[k].x));
   }
 }
 

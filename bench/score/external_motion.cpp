@@ -153,6 +153,8 @@ std::vector<Eigen::Index> match(const Vectors& vertices, const Vectors& particle
 
 ExternalMotion read_external_motion(const std::vector<std::string>& files, std::optional<double> frame_time,
                                     const model::Scene& scene) {
+  if (!scene.panels.empty())
+    throw std::invalid_argument(fmt::format("{}: expected a scene of one sheet, not of panels", scene.name));
   check_choice(files, frame_time);
   const results::Motion motion = read(files, frame_time);
   ExternalMotion external{title(files), 0, motion.times, {}, motion.velocities.empty()};

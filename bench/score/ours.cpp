@@ -85,7 +85,7 @@ void check_methods(const std::vector<std::string>& methods, const model::Scene& 
     choose_method(cell, name);
     if (!scene.obstacles.empty() && !cell.method->meets_obstacles)
       throw std::invalid_argument(fmt::format("method '{}': expected one that meets obstacles, as the scene has some", name));
-    if (cell.method->needs_energies && !model::forces_without_energy(scene.sheet).empty())
+    if (cell.method->needs_energies && !model::forces_without_energy(scene).empty())
       throw std::invalid_argument(
           fmt::format("method '{}': expected elastic forces with mean forces, as not all of the scene", name));
   }

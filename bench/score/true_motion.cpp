@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "bench/runs/certified_reference.hpp"
 #include "reference/sundials/coordinates.hpp"
@@ -48,6 +49,8 @@ void require_known(const model::Scene& scene, const reference::Reference& refere
 
 TrueMotion true_motion(const model::Scene& scene, std::span<const double> times, double agreement,
                        const ReferenceWatch& watch) {
+  if (!scene.panels.empty())
+    throw std::invalid_argument(fmt::format("{}: expected a scene of one sheet, not of panels", scene.name));
   TrueMotion truth{scene, model::compile(scene), {}, 0, {}, {}, {}};
   References references(agreement, watch, 1e-10);  // nothing here tells the errors that will be judged by it
   reference::Reference reference = references(scene, truth.cloth, all_times(times, scene.end));

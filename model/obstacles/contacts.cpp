@@ -1,8 +1,8 @@
 #include "model/obstacles/contacts.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
-#include <memory>
 #include <utility>
 
 namespace drape::model {
@@ -10,10 +10,9 @@ namespace {
 
 constexpr double pose_step = 1e-4;  ///< over the time of a reaction: of the times whose poses give velocities
 
-std::vector<Obstacle> parts_of(std::span<const ObstacleRule> rules) {
+std::vector<Obstacle> all_parts(std::span<const ObstacleRule> rules) {
   std::vector<Obstacle> all;
-  for (const ObstacleRule& rule : rules)
-    for (std::unique_ptr<const Shape>& part : rule.shape->parts()) all.emplace_back(rule, std::move(part));
+  for (const ObstacleRule& rule : rules) std::ranges::move(parts_of(rule), std::back_inserter(all));
   return all;
 }
 
@@ -21,7 +20,7 @@ std::vector<Obstacle> parts_of(std::span<const ObstacleRule> rules) {
 
 Contacts::Contacts(std::span<const ObstacleRule> obstacles, const ContactRule& rule, double gravity, int particles,
                    solver::Counters& work)
-    : obstacles_(parts_of(obstacles)),
+    : obstacles_(all_parts(obstacles)),
       distance_(rule.distance),
       relaxation_(rule.relaxation),
       moment_(pose_step * rule.reaction_time),

@@ -31,6 +31,9 @@ struct Pose {
 
   Eigen::Vector3d to_world(const Eigen::Vector3d& p) const { return position + rotation * p; }
   Eigen::Vector3d to_body(const Eigen::Vector3d& x) const { return rotation.conjugate() * (x - position); }
+
+  /// The pose of what has `inner` in this body.
+  Pose operator*(const Pose& inner) const { return {to_world(inner.position), rotation * inner.rotation}; }
 };
 
 /// A pose at a time [s]. Between key frames positions are interpolated linearly and rotations at constant angular velocity;
@@ -54,6 +57,11 @@ class ShapeRule {
 
   /// The surface in its own frame, for looking at; of a plane a square with the given side [m]. Throws as make() does.
   virtual Polygons surface(double plane_side) const = 0;
+
+  /// Whether its parts move in its frame; then where one is at a time [s], which is at rest in its own, and its surface.
+  virtual bool moves() const { return false; }
+  virtual Pose pose_of_part(std::size_t /*part*/, double /*t*/) const { return {}; }
+  virtual Polygons surface_of_part(std::size_t /*part*/, double plane_side) const { return surface(plane_side); }
 };
 
 template <class Record>
@@ -83,11 +91,13 @@ struct ObstacleRule {
 class Obstacle {
  public:
   /// Throws as ShapeRule::make() does.
-  explicit Obstacle(const ObstacleRule& rule) : Obstacle(rule, rule.shape->make()) {}
+  explicit Obstacle(const ObstacleRule& rule) : Obstacle(rule, 0, rule.shape->make()) {}
 
   /// One of its parts.
-  Obstacle(const ObstacleRule& rule, std::shared_ptr<const Shape> part)
-      : shape_(std::move(part)), motion_(rule.motion), friction_(rule.friction) {}
+  Obstacle(const ObstacleRule& rule, std::size_t index, std::shared_ptr<const Shape> part)
+      : shape_(std::move(part)), motion_(rule.motion), friction_(rule.friction), index_(index) {
+    if (rule.shape->moves()) figure_ = rule.shape;
+  }
 
   Pose pose(double t) const;
   double friction() const { return friction_; }
@@ -99,6 +109,14 @@ class Obstacle {
   std::shared_ptr<const Shape> shape_;
   std::vector<KeyFrame> motion_;
   double friction_;
+  std::size_t index_;
+  std::shared_ptr<const ShapeRule> figure_;  ///< whose part it is; null if the parts do not move
 };
+
+/// All parts of an obstacle. Throws as ShapeRule::make() does.
+std::vector<Obstacle> parts_of(const ObstacleRule& rule);
+
+/// Whether it moves, as a whole or in itself.
+bool moves(const ObstacleRule& rule);
 
 }  // namespace drape::model

@@ -14,10 +14,25 @@ Polygons sheet_polygons(const Grid& grid, const solver::Vectors& x) {
   return polygons;
 }
 
+PosedObstacle::PosedObstacle(const ObstacleRule& rule, double plane_side) {
+  if (!rule.shape->moves()) {
+    parts_.push_back({Obstacle(rule), rule.shape->surface(plane_side)});
+    return;
+  }
+  for (Obstacle& part : parts_of(rule)) parts_.push_back({part, rule.shape->surface_of_part(parts_.size(), plane_side)});
+}
+
 Polygons PosedObstacle::at(double t) const {
-  Polygons posed = surface_;
-  const Pose pose = obstacle_.pose(t);
-  for (Eigen::Vector3d& vertex : posed.vertices) vertex = pose.to_world(vertex);
+  Polygons posed;
+  for (const auto& [obstacle, surface] : parts_) {
+    const Pose pose = obstacle.pose(t);
+    const int first = static_cast<int>(posed.vertices.size());
+    for (const Eigen::Vector3d& vertex : surface.vertices) posed.vertices.push_back(pose.to_world(vertex));
+    for (std::vector<int> face : surface.faces) {
+      for (int& corner : face) corner += first;
+      posed.faces.push_back(std::move(face));
+    }
+  }
   return posed;
 }
 

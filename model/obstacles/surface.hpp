@@ -11,14 +11,17 @@ Polygons sheet_polygons(const Grid& grid, const solver::Vectors& x);
 /// An obstacle with its surface, as ShapeRule has it.
 class PosedObstacle {
  public:
-  PosedObstacle(const ObstacleRule& rule, double plane_side) : obstacle_(rule), surface_(rule.shape->surface(plane_side)) {}
+  PosedObstacle(const ObstacleRule& rule, double plane_side);
 
   /// The surface where it is at a time [s].
   Polygons at(double t) const;
 
  private:
-  Obstacle obstacle_;
-  Polygons surface_;
+  struct Part {
+    Obstacle obstacle;
+    Polygons surface;
+  };
+  std::vector<Part> parts_;  ///< one unless they move
 };
 
 }  // namespace drape::model

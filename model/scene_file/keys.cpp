@@ -10,6 +10,7 @@
 #include "model/obstacles/mesh_shape.hpp"
 #include "model/scene_file/obstacle_keys.hpp"
 #include "model/scene_file/outline_keys.hpp"
+#include "model/scene_file/panel_keys.hpp"
 #include "model/scene_file/pin_keys.hpp"
 
 namespace drape::model {
@@ -36,13 +37,33 @@ std::vector<Value> rules(const Value& value) {
 }
 
 void read_pins(const Value& value, Scene& scene) {
-  for (const Value& pin : rules(value)) scene.pins.push_back(read_pin(pin, scene.sheet.grid));
+  for (const Value& pin : rules(value)) scene.pins.push_back(read_pin(pin, scene));
 }
 
 Data pins_data(const Scene& scene) {
   List pins;
-  for (const PinRule& pin : scene.pins) pins.emplace_back(entries_of(pin, scene.sheet.grid));
+  for (const PinRule& pin : scene.pins) pins.emplace_back(entries_of(pin, scene));
   return pins;
+}
+
+void read_panels(const Value& value, Scene& scene) {
+  for (const Value& panel : rules(value)) scene.panels.push_back(read_panel(panel, scene));
+}
+
+Data panels_data(const Scene& scene) {
+  List panels;
+  for (const PanelRule& panel : scene.panels) panels.emplace_back(entries_of(panel, scene));
+  return panels;
+}
+
+void read_seams(const Value& value, Scene& scene) {
+  for (const Value& seam : rules(value)) scene.seams.push_back(read_seam(seam));
+}
+
+Data seams_data(const Scene& scene) {
+  List seams;
+  for (const SeamRule& seam : scene.seams) seams.emplace_back(entries_of(seam));
+  return seams;
 }
 
 void read_obstacles(const Value& value, Scene& scene) {
@@ -415,7 +436,6 @@ std::span<const SceneKey> scene_key_table() {
       {"forces.air", "N s/m³", "c_w ρ_air: resistance of the air to motion across the sheet",
        in_sheet<&Sheet::air>, check::non_negative},
 
-      {"pins", "", "list of { where | particles | circle, directions, velocity }: prescribed motion", read_pins, pins_data},
       {"obstacles", "", of_obstacles, read_obstacles, obstacles_data},
 
       {"contact.distance", "m", "d: what is nearer to an obstacle than this is in its collision area",
@@ -432,6 +452,17 @@ std::span<const SceneKey> scene_key_table() {
       {"start.pleats", "", "[count, degrees]: waves along the weft without strain, and how steep they are at t = 0",
        read_pleats, pleats_data},
       {"start.velocity", "m/s", "velocity: [x, y, z] of all particles at t = 0", in_start<&Start::velocity>, check::number},
+
+      {"start.wrap", "1", "depth over width of an ellipse around the z axis: lines along the weft of a vertical sheet begin on its half at -y; 0: straight",
+       in_start<&Start::wrap>, check::non_negative},
+      {"start.rotation", "degrees", "axis times angle, about the origin, at t = 0", in_start<&Start::rotation>, check::number},
+      {"start.position", "m", "of the origin of the pattern at t = 0", in_start<&Start::position>, check::number},
+
+      {"panels", "", "list of { name, grid, material, start }: cloth of several panels, each with keys of these sections, which change those of the scene",
+       read_panels, panels_data},
+      {"seams", "", "list of { one, other, ease }: sides { panel, side, ends } whose particles are one; one may be longer by the part ease",
+       read_seams, seams_data},
+      {"pins", "", "list of { panel, where | particles | circle, directions, velocity }: prescribed motion", read_pins, pins_data},
 
       {"rest.shape", "", "\"flat\" or \"start\": bending is at rest in the shape at t = 0",
        at<&Scene::rest>, check::one_of<rest_shapes>},

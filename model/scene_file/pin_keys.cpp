@@ -11,21 +11,32 @@
 namespace drape::model {
 namespace {
 
-/// A pin with the grid whose particles it names.
-struct PinOfGrid {
-  const Grid& grid;
+/// A pin with the scene whose particles it names.
+struct PinOfScene {
+  const Scene& scene;
   PinRule pin = {};
+
+  const Grid& grid() const { return pinned_grid(scene, pin); }
 };
 
-void read_where(const Value& value, PinOfGrid& rule) {
+void read_pinned_panel(const Value& value, PinOfScene& rule) {
+  std::vector<std::string_view> names;
+  for (const PanelRule& panel : rule.scene.panels) names.push_back(panel.name);
+  if (names.empty()) value.fail("no panel, the scene has one sheet");
+  rule.pin.panel = names[value.one_of(names)];
+}
+
+Data pinned_panel_data(const PinOfScene& rule) { return rule.pin.panel.empty() ? Data() : rule.pin.panel; }
+
+void read_where(const Value& value, PinOfScene& rule) {
   const std::vector<std::string_view> names(pin_places().begin(), pin_places().end());
   rule.pin.where = names[value.one_of(names)];
 }
 
-Data where_data(const PinOfGrid& rule) { return rule.pin.where.empty() ? Data() : rule.pin.where; }
+Data where_data(const PinOfScene& rule) { return rule.pin.where.empty() ? Data() : rule.pin.where; }
 
-void read_particles(const Value& value, PinOfGrid& rule) {
-  const Grid& grid = rule.grid;
+void read_particles(const Value& value, PinOfScene& rule) {
+  const Grid& grid = rule.grid();
   for (const Value& pair : value.list()) {
     const std::vector<Value> ab = pair.list(2);
     const double a = ab[0].number(), b = ab[1].number();
@@ -35,24 +46,24 @@ void read_particles(const Value& value, PinOfGrid& rule) {
   }
 }
 
-Data particles_data(const PinOfGrid& rule) {
+Data particles_data(const PinOfScene& rule) {
   List pairs;
   for (const auto& [a, b] : rule.pin.particles) pairs.emplace_back(List{double(a), double(b)});
   return rule.pin.particles.empty() ? Data() : Data(pairs);
 }
 
-void read_circle(const Value& value, PinOfGrid& rule) {
+void read_circle(const Value& value, PinOfScene& rule) {
   rule.pin.circle = value.vector(&Value::number);
   if (!(rule.pin.circle[2] > 0)) value.fail("[x, y, radius] with a radius > 0");
-  if (pinned_particles(rule.grid, rule.pin).empty()) value.fail("a circle with particles of the grid inside");
+  if (pinned_particles(rule.grid(), rule.pin).empty()) value.fail("a circle with particles of the grid inside");
 }
 
-Data circle_data(const PinOfGrid& rule) {
+Data circle_data(const PinOfScene& rule) {
   const Eigen::Vector3d& circle = rule.pin.circle;
   return circle[2] > 0 ? Data(List{circle[0], circle[1], circle[2]}) : Data();
 }
 
-void read_directions(const Value& value, PinOfGrid& rule) {
+void read_directions(const Value& value, PinOfScene& rule) {
   const std::string text = value.text();
   rule.pin.directions = {};
   for (const char c : text) {
@@ -62,31 +73,33 @@ void read_directions(const Value& value, PinOfGrid& rule) {
   if (text.empty()) value.fail("some of the letters x, y and z");
 }
 
-Data directions_data(const PinOfGrid& rule) {
+Data directions_data(const PinOfScene& rule) {
   std::string text;
   for (int c = 0; c < 3; ++c)
     if (rule.pin.directions[c]) text += static_cast<char>('x' + c);
   return text;
 }
 
-constexpr Key<PinOfGrid> pin_keys[] = {
+constexpr Key<PinOfScene> pin_keys[] = {
+    {"panel", "", "the name of a panel", read_pinned_panel, pinned_panel_data},
     {"where", "", "the name of a place", read_where, where_data},
     {"particles", "", "[a, b] along u and v", read_particles, particles_data},
     {"circle", "m", "[x, y, radius] on the pattern: all particles inside", read_circle, circle_data},
     {"directions", "", "letters of x, y and z", read_directions, directions_data},
-    {"velocity", "m/s", "[x, y, z]", at<&PinOfGrid::pin, &PinRule::velocity>, check::number},
+    {"velocity", "m/s", "[x, y, z]", at<&PinOfScene::pin, &PinRule::velocity>, check::number},
 };
 
 }  // namespace
 
-PinRule read_pin(const Value& value, const Grid& grid) {
-  PinOfGrid rule{grid};
-  read_table<PinOfGrid>(value, "pin", pin_keys, rule);
+PinRule read_pin(const Value& value, const Scene& scene) {
+  PinOfScene rule{scene};
+  if (!scene.panels.empty() && !value.table().contains("panel")) value.fail("'panel' in every pin of a scene with panels");
+  read_table<PinOfScene>(value, "pin", pin_keys, rule);
   if (!rule.pin.where.empty() + !rule.pin.particles.empty() + (rule.pin.circle[2] > 0) != 1)
     value.fail("one of 'where', 'particles' and 'circle' in every pin");
   return std::move(rule.pin);
 }
 
-Entries entries_of(const PinRule& pin, const Grid& grid) { return entries_of<PinOfGrid>(pin_keys, {grid, pin}); }
+Entries entries_of(const PinRule& pin, const Scene& scene) { return entries_of<PinOfScene>(pin_keys, {scene, pin}); }
 
 }  // namespace drape::model

@@ -7,9 +7,9 @@
 namespace drape::model {
 
 /// A pin of a scene file that holds particles of a grid. Throws SceneError.
-PinRule read_pin(const Value& value, const Grid& grid);
+PinRule read_pin(const Value& value, const Scene& scene);
 
 /// Its entries.
-Entries entries_of(const PinRule& pin, const Grid& grid);
+Entries entries_of(const PinRule& pin, const Scene& scene);
 
 }  // namespace drape::model

@@ -10,8 +10,10 @@
 #include <utility>
 #include <variant>
 
+#include "model/garment.hpp"
 #include "model/scene_file/keys.hpp"
 #include "model/scene_file/outline_keys.hpp"
+#include "model/scene_file/panel_keys.hpp"
 #include "model/scene_file/toml_nesting.hpp"
 #include "solver/base/input_file.hpp"
 #include "solver/base/printable.hpp"
@@ -91,8 +93,8 @@ void check_known(const std::string& path, const std::string& where) {
   throw SceneError(fmt::format("{}: {}", where, base::unknown_name("key", path, choices)));
 }
 
-/// Rules that no single key can break.
-void check_together(const Scene& scene, const std::string& origin) {
+/// Rules that no single key of a sheet can break.
+void check_sheet(const Scene& scene, const std::string& origin) {
   const Material& m = scene.sheet.material;
   const Grid& grid = scene.sheet.grid;
   const auto fail = [&](std::string_view what) { throw SceneError(fmt::format("{}: {}", origin, what)); };
@@ -133,17 +135,50 @@ void check_together(const Scene& scene, const std::string& origin) {
   if (scene.sheet.wind.needs_normals() && (grid.nu < 2 || grid.nv < 2))
     fail("forces.wind: expected forces.drag = forces.lift, a chain has no normals");
   if (scene.sheet.air != 0 && (grid.nu < 2 || grid.nv < 2)) fail("forces.air: expected 0, a chain has no normals");
+  if (scene.start.wrap > 0 && (scene.start.plane != Plane::vertical || grid.nu < 2))
+    fail("start.wrap: expected start.plane = \"vertical\" and at least 2 particles along the weft, or 0");
+}
+
+void check_panels(const Scene& scene, const std::string& origin) {
+  constexpr double most = 1e7;
+  double particles = 0;
+  for (const PanelRule& panel : scene.panels) {
+    check_sheet(scene_of(panel, scene), fmt::format("{}: panel '{}'", origin, panel.name));
+    particles += panel.grid.particles();
+  }
+  if (particles > most) throw SceneError(fmt::format("{}: panels: expected at most ten million particles", origin));
+  if (!scene.trim.file.empty() && !scene.panels.empty())
+    throw SceneError(fmt::format("{}: trim.file: expected a scene without panels", origin));
+  if (scene.panels.empty() && !scene.seams.empty())
+    throw SceneError(fmt::format("{}: seams: expected panels, which they join", origin));
+  for (std::size_t k = 0; k < scene.seams.size(); ++k) {
+    Scene sewn = scene;
+    sewn.seams = {scene.seams[k]};
+    try {
+      Garment{sewn};
+    } catch (const std::invalid_argument& error) {
+      throw SceneError(fmt::format("{}: seams[{}]: {}", origin, k, error.what()));
+    }
+  }
+}
+
+/// Rules that no single key can break.
+void check_together(const Scene& scene, const std::string& origin) {
+  const auto fail = [&](std::string_view what) { throw SceneError(fmt::format("{}: {}", origin, what)); };
+  if (scene.panels.empty()) check_sheet(scene, origin);
+  check_panels(scene, origin);
+  const Garment garment(scene);
   try {
     trimmed_surface(scene);
   } catch (const std::invalid_argument& error) {
     fail(fmt::format("trim.file: {}", error.what()));
   }
   constexpr double most_compared = 1e8;  // a second
-  if (static_cast<double>(scene.pins.size()) * grid.particles() > most_compared)
+  if (static_cast<double>(scene.pins.size()) * garment.particles() > most_compared)
     fail(fmt::format("pins: expected at most {:g} on a grid of {} particles, not {}",
-                     std::floor(most_compared / grid.particles()), grid.particles(), scene.pins.size()));
+                     std::floor(most_compared / garment.particles()), garment.particles(), scene.pins.size()));
   const std::vector<solver::Pin> all = pins(scene);
-  if (std::ssize(all) == grid.particles() && std::ranges::all_of(all, &solver::Pin::all))
+  if (std::ssize(all) == garment.nodes() && std::ranges::all_of(all, &solver::Pin::all))
     fail("pins: expected at least one coordinate that is free to move");
 }
 

@@ -70,11 +70,32 @@ void read_member(const Handle& group, const char* name, const TrajectoryRecord& 
   for (std::size_t k = 0; k < count; ++k) assign(std::span(all).subspan(k * a_frame, a_frame), frames[k]);
 }
 
+/// Only of several panels.
+constexpr const char* panels_name = "panels";
+
+std::vector<std::array<int, 2>> read_panels(const Handle& group, int particles) {
+  std::vector<std::array<int, 2>> panels;
+  if (!hdf5::has(group, panels_name)) return panels;
+  const std::vector<int> numbers = hdf5::read_numbers<int>(group, panels_name);
+  std::int64_t sum = 0;
+  for (std::size_t k = 0; k + 1 < numbers.size(); k += 2) {
+    panels.push_back({numbers[k], numbers[k + 1]});
+    if (numbers[k] < 1 || numbers[k + 1] < 1) throw hdf5::Error("trajectory/panels must be at least 1");
+    sum += static_cast<std::int64_t>(numbers[k]) * numbers[k + 1];
+  }
+  if (sum != particles || numbers.size() % 2 != 0)
+    throw hdf5::Error(fmt::format("trajectory/panels: expected nu and nv of panels with {} particles together", particles));
+  return panels;
+}
+
 }  // namespace
 
 void write_trajectory(const Handle& run, const TrajectoryRecord& trajectory) {
   const Handle group = hdf5::create_group(run, "trajectory", "the motion, frame by frame");
   for_each(trajectory_fields, [&](const auto& field) { write_member(group, field, trajectory, trajectory.*field.member); });
+  if (!trajectory.panels.empty())
+    hdf5::write_numbers(group, panels_name, trajectory.panels.front().data(), {trajectory.panels.size(), 2}, "1",
+                        "nu and nv of each panel, whose particles follow one another");
   for_each(state_fields, [&](const auto& field) {
     std::vector<solver::Vectors> frames;
     for (const solver::State& state : trajectory.states) frames.push_back(state.*field.member);
@@ -86,6 +107,7 @@ TrajectoryRecord read_trajectory(const Handle& run) {
   const Handle group = hdf5::open_group(run, "trajectory");
   TrajectoryRecord trajectory;
   for_each(trajectory_fields, [&](const auto& field) { read_member(group, field.name, trajectory, trajectory.*field.member); });
+  trajectory.panels = read_panels(group, trajectory.nu * trajectory.nv);
   trajectory.states.resize(trajectory.times.size());
   for_each(state_fields, [&](const auto& field) {
     std::vector<solver::Vectors> frames;

@@ -60,26 +60,42 @@ class XdmfText {
   }
 
   void frame(const TrajectoryRecord& trajectory, const std::string& group, std::size_t k) {
-    add(R"(<Grid Name="sheet" GridType="Uniform"><Time Value="{}"/>)", trajectory.times[k]);
-    add(R"(<Topology TopologyType="3DSMesh" Dimensions="1 {} {}"/>)", trajectory.nv, trajectory.nu);
+    const std::string time = fmt::format(R"(<Time Value="{}"/>)", trajectory.times[k]);
+    if (trajectory.panels.empty()) return panel(trajectory, group, k, "sheet", time, 0, {trajectory.nu, trajectory.nv});
+    add(R"(<Grid Name="garment" GridType="Collection" CollectionType="Spatial">{})", time);
+    int first = 0;
+    for (const std::array<int, 2>& n : trajectory.panels) {
+      panel(trajectory, group, k, "panel", "", first, n);
+      first += n[0] * n[1];
+    }
+    add("</Grid>");
+  }
+
+  void panel(const TrajectoryRecord& trajectory, const std::string& group, std::size_t k, const char* name,
+             const std::string& time, int first, const std::array<int, 2>& n) {
+    add(R"(<Grid Name="{}" GridType="Uniform">{})", name, time);
+    add(R"(<Topology TopologyType="3DSMesh" Dimensions="1 {} {}"/>)", n[1], n[0]);
     add(R"(<Geometry GeometryType="XYZ">)");
-    numbers(trajectory, group, positions, k);
+    numbers(trajectory, group, positions, k, first, n[0] * n[1]);
     add("</Geometry>");
     for (const Attribute& shown : attributes) {
       add(R"(<Attribute Name="{}" AttributeType="{}" Center="Node">)", shown.name, shown.type);
-      numbers(trajectory, group, shown.numbers, k);
+      numbers(trajectory, group, shown.numbers, k, first, n[0] * n[1]);
       add("</Attribute>");
     }
     add("</Grid>");
   }
 
-  /// One frame of a dataset, chosen as `file:path|start:stride:count:shape`: the only way that ParaView's Xdmf3 reader knows.
-  void numbers(const TrajectoryRecord& trajectory, const std::string& group, const Numbers& what, std::size_t k) {
+  /// Some rows of one frame of a dataset, chosen as `file:path|start:stride:count:shape`: the only way that ParaView's Xdmf3
+  /// reader knows.
+  void numbers(const TrajectoryRecord& trajectory, const std::string& group, const Numbers& what, std::size_t k, int first,
+               int count) {
     const bool vector = what.components > 1;
-    const std::string frame = fmt::format("{}{}", trajectory.nu * trajectory.nv, vector ? " 3" : "");
-    const char *zeros = vector ? "0 0" : "0", *ones = vector ? "1 1 1" : "1 1";
-    add(R"(<DataItem Format="HDF" {} Dimensions="1 {}">{}:{}{}|{} {}:{}:1 {}:{} {}</DataItem>)", what.number, frame,
-        escaped(hdf5_name_), group, what.dataset, k, zeros, ones, frame, trajectory.times.size(), frame);
+    const auto rows = [&](int n) { return fmt::format("{}{}", n, vector ? " 3" : ""); };
+    const char *zero = vector ? " 0" : "", *ones = vector ? "1 1 1" : "1 1";
+    add(R"(<DataItem Format="HDF" {} Dimensions="1 {}">{}:{}{}|{} {}{}:{}:1 {}:{} {}</DataItem>)", what.number, rows(count),
+        escaped(hdf5_name_), group, what.dataset, k, first, zero, ones, rows(count), trajectory.times.size(),
+        rows(trajectory.nu * trajectory.nv));
   }
 
   template <class... Values>

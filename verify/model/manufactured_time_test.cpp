@@ -94,7 +94,9 @@ Measured in_time(const Problem& problem, const Method& method) {
 using TimeCase = std::tuple<std::string, NamedMaterial, Motion>;
 
 bool takes(const Method& method, const NamedMaterial& material) {
-  return !method.needs_energies || model::forces_without_energy({five_by_four(), material.material}).empty();
+  model::Scene scene;
+  scene.sheet = {five_by_four(), material.material};
+  return !method.needs_energies || model::forces_without_energy(scene).empty();
 }
 
 /// Every force alone in the most general motion, all together in every motion.

@@ -98,7 +98,7 @@ TEST(MeanForce, DoesNotExistOfAllForces) {
     const std::vector<std::string> names =
         row == std::end(without) ? std::vector<std::string>{} : std::vector<std::string>{row->second};
     EXPECT_EQ(cloth.ode.without_energy, names) << force.name;
-    EXPECT_EQ(model::forces_without_energy(scene_of(force, five_by_four()).sheet), names) << force.name;
+    EXPECT_EQ(model::forces_without_energy(scene_of(force, five_by_four())), names) << force.name;
     const auto integrator = [&] { Integrator(cloth.ode, solver::method("energy-momentum"), {}, cloth.start); };
     if (names.empty())
       EXPECT_NO_THROW(integrator()) << force.name;

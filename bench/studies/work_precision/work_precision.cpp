@@ -72,10 +72,11 @@ std::vector<StudiedScene> chosen_scenes() {
   return all;
 }
 
-/// And all other built-in scenes as they are, so that no ranking rests on a choice of scenes.
+/// And all other built-in scenes of one sheet as they are, so that no ranking rests on a choice of scenes.
 std::vector<StudiedScene> with_all_scenes(std::vector<StudiedScene> all) {
   for (const model::BuiltinScene& scene : model::builtin_scenes()) {
     const std::string name(scene.name);
+    if (!model::load_scene(name).panels.empty()) continue;
     if (std::ranges::find(all, name, [](const StudiedScene& one) { return one.scene.name; }) == all.end())
       all.push_back(studied(name, name, {}));
   }

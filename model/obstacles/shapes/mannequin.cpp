@@ -1,4 +1,5 @@
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -68,36 +69,55 @@ class RoundCone : public Shape {
   double slant_;  ///< sine of the angle of the cone
 };
 
-/// A figure for a height of 1.7 m, its soles at z = 0, that looks along −y.
+/// Which limb a part belongs to.
+enum class Limb { trunk, upper_arm, forearm, thigh, shank };
+
+/// A round cone of the standing figure with the limb that carries it: its side is −1 or 1, 0 of the trunk.
+struct BodyPart {
+  RoundCone cone;
+  Limb limb;
+  double side;
+};
+
+/// A turn about the axis x through a joint. Positive angles swing what hangs down forwards, to −y.
+Pose swing(const Vector3d& joint, double degrees) {
+  const Eigen::Quaterniond rotation(Eigen::AngleAxisd(-degrees * std::numbers::pi / 180, Vector3d::UnitX()));
+  return {joint - rotation * joint, rotation};
+}
+
+/// A figure for a height of 1.7 m, its soles at z = 0, that looks along −y and walks there.
 struct Mannequin : ShapeRule {
   static constexpr double drawn = 1.7;  ///< [m]
 
   double height = drawn;  ///< [m]
   double arms = 25;       ///< angle with the vertical [degrees]
+  double speed = 0;       ///< of walking [m/s]; 0: it stands
+  double walks_from = 0;  ///< the time at which it begins to walk [s]
 
-  std::vector<RoundCone> cones() const {
-    std::vector<RoundCone> all;
-    const double scale = height / drawn, angle = arms * std::numbers::pi / 180;
-    const auto add = [&](const Vector3d& from, double r_from, const Vector3d& to, double r_to) {
-      all.emplace_back(scale * from, scale * r_from, scale * to, scale * r_to);
+  std::vector<BodyPart> body() const {
+    std::vector<BodyPart> all;
+    const auto add = [&](Limb limb, double side, const Vector3d& from, double r_from, const Vector3d& to, double r_to) {
+      all.push_back({RoundCone(scale() * from, scale() * r_from, scale() * to, scale() * r_to), limb, side});
     };
-    add({0, -0.02, 1.55}, 0.065, {0, -0.015, 1.615}, 0.085);       // head
-    add({0, 0.01, 1.40}, 0.058, {0, 0, 1.51}, 0.05);               // neck
-    add({-0.15, 0.01, 1.385}, 0.052, {0.15, 0.01, 1.385}, 0.052);  // shoulders
-    add({-0.07, 0, 1.28}, 0.105, {0.07, 0, 1.28}, 0.105);          // chest
-    add({0, 0, 1.06}, 0.1, {0, 0, 1.3}, 0.11);                     // trunk
-    add({-0.045, 0, 1.08}, 0.09, {0.045, 0, 1.08}, 0.09);          // waist
-    add({-0.08, 0.005, 0.93}, 0.1, {0.08, 0.005, 0.93}, 0.1);      // hips
+    const auto trunk = [&](const Vector3d& from, double r_from, const Vector3d& to, double r_to) {
+      add(Limb::trunk, 0, from, r_from, to, r_to);
+    };
+    trunk({0, -0.02, 1.55}, 0.065, {0, -0.015, 1.615}, 0.085);       // head
+    trunk({0, 0.01, 1.40}, 0.058, {0, 0, 1.51}, 0.05);               // neck
+    trunk({-0.15, 0.01, 1.385}, 0.052, {0.15, 0.01, 1.385}, 0.052);  // shoulders
+    trunk({-0.07, 0, 1.28}, 0.105, {0.07, 0, 1.28}, 0.105);          // chest
+    trunk({0, 0, 1.06}, 0.1, {0, 0, 1.3}, 0.11);                     // trunk
+    trunk({-0.045, 0, 1.08}, 0.09, {0.045, 0, 1.08}, 0.09);          // waist
+    trunk({-0.08, 0.005, 0.93}, 0.1, {0.08, 0.005, 0.93}, 0.1);      // hips
     for (const double side : {-1.0, 1.0}) {
-      const Vector3d shoulder(side * 0.165, 0.01, 1.39), down(side * std::sin(angle), 0, -std::cos(angle));
-      const Vector3d elbow = shoulder + 0.29 * down, wrist = elbow + 0.25 * down;
-      const Vector3d knee(side * 0.095, -0.005, 0.48), ankle(side * 0.1, 0.01, 0.08);
-      add(shoulder, 0.047, elbow, 0.038);
-      add(elbow, 0.038, wrist, 0.027);
-      add(wrist, 0.028, wrist + 0.13 * down, 0.022);  // hand
-      add({side * 0.09, 0, 0.9}, 0.085, knee, 0.052);
-      add(knee, 0.052, ankle, 0.038);
-      add({side * 0.1, 0.025, 0.04}, 0.04, {side * 0.12, -0.13, 0.03}, 0.03);  // foot
+      const Vector3d knee = knee_of(side), ankle(side * 0.1, 0.01, 0.08), elbow = elbow_of(side);
+      const Vector3d wrist = elbow + 0.25 * down(side);
+      add(Limb::upper_arm, side, shoulder_of(side), 0.047, elbow, 0.038);
+      add(Limb::forearm, side, elbow, 0.038, wrist, 0.027);
+      add(Limb::forearm, side, wrist, 0.028, wrist + 0.13 * down(side), 0.022);  // hand
+      add(Limb::thigh, side, hip_of(side), 0.085, knee, 0.052);
+      add(Limb::shank, side, knee, 0.052, ankle, 0.038);
+      add(Limb::shank, side, {side * 0.1, 0.025, 0.04}, 0.04, {side * 0.12, -0.13, 0.03}, 0.03);  // foot
     }
     return all;
   }
@@ -107,9 +127,55 @@ struct Mannequin : ShapeRule {
 
   Polygons surface(double /*plane_side*/) const override {
     Polygons all;
-    for (const RoundCone& cone : cones()) cone.add_surface(all);
+    for (const BodyPart& part : body()) part.cone.add_surface(all);
     return all;
   }
+
+  bool moves() const override { return speed > 0; }
+
+  Polygons surface_of_part(std::size_t part, double /*plane_side*/) const override {
+    Polygons own;
+    body()[part].cone.add_surface(own);
+    return own;
+  }
+
+  /// Walking with sinusoidal hips, shoulders and knees. A cycle is two steps and as long as 0.8 of the height; hips swing by
+  /// 22 degrees about 6 forwards, knees bend by 2 to 46 while their leg swings forwards, arms swing by 18 against the legs, and
+  /// the trunk is lowest, by 0.016 of the height, when the legs are farthest apart. It gets under way within a second.
+  Pose pose_of_part(std::size_t part, double t) const override {
+    const BodyPart limb = body()[part];
+    const double under_way = std::clamp(t - walks_from, 0.0, 1.0), share = under_way * under_way * (3 - 2 * under_way);
+    const double way = speed * (t - walks_from > 1 ? t - walks_from - 0.5 : way_to_speed(under_way));
+    const double phase = 2 * std::numbers::pi * way / (0.8 * height) + (limb.side > 0 ? std::numbers::pi : 0);
+    const Pose whole{{0, -way, -0.008 * height * share * (1 - std::cos(2 * phase))}};
+    const double hip = share * (6 + 22 * std::sin(phase)), knee = share * (24 + 22 * std::cos(phase - 0.35));
+    const double shoulder = -share * 18 * std::sin(phase), elbow = share * 12;
+    switch (limb.limb) {
+      case Limb::trunk: return whole;
+      case Limb::upper_arm: return whole * swing(scale() * shoulder_of(limb.side), shoulder);
+      case Limb::forearm:
+        return whole * swing(scale() * shoulder_of(limb.side), shoulder) * swing(scale() * elbow_of(limb.side), elbow);
+      case Limb::thigh: return whole * swing(scale() * hip_of(limb.side), hip);
+      case Limb::shank: return whole * swing(scale() * hip_of(limb.side), hip) * swing(scale() * knee_of(limb.side), -knee);
+    }
+    return whole;
+  }
+
+ private:
+  double scale() const { return height / drawn; }
+
+  // Of a figure of 1.7 m.
+  Vector3d down(double side) const {
+    const double angle = arms * std::numbers::pi / 180;
+    return {side * std::sin(angle), 0, -std::cos(angle)};
+  }
+  Vector3d shoulder_of(double side) const { return {side * 0.165, 0.01, 1.39}; }
+  Vector3d elbow_of(double side) const { return shoulder_of(side) + 0.29 * down(side); }
+  Vector3d hip_of(double side) const { return {side * 0.09, 0, 0.9}; }
+  Vector3d knee_of(double side) const { return {side * 0.095, -0.005, 0.48}; }
+
+  /// The integral of the share of its speed, from the beginning on [s].
+  static double way_to_speed(double s) { return s * s * s - s * s * s * s / 2; }
 };
 
 /// Exact outside.
@@ -128,11 +194,15 @@ class Union : public Shape {
   std::vector<RoundCone> parts_;
 };
 
-std::unique_ptr<const Shape> Mannequin::make() const { return std::make_unique<Union>(cones()); }
+std::unique_ptr<const Shape> Mannequin::make() const {
+  std::vector<RoundCone> cones;
+  for (const BodyPart& part : body()) cones.push_back(part.cone);
+  return std::make_unique<Union>(std::move(cones));
+}
 
 std::vector<std::unique_ptr<const Shape>> Mannequin::parts() const {
   std::vector<std::unique_ptr<const Shape>> all;
-  for (const RoundCone& cone : cones()) all.push_back(std::make_unique<RoundCone>(cone));
+  for (const BodyPart& part : body()) all.push_back(std::make_unique<RoundCone>(part.cone));
   return all;
 }
 
@@ -146,12 +216,14 @@ constexpr Key<ShapeRule> mannequin_keys[] = {
     {"height", "m", "from its soles, at z = 0, to the top of its head", at<&Mannequin::height>, check::positive},
     {"arms", "degrees", "angle of its arms with the vertical", read_arms,
      [](const ShapeRule& rule) -> Data { return at<&Mannequin::arms>.in(rule); }},
+    {"walk", "m/s", "speed at which it walks along -y; 0: it stands", at<&Mannequin::speed>, check::non_negative},
+    {"walk_from", "s", "when it begins to walk", at<&Mannequin::walks_from>, check::non_negative},
 };
 
 }  // namespace
 
 const ShapeKind shapes::mannequin{.name = "mannequin",
-                                  .description = "a standing figure of 1.7 m, made of round cones",
+                                  .description = "a figure of 1.7 m, made of round cones, that stands or walks",
                                   .smooth = true,
                                   .create = create<Mannequin>,
                                   .keys = keys_in<mannequin_keys>};

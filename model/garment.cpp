@@ -1,0 +1,236 @@
+#include "model/garment.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+#include <stdexcept>
+#include <tuple>
+
+#include "model/sheet/cells.hpp"
+#include "solver/base/registry.hpp"
+
+namespace drape::model {
+namespace {
+
+constexpr std::string_view side_names[] = {"lower", "right", "upper", "left"};
+
+std::string shown(const SeamSide& side) {
+  return fmt::format("{} {}", side.panel, side_names[static_cast<std::size_t>(side.side)]);
+}
+
+template <class Panel>
+const Panel& named(const std::vector<Panel>& panels, const std::string& name) {
+  const auto found = std::ranges::find(panels, name, &Panel::name);
+  if (found != panels.end()) return *found;
+  std::vector<std::string_view> names;
+  for (const Panel& panel : panels) names.push_back(panel.name);
+  throw std::invalid_argument(base::unknown_name("panel", name, names));
+}
+
+/// Sets of particles that are one node.
+class Joined {
+ public:
+  explicit Joined(int count) : parent_(static_cast<std::size_t>(count)) { std::iota(parent_.begin(), parent_.end(), 0); }
+
+  int root(int i) {
+    while (parent(i) != i) i = parent(i) = parent(parent(i));
+    return i;
+  }
+
+  void join(int i, int j) {
+    i = root(i), j = root(j);
+    parent(std::max(i, j)) = std::min(i, j);
+  }
+
+ private:
+  int& parent(int i) { return parent_[static_cast<std::size_t>(i)]; }
+
+  std::vector<int> parent_;
+};
+
+double length(const Vectors& pattern, const std::vector<int>& particles) {
+  double sum = 0;
+  for (std::size_t k = 1; k < particles.size(); ++k) sum += (pattern.row(particles[k]) - pattern.row(particles[k - 1])).norm();
+  return sum;
+}
+
+Eigen::VectorXd masses_of(const Sheet& sheet) {
+  const Eigen::VectorXd areas = sheet.grid.cell_areas();
+  const double mean = areas.sum() / static_cast<double>((areas.array() > 0).count());
+  return sheet.material.density * (areas.array() > 0).select(areas, mean);
+}
+
+/// Adds a value of each particle of a panel to that of its node.
+void add(const Garment::Panel& panel, const Eigen::VectorXd& own, Eigen::VectorXd& all) {
+  for (int i = 0; i < own.size(); ++i) all[panel.node(i)] += own[i];
+}
+
+}  // namespace
+
+const Vectors& Garment::Panel::seen(const Vectors& all, Vectors& own) const {
+  if (nodes.empty()) return all;
+  own.resize(std::ssize(nodes), 3);
+  for (int i = 0; i < std::ssize(nodes); ++i) own.row(i) = all.row(node(i));
+  return own;
+}
+
+void Garment::Panel::add(const Vectors& own, Vectors& all) const {
+  for (int i = 0; i < own.rows(); ++i) all.row(node(i)) += own.row(i);
+}
+
+Garment::Garment(const Scene& scene) {
+  const auto add = [&](const std::string& name, const Sheet& sheet, const Start& start) {
+    panels_.push_back({name, sheet, start, particles_, {}});
+    particles_ += sheet.grid.particles();
+  };
+  if (scene.panels.empty()) add("", scene.sheet, scene.start);
+  for (const PanelRule& rule : scene.panels) {
+    Sheet sheet = scene.sheet;
+    sheet.grid = rule.grid;
+    sheet.material = rule.material;
+    add(rule.name, sheet, rule.start);
+  }
+  nodes_ = particles_;
+  if (panels_.size() > 1 || !scene.seams.empty()) sew(scene.seams);
+  if (scene.rest == RestShape::start) {
+    const Vectors x = start().x;
+    for (Panel& panel : panels_) {
+      Vectors own;
+      panel.sheet.rest = panel.seen(x, own);
+    }
+  }
+}
+
+const Garment::Panel& Garment::panel(const std::string& name) const { return named<Panel>(panels_, name); }
+
+void Garment::sew(std::span<const SeamRule> seams) {
+  Joined joined(particles_);
+  for (const SeamRule& seam : seams) {
+    const Panel &one = panel(seam.one.panel), &other = panel(seam.other.panel);
+    const std::vector<int> first = sewn_particles(one.sheet.grid, seam.one),
+                           second = sewn_particles(other.sheet.grid, seam.other);
+    if (first.size() != second.size())
+      throw std::invalid_argument(fmt::format("expected as many particles on {} as on {}, not {} and {}", shown(seam.one),
+                                              shown(seam.other), first.size(), second.size()));
+    const double l = length(one.sheet.grid.parameters(), first), m = length(other.sheet.grid.parameters(), second);
+    if (std::max(l, m) > (1 + seam.ease) * std::min(l, m))
+      throw std::invalid_argument(
+          fmt::format("expected lengths that differ by {:g} % at most (ease = {:g}), {} has {:.4g} m and {} {:.4g} m",
+                      100 * seam.ease, seam.ease, shown(seam.one), l, shown(seam.other), m));
+    for (const auto& [side, particles, grid] :
+         {std::tuple(&seam.one, &first, &one.sheet.grid), {&seam.other, &second, &other.sheet.grid}})
+      for (const int i : grid->outside())
+        if (std::ranges::count(*particles, i) > 0)
+          throw std::invalid_argument(
+              fmt::format("expected cloth on all of {}, a cut leaves a part of it outside", shown(*side)));
+    for (std::size_t k = 0; k < first.size(); ++k) joined.join(one.first + first[k], other.first + second[k]);
+  }
+  std::vector<int> node(static_cast<std::size_t>(particles_), -1);
+  nodes_ = 0;
+  for (Panel& panel : panels_)
+    for (int i = 0; i < panel.sheet.grid.particles(); ++i) {
+      int& of_root = node[static_cast<std::size_t>(joined.root(panel.first + i))];
+      if (of_root < 0) of_root = nodes_++;
+      panel.nodes.push_back(of_root);
+    }
+  for (const Panel& panel : panels_)
+    for (const Edge& edge : edges(panel.sheet.grid))
+      if (panel.node(edge.i) == panel.node(edge.j))
+        throw std::invalid_argument(
+            fmt::format("expected particles that are no neighbours, {} and {} of {} would be one", edge.i, edge.j, panel.name));
+}
+
+Eigen::VectorXd Garment::masses() const {
+  Eigen::VectorXd all = Eigen::VectorXd::Zero(nodes_);
+  for (const Panel& panel : panels_) model::add(panel, masses_of(panel.sheet), all);
+  return all;
+}
+
+Eigen::VectorXd Garment::cloth_masses() const {
+  Eigen::VectorXd all = Eigen::VectorXd::Zero(nodes_);
+  for (const Panel& panel : panels_) model::add(panel, panel.sheet.material.density * panel.sheet.grid.cell_areas(), all);
+  return all;
+}
+
+Eigen::VectorXd Garment::areas() const {
+  Eigen::VectorXd all = Eigen::VectorXd::Zero(nodes_);
+  for (const Panel& panel : panels_) model::add(panel, panel.sheet.grid.cell_areas(), all);
+  return all;
+}
+
+solver::State Garment::start() const {
+  if (is_one_sheet()) return start_of(panels_.front().sheet.grid, panels_.front().start);
+  solver::State y{Vectors::Zero(nodes_, 3), Vectors::Zero(nodes_, 3)};
+  for (const Panel& panel : panels_) {
+    const solver::State own = start_of(panel.sheet.grid, panel.start);
+    const Eigen::VectorXd mass = masses_of(panel.sheet);
+    panel.add(mass.asDiagonal() * own.x, y.x);
+    panel.add(mass.asDiagonal() * own.v, y.v);
+  }
+  const Eigen::VectorXd inverse = masses().cwiseInverse();
+  y.x = inverse.asDiagonal() * y.x;
+  y.v = inverse.asDiagonal() * y.v;
+  return y;
+}
+
+std::vector<int> Garment::outside() const {
+  std::vector<int> all;
+  for (const Panel& panel : panels_)
+    for (const int i : panel.sheet.grid.outside()) all.push_back(panel.node(i));
+  return all;
+}
+
+Vectors Garment::spread(const Vectors& nodes) const {
+  if (is_one_sheet()) return nodes;
+  Vectors all(particles_, 3);
+  for (const Panel& panel : panels_)
+    for (int i = 0; i < std::ssize(panel.nodes); ++i) all.row(panel.first + i) = nodes.row(panel.node(i));
+  return all;
+}
+
+std::vector<int> Garment::spread(const std::vector<int>& nodes) const {
+  if (is_one_sheet()) return nodes;
+  std::vector<int> all;
+  for (const Panel& panel : panels_)
+    for (const int node : panel.nodes) all.push_back(nodes[static_cast<std::size_t>(node)]);
+  return all;
+}
+
+Polygons garment_polygons(const Garment& garment, const Vectors& x) {
+  Polygons all;
+  for (Eigen::Index i = 0; i < x.rows(); ++i) all.vertices.emplace_back(x.row(i));
+  for (const Garment::Panel& panel : garment.panels()) {
+    Vectors own;
+    for (std::vector<int> face : sheet_polygons(panel.sheet.grid, panel.seen(x, own)).faces) {
+      for (int& corner : face) corner = panel.node(corner);
+      all.faces.push_back(std::move(face));
+    }
+  }
+  return all;
+}
+
+int nodes(const Scene& scene) { return Garment(scene).nodes(); }
+
+const PanelRule& find_panel(const Scene& scene, const std::string& name) { return named<PanelRule>(scene.panels, name); }
+
+std::vector<int> sewn_particles(const Grid& grid, const SeamSide& side) {
+  const bool along_u = side.side == PanelSide::lower || side.side == PanelSide::upper;
+  const int count = along_u ? grid.nu : grid.nv;
+  const int first = side.ends.empty() ? 0 : side.ends.front(), last = side.ends.empty() ? count - 1 : side.ends.back();
+  if (std::max(first, last) >= count || first == last)
+    throw std::invalid_argument(
+        fmt::format("expected ends below {}, the particles on {}, not {} and {}", count, shown(side), first, last));
+  std::vector<int> all;
+  for (int k = first;; k += first < last ? 1 : -1) {
+    switch (side.side) {
+      case PanelSide::lower: all.push_back(grid.index(k, 0)); break;
+      case PanelSide::upper: all.push_back(grid.index(k, grid.nv - 1)); break;
+      case PanelSide::left: all.push_back(grid.index(0, k)); break;
+      case PanelSide::right: all.push_back(grid.index(grid.nu - 1, k)); break;
+    }
+    if (k == last) return all;
+  }
+}
+
+}  // namespace drape::model

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "model/keys/value.hpp"
+#include "model/scene.hpp"
+
+namespace drape::model {
+
+/// Reads an entry of `panels`: its name, and keys of the sections grid, material and start, which change those of the scene.
+/// Throws SceneError.
+PanelRule read_panel(const Value& value, const Scene& scene);
+Entries entries_of(const PanelRule& panel, const Scene& scene);
+
+/// The same of `seams`.
+SeamRule read_seam(const Value& value);
+Entries entries_of(const SeamRule& seam);
+
+/// A scene that has the panel as its only sheet.
+Scene scene_of(const PanelRule& panel, const Scene& scene);
+
+}  // namespace drape::model
