@@ -6,6 +6,7 @@
 
 #include "model/garment_forces.hpp"
 #include "model/obstacles/reaction.hpp"
+#include "model/phases.hpp"
 
 namespace drape::model {
 namespace {
@@ -80,17 +81,27 @@ solver::SplitOde::Force given(const std::shared_ptr<GarmentForces>& forces, cons
 }  // namespace
 
 Cloth compile(const Scene& scene) {
+  const Scene first = phases(scene).front();
+  auto garment = std::make_shared<const Garment>(first);
+  solver::State start = garment->start();
+  return compile(first, std::move(garment), std::move(start), std::make_shared<solver::Counters>());
+}
+
+Cloth compile(const Scene& scene, std::shared_ptr<const Garment> garment, solver::State start,
+              std::shared_ptr<solver::Counters> work) {
   Cloth cloth;
-  cloth.garment = std::make_shared<const Garment>(scene);
-  cloth.start = cloth.garment->start();
+  cloth.garment = std::move(garment);
+  cloth.begin = scene.begin;
+  cloth.start = std::move(start);
   solver::SplitOde& ode = cloth.ode;
+  ode.work = std::move(work);
   const auto forces = std::make_shared<GarmentForces>(cloth.garment, *ode.work);
   cloth.plan.terms = forces->names();
   cloth.plan.without_energy = forces->without_energy();
   cloth.plan.normals = forces->needs_normals();
   cloth.plan.internal_variables = forces->memory().variables();
   ode.mass = cloth.garment->masses();
-  ode.pins = pins(scene);
+  ode.pins = cloth.garment->pins(scene, cloth.start.x);
   ode.stiffness = forces->stiffness();
   ode.damping = forces->damping();
   const auto part_of = [&](ForcePart part) -> solver::SplitOde::Force {
@@ -106,7 +117,7 @@ Cloth compile(const Scene& scene) {
   ode.mean_excess = [forces](double, const Vectors& x0, const Vectors& x1, Vectors& f) { forces->mean_excess(x0, x1, f); };
   if (const int count = forces->memory().variables(); count > 0) {
     ode.memory = std::shared_ptr<solver::Memory>(forces, &forces->memory());
-    cloth.start.z.setZero(count);
+    if (cloth.start.z.size() != count) cloth.start.z.setZero(count);
     forces->memory().set_stiffness(ode.stiffness);
     ode.memory->begin(1, 0, cloth.start);
     ode.stiffness = ode.memory->stiffness();

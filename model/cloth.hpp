@@ -25,6 +25,7 @@ struct Plan {
 struct Cloth {
   std::shared_ptr<const Garment> garment;
   solver::SplitOde ode;
+  double begin = 0;  ///< the time of its start [s]
   solver::State start;
   Plan plan;
   std::shared_ptr<Contacts> contacts;  ///< null without obstacles
@@ -35,8 +36,13 @@ struct Cloth {
   solver::SplitOde::Force given;
 };
 
-/// Compiles a scene: only forces with nonzero coefficients are built, and normals only if one of these asks for them.
+/// Compiles a scene, of several phases (model/phases.hpp) the first: only forces with nonzero coefficients are built, and
+/// normals only if one of these asks for them.
 Cloth compile(const Scene& scene);
+
+/// Compiles one phase from a state. Its work is added to these counters.
+Cloth compile(const Scene& phase, std::shared_ptr<const Garment> garment, solver::State start,
+              std::shared_ptr<solver::Counters> work);
 
 /// Plan::without_energy of a scene that is not compiled.
 std::vector<std::string> forces_without_energy(const Scene& scene);

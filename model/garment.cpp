@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <set>
 #include <stdexcept>
 #include <tuple>
 
@@ -92,7 +93,8 @@ Garment::Garment(const Scene& scene) {
     add(rule.name, sheet, rule.start);
   }
   nodes_ = particles_;
-  if (panels_.size() > 1 || !scene.seams.empty()) sew(scene.seams);
+  const bool is_sewn = scene.seam_state == SeamState::sewn;
+  if (panels_.size() > 1 || !scene.seams.empty()) sew(is_sewn ? std::span(scene.seams) : std::span<const SeamRule>());
   if (scene.rest == RestShape::start) {
     const Vectors x = start().x;
     for (Panel& panel : panels_) {
@@ -161,17 +163,67 @@ Eigen::VectorXd Garment::areas() const {
 
 solver::State Garment::start() const {
   if (is_one_sheet()) return start_of(panels_.front().sheet.grid, panels_.front().start);
-  solver::State y{Vectors::Zero(nodes_, 3), Vectors::Zero(nodes_, 3)};
+  solver::State all{Vectors(particles_, 3), Vectors(particles_, 3)};
   for (const Panel& panel : panels_) {
     const solver::State own = start_of(panel.sheet.grid, panel.start);
+    all.x.middleRows(panel.first, own.x.rows()) = own.x;
+    all.v.middleRows(panel.first, own.v.rows()) = own.v;
+  }
+  return gathered(all);
+}
+
+solver::State Garment::gathered(const solver::State& of_particles) const {
+  if (is_one_sheet()) return of_particles;
+  solver::State y{Vectors::Zero(nodes_, 3), Vectors::Zero(nodes_, 3)};
+  for (const Panel& panel : panels_) {
     const Eigen::VectorXd mass = masses_of(panel.sheet);
-    panel.add(mass.asDiagonal() * own.x, y.x);
-    panel.add(mass.asDiagonal() * own.v, y.v);
+    panel.add(mass.asDiagonal() * of_particles.x.middleRows(panel.first, mass.size()), y.x);
+    panel.add(mass.asDiagonal() * of_particles.v.middleRows(panel.first, mass.size()), y.v);
   }
   const Eigen::VectorXd inverse = masses().cwiseInverse();
   y.x = inverse.asDiagonal() * y.x;
   y.v = inverse.asDiagonal() * y.v;
   return y;
+}
+
+std::vector<solver::Pin> Garment::pins(const Scene& phase, const Vectors& x) const {
+  std::map<int, solver::Pin> merged;
+  for (const PinRule& rule : phase.pins) {
+    const Panel& of = panel(rule.panel);
+    for (const int particle : pinned_particles(of.sheet.grid, rule)) {
+      const int i = of.node(particle);
+      solver::Pin& pin = merged.try_emplace(i, solver::Pin{i, {false, false, false}}).first->second;
+      for (int c = 0; c < 3; ++c) {
+        if (!rule.directions[c]) continue;
+        pin.fixed[c] = true;
+        pin.velocity[c] = rule.velocity[c];
+      }
+    }
+  }
+  if (phase.seam_state == SeamState::pulled)
+    for (const auto& [node, velocity] : pulled(phase, x)) merged[node] = {node, {true, true, true}, velocity};
+  for (const int i : outside()) merged[i] = {i, {true, true, true}};
+  std::vector<solver::Pin> all;
+  for (const auto& [particle, pin] : merged) all.push_back(pin);
+  return all;
+}
+
+std::map<int, Eigen::Vector3d> Garment::pulled(const Scene& phase, const Vectors& x) const {
+  Scene closed = phase;
+  closed.seam_state = SeamState::sewn;
+  const Garment sewn(closed);
+  std::vector<std::set<int>> meeting(static_cast<std::size_t>(sewn.nodes()));
+  for (std::size_t k = 0; k < panels_.size(); ++k)
+    for (int i = 0; i < panels_[k].sheet.grid.particles(); ++i)
+      meeting[static_cast<std::size_t>(sewn.panels_[k].node(i))].insert(panels_[k].node(i));
+  std::map<int, Eigen::Vector3d> velocities;
+  for (const std::set<int>& nodes : meeting) {
+    if (nodes.size() < 2) continue;
+    Eigen::Vector3d place = Eigen::Vector3d::Zero();
+    for (const int node : nodes) place += x.row(node).transpose() / static_cast<double>(nodes.size());
+    for (const int node : nodes) velocities[node] = (place - x.row(node).transpose()) / (phase.end - phase.begin);
+  }
+  return velocities;
 }
 
 std::vector<int> Garment::outside() const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -53,6 +54,12 @@ class Garment {
   /// Positions and velocities at t = 0; those of nodes are means of their particles, by mass.
   solver::State start() const;
 
+  /// All pins of a phase that begins with nodes at x, at most one for a node.
+  std::vector<solver::Pin> pins(const Scene& phase, const Vectors& x) const;
+
+  /// The state of the nodes whose particles have this one: means by mass, so that momentum is kept.
+  solver::State gathered(const solver::State& of_particles) const;
+
   /// The nodes that a cut leaves outside.
   std::vector<int> outside() const;
 
@@ -62,6 +69,9 @@ class Garment {
 
  private:
   void sew(std::span<const SeamRule> seams);
+
+  /// The velocities of nodes that seams pull together.
+  std::map<int, Eigen::Vector3d> pulled(const Scene& phase, const Vectors& x) const;
 
   std::vector<Panel> panels_;
   int particles_ = 0, nodes_ = 0;

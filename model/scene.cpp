@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <numbers>
 #include <string_view>
 #include <tuple>
@@ -130,23 +129,7 @@ const Grid& pinned_grid(const Scene& scene, const PinRule& rule) {
 
 std::vector<solver::Pin> pins(const Scene& scene) {
   const Garment garment(scene);
-  std::map<int, solver::Pin> merged;
-  for (const PinRule& rule : scene.pins) {
-    const Garment::Panel& panel = garment.panel(rule.panel);
-    for (const int particle : pinned_particles(panel.sheet.grid, rule)) {
-      const int i = panel.node(particle);
-      solver::Pin& pin = merged.try_emplace(i, solver::Pin{i, {false, false, false}}).first->second;
-      for (int c = 0; c < 3; ++c) {
-        if (!rule.directions[c]) continue;
-        pin.fixed[c] = true;
-        pin.velocity[c] = rule.velocity[c];
-      }
-    }
-  }
-  for (const int i : garment.outside()) merged[i] = {i, {true, true, true}};
-  std::vector<solver::Pin> all;
-  for (const auto& [particle, pin] : merged) all.push_back(pin);
-  return all;
+  return garment.pins(scene, garment.start().x);
 }
 
 Contacts contacts(const Scene& scene, solver::Counters& work) {

@@ -13,14 +13,21 @@
 
 namespace drape::model {
 
+/// A point of the way of pinned particles.
+struct PathPoint {
+  double t = 0;                                        ///< [s]
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< from the start [m]
+};
+
 /// Prescribes the motion of some particles.
 struct PinRule {
-  std::string panel;                           ///< whose particles they are; empty: of the sheet
+  std::string panel = {};                      ///< whose particles they are; empty: of the sheet
   std::string where;                           ///< a name from `pin_places()`, or empty
   std::vector<std::pair<int, int>> particles;  ///< (a, b) along u and v, if `where` is empty
   std::array<bool, 3> directions{true, true, true};
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< [m/s]
   Eigen::Vector3d circle = Eigen::Vector3d::Zero();    ///< x, y and radius on the pattern [m], if nothing else is named
+  std::vector<PathPoint> path = {};                    ///< instead of a velocity; times ascend, and between them it is uniform
 };
 
 enum class Plane { horizontal, vertical };  ///< u along x; v along y or along z
@@ -81,6 +88,20 @@ struct SeamRule {
   double ease = 0.02;  ///< part by which one may be longer than the other
 };
 
+enum class SeamState {
+  sewn,    ///< their particles are one
+  pulled,  ///< they are moved uniformly until they meet, at the end of the phase
+  open,    ///< they do nothing
+};
+
+/// A time in which things are other than in the rest of a scene.
+struct PhaseRule {
+  double until = 0;                             ///< [s]
+  std::optional<Eigen::Vector3d> gravity = {};  ///< [m/s²]
+  SeamState seams = SeamState::sewn;
+  std::optional<std::vector<PinRule>> pins = {};
+};
+
 /// A scene as users describe it. A value: copy it, change it, compile it.
 struct Scene {
   std::string name;
@@ -95,7 +116,12 @@ struct Scene {
   Start start;
   RestShape rest = RestShape::flat;
   Trim trim;
-  double end = 1;  ///< [s]
+  std::vector<PhaseRule> phases;  ///< `until` ascends
+  double end = 1;                 ///< [s]
+
+  // Of a phase (model/phases.hpp):
+  double begin = 0;  ///< [s]
+  SeamState seam_state = SeamState::sewn;
 };
 
 /// The names that `PinRule::where` knows.
@@ -107,14 +133,14 @@ std::vector<int> pinned_particles(const Grid& grid, const PinRule& rule);
 /// The grid whose particles a rule names. Throws std::invalid_argument if there is no such panel.
 const Grid& pinned_grid(const Scene& scene, const PinRule& rule);
 
-/// The pins of a scene, at most one for a node. Later rules win where directions overlap. What a cut leaves outside is
-/// pinned where it is.
+/// The pins of a scene at its start, at most one for a node. Later rules win where directions overlap. What a cut leaves
+/// outside is pinned where it is.
 std::vector<solver::Pin> pins(const Scene& scene);
 
 /// What finds the contacts of its obstacles. Throws as Contacts does.
 Contacts contacts(const Scene& scene, solver::Counters& work);
 
-/// The state at t = 0 without prescribed velocities.
+/// The state at the start without prescribed velocities.
 solver::State start(const Scene& scene);
 
 /// The same of one sheet.

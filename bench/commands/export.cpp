@@ -25,7 +25,7 @@ struct ExportArguments {
 void export_scene(const ExportArguments& a) {
   const model::Scene scene = a.choice.load();
   check_frames("--every", a.every, scene.end);
-  std::vector<double> times = frame_times(a.every, scene.end);
+  std::vector<double> times = frame_times(a.every, 0, scene.end);
   if (times.empty())
     throw std::invalid_argument(fmt::format("--every: expected at most the scene's end, {:g} s, not {:g}", scene.end, a.every));
   times.insert(times.begin(), 0);

@@ -6,6 +6,7 @@
 #include <ranges>
 
 #include "bench/runs/motion_error.hpp"
+#include "model/phases.hpp"
 #include "model/scene_file/scene_file.hpp"
 #include "reference/plausible.hpp"
 #include "solver/base/largest.hpp"
@@ -53,6 +54,8 @@ reference::Reference References::resolving(const model::Scene& scene, const mode
 
 reference::Reference References::certified(const model::Scene& scene, const model::Cloth& cloth,
                                            const std::vector<double>& times, double uncertainty) {
+  if (model::phases(scene).size() > 1)
+    throw reference::ReferenceError(fmt::format("{}: a scene of several phases or paths has none", scene.name), "PHASES", 0);
   const double size = model::size(scene);
   reference::Reference reference = tight(scene, cloth, times, uncertainty * size);
   if (cloth.ode.contacts) return reference;  // of first order: its uncertainty decides what is shown

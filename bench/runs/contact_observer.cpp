@@ -11,10 +11,10 @@ void ContactObserver::begin(const model::Scene& scene, const model::Cloth& cloth
   scene_ = &scene;
   cloth_ = &cloth;
   if (!cloth.contacts) return;
-  record_.emplace().clearance = std::numeric_limits<double>::infinity();
-  start_ = cloth.ode.potential_energy(0, cloth.start.x);
+  if (!record_) record_.emplace().clearance = std::numeric_limits<double>::infinity();
+  start_ = cloth.ode.potential_energy(cloth.begin, cloth.start.x);
   least_ = std::numeric_limits<double>::infinity();
-  see(0, cloth.start);
+  see(cloth.begin, cloth.start);
 }
 
 void ContactObserver::see(double t, const solver::State& y) {

@@ -36,11 +36,11 @@ double fall_of(const Eigen::Vector3d& gravity, const Vectors& weight) {
 
 }  // namespace
 
-EnergyGuard::GivenWork::GivenWork(const solver::SplitOde::Force& given, const State& start, bool jumps)
+EnergyGuard::GivenWork::GivenWork(const solver::SplitOde::Force& given, double begin, const State& start, bool jumps)
     : given_(given), jumps_(jumps) {
   if (!given_) return;
   last_.x = start.x;
-  given_(0, start.x, start.v, last_.f);
+  given_(begin, start.x, start.v, last_.f);
   pair_ = last_;
 }
 
@@ -68,13 +68,13 @@ EnergyGuard::EnergyGuard(const model::Scene& scene, const model::Cloth& cloth)
       areas_(cloth.garment->areas()),
       weight_(cloth.garment->cloth_masses() * scene.sheet.gravity.transpose()),
       x_(cloth.start.x),
-      start_(kinetic_and_elastic(0, start_of(cloth))),
+      start_(kinetic_and_elastic(cloth.begin, start_of(cloth))),
       noise_(noise_of(*cloth.garment, weight_, x_)),
       fall_(fall_of(scene.sheet.gravity, weight_)),
-      end_(scene.end),
+      time_(scene.end - cloth.begin),
       most_given_(std::max(0.0, start_)),
-      work_(cloth.given, start_of(cloth), !scene.obstacles.empty() && scene.contact.response == model::ResponseKind::reaction) {
-}
+      work_(cloth.given, cloth.begin, start_of(cloth),
+            !scene.obstacles.empty() && scene.contact.response == model::ResponseKind::reaction) {}
 
 double EnergyGuard::kinetic_and_elastic(double t, const State& y) const {
   const double gravity = -weight_.cwiseProduct(y.x).sum();
@@ -98,7 +98,7 @@ bool EnergyGuard::exceeded(const solver::StepReport& step) {
   const double given = start_ + weight_.cwiseProduct(x_ - cloth_.start.x).sum() + work_.value() + contact_work_;
   most_given_ = std::max(most_given_, given);
   energy_ = kinetic_and_elastic(step.t, step.y);
-  const double first = std::min(first_steps * step.h, first_part * end_);
+  const double first = std::min(first_steps * step.h, first_part * time_);
   const double doubt = work_.doubt() + unresolved_, tolerance = tolerated * most_given_ + noise_;
   limit_ = given - damped_ + tolerance + fall_ * first * first + doubt;
   judges_ = work_.compared() && doubt <= tolerance;

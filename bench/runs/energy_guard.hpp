@@ -47,7 +47,7 @@ class EnergyGuard {
   class GivenWork {
    public:
     /// `jumps`: whether forces are switched on and off within steps, whose work then stays uncertain.
-    GivenWork(const solver::SplitOde::Force& given, const solver::State& start, bool jumps);
+    GivenWork(const solver::SplitOde::Force& given, double begin, const solver::State& start, bool jumps);
     void go_on(double t, const solver::State& y);
     double value() const { return fine_; }
     double doubt() const { return doubt_ + pending_; }
@@ -77,7 +77,7 @@ class EnergyGuard {
   solver::Vectors weight_;  ///< [N]
   solver::Vectors x_;       ///< after the last step
   double start_, noise_;    ///< [J]
-  double fall_, end_;       ///< [J/s²], [s]
+  double fall_, time_;      ///< [J/s²], of the whole run [s]
   double most_given_;       ///< [J]
   double damped_ = 0, contact_work_ = 0, unresolved_ = 0, energy_ = 0, limit_ = 0;
   GivenWork work_;
@@ -90,6 +90,7 @@ class EnergyGuardObserver : public Observer {
  public:
   void begin(const model::Scene& scene, const model::Cloth& cloth, const solver::State&) override {
     guard_.emplace(scene, cloth);
+    good_ = cloth.begin;
   }
   void observe(const solver::StepReport& step) override;
   std::string remark() const override;

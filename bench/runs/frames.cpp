@@ -33,32 +33,35 @@ void write(const fs::path& file, double t, const model::Polygons& polygons) {
   if (!out) throw base::FileError(fmt::format("{}: cannot be written; choose another --frames", file.string()));
 }
 
-class Writer {
+class Writer : public Observer {
  public:
   Writer(const RunSpec& spec, const Frames& frames)
-      : folder_(frames.folder / run_name(spec)),
-        every_(frames.every),
-        garment_(spec.scene),
-        trimmed_(model::trimmed_surface(spec.scene)) {
+      : folder_(frames.folder / run_name(spec)), every_(frames.every), trimmed_(model::trimmed_surface(spec.scene)) {
     base::create_folder(folder_);
     for (const model::ObstacleRule& rule : spec.scene.obstacles) obstacles_.emplace_back(rule, 4 * model::size(spec.scene));
   }
 
+  void begin(const model::Scene&, const model::Cloth& cloth, const solver::State& start) override {
+    cloth_ = &cloth;
+    see(cloth.begin, start);
+  }
+  void observe(const solver::StepReport& step) override { see(step.t, step.y); }
+
+ private:
   void see(double t, const solver::State& y) {
     const double periods = std::floor(t / every_ + 1e-9);  // times are sums of steps
     if (periods < due_) return;
     due_ = periods + 1;
     write(folder_ / fmt::format("sheet-{:04}.obj", frame_), t,
-          trimmed_ ? trimmed_->at(y.x) : model::garment_polygons(garment_, y.x));
+          trimmed_ ? trimmed_->at(y.x) : model::garment_polygons(*cloth_->garment, y.x));
     for (std::size_t k = 0; k < obstacles_.size(); ++k)
       write(folder_ / fmt::format("obstacle-{}-{:04}.obj", k, frame_), t, obstacles_[k].at(t));
     ++frame_;
   }
 
- private:
   fs::path folder_;
   double every_;
-  model::Garment garment_;
+  const model::Cloth* cloth_ = nullptr;
   std::optional<model::TrimmedSurface> trimmed_;
   std::vector<model::PosedObstacle> obstacles_;
   double due_ = 0;
@@ -67,8 +70,8 @@ class Writer {
 
 }  // namespace
 
-solver::Observer frame_writer(const RunSpec& spec, const Frames& frames) {
-  return [writer = Writer(spec, frames)](const solver::StepReport& step) mutable { writer.see(step.t, step.y); };
+std::unique_ptr<Observer> frame_writer(const RunSpec& spec, const Frames& frames) {
+  return std::make_unique<Writer>(spec, frames);
 }
 
 }  // namespace drape::bench

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 
 #include "bench/runs/run.hpp"
 
@@ -15,6 +16,6 @@ struct Frames {
 /// Writes the run that it observes to the folder `scene-method-step`: `sheet-0000.obj`, the sheet or what its scene trims it
 /// to, at the start and so on, beside the k-th obstacle of the scene, where it is at that time, as `obstacle-k-0000.obj`. Each
 /// file begins with its time. Throws base::FileError where a file cannot be written.
-solver::Observer frame_writer(const RunSpec& spec, const Frames& frames);
+std::unique_ptr<Observer> frame_writer(const RunSpec& spec, const Frames& frames);
 
 }  // namespace drape::bench

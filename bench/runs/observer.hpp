@@ -16,7 +16,8 @@ class Observer {
   Observer& operator=(const Observer&) = delete;
   virtual ~Observer() = default;
 
-  /// The start of the run. Scene and cloth live until finish() has returned.
+  /// The start of the run and of each later phase, at `cloth.begin`; the scene is that of the phase. Both live until finish()
+  /// has returned.
   virtual void begin(const model::Scene&, const model::Cloth&, const solver::State&) {}
 
   /// An accepted step.
@@ -40,8 +41,8 @@ struct Ending {
 class FunctionObserver : public Observer {
  public:
   explicit FunctionObserver(solver::Observer function) : function_(std::move(function)) {}
-  void begin(const model::Scene&, const model::Cloth&, const solver::State& start) override {
-    function_({0, 0, 0, 0, start, {}});
+  void begin(const model::Scene&, const model::Cloth& cloth, const solver::State& start) override {
+    function_({cloth.begin, 0, 0, 0, start, {}});
   }
   void observe(const solver::StepReport& step) override { function_(step); }
 

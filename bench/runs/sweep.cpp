@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <memory>
 #include <new>
 #include <utility>
 
@@ -17,6 +18,7 @@
 #include "bench/runs/samples.hpp"
 #include "bench/runs/timing.hpp"
 #include "bench/runs/trajectory_observer.hpp"
+#include "model/phases.hpp"
 #include "results/file/xdmf.hpp"
 #include "solver/base/hash.hpp"
 #include "solver/base/largest.hpp"
@@ -52,10 +54,11 @@ MeasuredRun measure(const RunSpec& spec, const SweepOptions& options) {
   std::vector<Observer*> observers;
   std::optional<Samples> samples;
   std::optional<TrajectoryObserver> trajectory;
-  std::optional<FunctionObserver> other;
-  if (options.reference) observers.push_back(&samples.emplace(compared_times(spec.scene)));
+  std::unique_ptr<Observer> other;
+  if (options.reference && model::phases(spec.scene).size() == 1)
+    observers.push_back(&samples.emplace(compared_times(spec.scene)));
   if (options.frames_every) observers.push_back(&trajectory.emplace(*options.frames_every));
-  if (options.observer_for) observers.push_back(&other.emplace(options.observer_for(spec)));
+  if (options.observer_for) observers.push_back((other = options.observer_for(spec)).get());
   MeasuredRun measured{record(spec, observers, options.limits), {}, {}};
   if (trajectory) measured.run.trajectory = trajectory->result();
   if (!samples || measured.run.outcome != solver::Outcome::success) return measured;

@@ -2,13 +2,14 @@
 
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "bench/runs/limits.hpp"
+#include "bench/runs/observer.hpp"
 #include "bench/runs/run_spec.hpp"
 #include "results/provenance.hpp"
-#include "solver/integrator.hpp"
 
 namespace drape::bench {
 
@@ -22,7 +23,7 @@ struct SweepOptions {
   results::Start start = results::Start::fresh;  ///< whether a file that is there is continued
   std::string command_line;
   std::optional<double> frames_every;  ///< [s] between the frames of trajectories; none are kept without
-  std::function<solver::Observer(const RunSpec&)> observer_for;  ///< of runs that are recorded; may be empty
+  std::function<std::unique_ptr<Observer>(const RunSpec&)> observer_for;  ///< of runs that are recorded; may be empty
 };
 
 }  // namespace drape::bench

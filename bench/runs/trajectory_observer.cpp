@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <stdexcept>
 
 #include "bench/runs/contact_observer.hpp"
-#include "model/sheet/edges.hpp"
 #include "reference/sundials/coordinates.hpp"
 
 namespace drape::bench {
@@ -54,40 +54,52 @@ void check_frames(const char* option, double every, double end) {
                     end / most, every));
 }
 
-std::vector<double> frame_times(double every, double end) {
+std::vector<double> frame_times(double every, double begin, double end) {
+  constexpr double round_off = 1e-9;  // not intention
   std::vector<double> times;
-  const double last = end / every * (1 + 1e-9);  // round-off, not intention
-  for (int k = 1; k <= last; ++k) times.push_back(k * every);
+  for (double k = std::floor(begin / every * (1 + round_off)) + 1; k <= end / every * (1 + round_off); ++k)
+    times.push_back(k * every);
   return times;
 }
 
 void TrajectoryObserver::begin(const model::Scene& scene, const model::Cloth& cloth, const solver::State&) {
+  keep_phase();
+  const solver::State start = reference::prescribed_start(cloth.ode, cloth.start);
   scene_ = &scene;
   cloth_ = &cloth;
-  start_ = reference::prescribed_start(cloth.ode, cloth.start);
-  times_ = frame_times(every_, scene.end);
-  output_.emplace(times_, 0, start_);
+  edges_ = edges_of(*cloth.garment);
+  times_ = frame_times(every_, cloth.begin, scene.end);
+  output_.emplace(times_, cloth.begin, start);
+  if (record_) return;
+  record_.emplace();
+  keep(0, start);
 }
 
 void TrajectoryObserver::finish() {
+  keep_phase();
+  output_.reset();
+}
+
+void TrajectoryObserver::keep_phase() {
+  if (!output_) return;
+  for (std::size_t k = 0; k < output_->states.size(); ++k) keep(times_[k], output_->states[k]);
+}
+
+void TrajectoryObserver::keep(double t, const solver::State& y) {
   const model::Garment& garment = *cloth_->garment;
-  const std::vector<model::Edge> edges = edges_of(garment);
-  results::TrajectoryRecord& record = record_.emplace(results::TrajectoryRecord{
-      .nu = garment.particles(), .nv = 1, .panels = {}, .times = {0}, .states = {}, .stretch = {}, .constraint = {}});
+  results::TrajectoryRecord& record = *record_;
+  record.nu = garment.particles(), record.nv = 1;
+  record.panels.clear();
   for (const model::Garment::Panel& panel : garment.panels())
     record.panels.push_back({panel.sheet.grid.nu, panel.sheet.grid.nv});
   if (record.panels.size() == 1) {
     record.nu = record.panels[0][0], record.nv = record.panels[0][1];
     record.panels.clear();
   }
-  record.times.insert(record.times.end(), times_.begin(), times_.begin() + std::ssize(output_->states));
-  std::vector<solver::State> states{start_};
-  states.insert(states.end(), output_->states.begin(), output_->states.end());
-  for (std::size_t k = 0; k < record.times.size(); ++k) {
-    record.constraint.push_back(garment.spread(constraints(*scene_, *cloth_, record.times[k], states[k].x)));
-    record.states.push_back({garment.spread(states[k].x), garment.spread(states[k].v), states[k].z});
-    record.stretch.push_back(mean_strain(edges, record.states[k].x));
-  }
+  record.times.push_back(t);
+  record.states.push_back({garment.spread(y.x), garment.spread(y.v), y.z});
+  record.stretch.push_back(mean_strain(edges_, record.states.back().x));
+  record.constraint.push_back(garment.spread(constraints(*scene_, *cloth_, t, y.x)));
 }
 
 }  // namespace drape::bench

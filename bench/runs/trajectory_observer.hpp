@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "bench/runs/observer.hpp"
+#include "model/sheet/edges.hpp"
 #include "results/run_record.hpp"
 #include "solver/dense_output.hpp"
 
@@ -12,8 +13,8 @@ namespace drape::bench {
 /// Throws std::invalid_argument, naming the option, if there are too many frames so far apart up to the end [s].
 void check_frames(const char* option, double every, double end);
 
-/// Multiples of `every` after the start, up to the end [s].
-std::vector<double> frame_times(double every, double end);
+/// Multiples of `every` after the beginning, up to the end [s].
+std::vector<double> frame_times(double every, double begin, double end);
 
 /// Takes the motion out of a run at multiples of `every` [s], beginning with the start, by dense output of its steps.
 class TrajectoryObserver : public Observer {
@@ -32,8 +33,11 @@ class TrajectoryObserver : public Observer {
   double every_;
   const model::Scene* scene_ = nullptr;
   const model::Cloth* cloth_ = nullptr;
-  solver::State start_;
-  std::vector<double> times_;  ///< after the start [s]
+  std::vector<model::Edge> edges_;
+  void keep_phase();
+  void keep(double t, const solver::State& y);
+
+  std::vector<double> times_;  ///< of the phase, after its start [s]
   std::optional<solver::DenseOutput> output_;
   std::optional<results::TrajectoryRecord> record_;
 };

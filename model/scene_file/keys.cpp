@@ -66,6 +66,16 @@ Data seams_data(const Scene& scene) {
   return seams;
 }
 
+void read_phases(const Value& value, Scene& scene) {
+  for (const Value& phase : rules(value)) scene.phases.push_back(read_phase(phase, scene));
+}
+
+Data phases_data(const Scene& scene) {
+  List phases;
+  for (const PhaseRule& phase : scene.phases) phases.emplace_back(entries_of(phase, scene));
+  return phases;
+}
+
 void read_obstacles(const Value& value, Scene& scene) {
   for (const Value& obstacle : rules(value)) scene.obstacles.push_back(read_obstacle(obstacle));
 }
@@ -462,7 +472,8 @@ std::span<const SceneKey> scene_key_table() {
        read_panels, panels_data},
       {"seams", "", "list of { one, other, ease }: sides { panel, side, ends } whose particles are one; one may be longer by the part ease",
        read_seams, seams_data},
-      {"pins", "", "list of { panel, where | particles | circle, directions, velocity }: prescribed motion", read_pins, pins_data},
+      {"pins", "", "list of { panel, where | particles | circle, directions, velocity | path }: prescribed motion", read_pins, pins_data},
+      {"phases", "", "list of { until, gravity, seams, pins }: times in which these are other than after the last", read_phases, phases_data},
 
       {"rest.shape", "", "\"flat\" or \"start\": bending is at rest in the shape at t = 0",
        at<&Scene::rest>, check::one_of<rest_shapes>},

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "model/scene_file/keys.hpp"
+#include "model/scene_file/pin_keys.hpp"
 #include "solver/base/registry.hpp"
 
 namespace drape::model {
@@ -77,6 +78,39 @@ constexpr Key<SeamRule> seam_keys[] = {
     {"ease", "1", "part by which one may be longer than the other", at<&SeamRule::ease>, check::non_negative},
 };
 
+// --- Phases ------------------------------------------------------------------------------------------------------------------
+
+constexpr std::string_view seam_states[] = {"sewn", "pulled", "open"};
+
+/// A phase with the scene whose particles its pins name.
+struct PhaseOfScene {
+  const Scene& scene;
+  PhaseRule phase = {};
+};
+
+void read_gravity(const Value& value, PhaseOfScene& rule) { rule.phase.gravity = value.vector(&Value::number); }
+
+Data gravity_data(const PhaseOfScene& rule) { return rule.phase.gravity ? to_data(*rule.phase.gravity) : Data(); }
+
+void read_pins(const Value& value, PhaseOfScene& rule) {
+  std::vector<PinRule>& pins = rule.phase.pins.emplace();
+  for (const Value& pin : value.list()) pins.push_back(read_pin(pin, rule.scene));
+}
+
+Data pins_data(const PhaseOfScene& rule) {
+  if (!rule.phase.pins) return {};
+  List pins;
+  for (const PinRule& pin : *rule.phase.pins) pins.emplace_back(entries_of(pin, rule.scene));
+  return pins;
+}
+
+constexpr Key<PhaseOfScene> phase_keys[] = {
+    {"until", "s", "its end", at<&PhaseOfScene::phase, &PhaseRule::until>, check::positive, true},
+    {"gravity", "m/s²", "[x, y, z]", read_gravity, gravity_data},
+    {"seams", "", "\"sewn\", \"pulled\" or \"open\"", at<&PhaseOfScene::phase, &PhaseRule::seams>, check::one_of<seam_states>},
+    {"pins", "", "instead of those of the scene", read_pins, pins_data},
+};
+
 }  // namespace
 
 Scene scene_of(const PanelRule& panel, const Scene& scene) {
@@ -120,6 +154,15 @@ SeamRule read_seam(const Value& value) {
   read_table<SeamRule>(value, "seam", seam_keys, seam);
   return seam;
 }
+
+PhaseRule read_phase(const Value& value, const Scene& scene) {
+  PhaseOfScene rule{scene};
+  read_table<PhaseOfScene>(value, "phase", phase_keys, rule);
+  if (!scene.phases.empty() && rule.phase.until <= scene.phases.back().until) value.fail("phases that end one after the other");
+  return std::move(rule.phase);
+}
+
+Entries entries_of(const PhaseRule& phase, const Scene& scene) { return entries_of<PhaseOfScene>(phase_keys, {scene, phase}); }
 
 Entries entries_of(const SeamRule& seam) { return entries_of<SeamRule>(seam_keys, seam); }
 

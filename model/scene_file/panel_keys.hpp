@@ -14,6 +14,10 @@ Entries entries_of(const PanelRule& panel, const Scene& scene);
 SeamRule read_seam(const Value& value);
 Entries entries_of(const SeamRule& seam);
 
+/// The same of `phases`, whose times ascend.
+PhaseRule read_phase(const Value& value, const Scene& scene);
+Entries entries_of(const PhaseRule& phase, const Scene& scene);
+
 /// A scene that has the panel as its only sheet.
 Scene scene_of(const PanelRule& panel, const Scene& scene);
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -80,6 +81,27 @@ Data directions_data(const PinOfScene& rule) {
   return text;
 }
 
+constexpr Key<PathPoint> path_keys[] = {
+    {"time", "s", "when", at<&PathPoint::t>, check::number, true},
+    {"position", "m", "[x, y, z] from the start", at<&PathPoint::position>, check::number, true},
+};
+
+void read_path(const Value& value, PinOfScene& rule) {
+  for (const Value& point : value.list())
+    read_table<PathPoint>(point, "point of a path", path_keys, rule.pin.path.emplace_back());
+  constexpr std::size_t most = 1000;
+  if (rule.pin.path.empty() || rule.pin.path.size() > most) value.fail(fmt::format("1 to {} points", most));
+  if (std::ranges::adjacent_find(rule.pin.path, std::ranges::greater_equal{}, &PathPoint::t) != rule.pin.path.end())
+    value.fail("points with times that ascend");
+  if (!rule.pin.velocity.isZero(0)) value.fail("a velocity or a path, not both");
+}
+
+Data path_data(const PinOfScene& rule) {
+  List points;
+  for (const PathPoint& point : rule.pin.path) points.emplace_back(entries_of<PathPoint>(path_keys, point));
+  return points.empty() ? Data() : Data(points);
+}
+
 constexpr Key<PinOfScene> pin_keys[] = {
     {"panel", "", "the name of a panel", read_pinned_panel, pinned_panel_data},
     {"where", "", "the name of a place", read_where, where_data},
@@ -87,6 +109,7 @@ constexpr Key<PinOfScene> pin_keys[] = {
     {"circle", "m", "[x, y, radius] on the pattern: all particles inside", read_circle, circle_data},
     {"directions", "", "letters of x, y and z", read_directions, directions_data},
     {"velocity", "m/s", "[x, y, z]", at<&PinOfScene::pin, &PinRule::velocity>, check::number},
+    {"path", "", "instead of a velocity, points { time, position } between which it moves uniformly", read_path, path_data},
 };
 
 }  // namespace
