@@ -65,6 +65,7 @@ std::vector<Job> limits(const Question& question);
 std::vector<Job> memory(const Question& question);
 std::vector<Job> fabrics(const Question& question);
 std::vector<Job> drape_study(const Question& question);
+std::vector<Job> garments(const Question& question);
 std::vector<Job> scaling(const Question& question);
 std::vector<Job> stability(const Question& question);
 std::vector<Job> stages(const Question& question);

@@ -3,6 +3,7 @@
 #include "bench/runs/record.hpp"
 #include "bench/runs/timing.hpp"
 #include "bench/studies/draping.hpp"
+#include "bench/studies/garments.hpp"
 #include "bench/studies/studies.hpp"
 #include "model/scene_file/scene_file.hpp"
 #include "solver/base/statistics.hpp"
@@ -129,7 +130,7 @@ std::vector<Job> table_3_2(const Question& question) {
   int parts = 0;
   for (const TableclothBlock& block : tablecloth_blocks()) parts += static_cast<int>(cells(block, quick).size());
   const auto compute = [quick](Checkpoint& checkpoint) { return run_tablecloths(quick, checkpoint); };
-  return {job("table-3.2", parts, compute, tablecloth_table)};
+  return {job("table-3.2", parts, compute, tablecloth_table), dress_block(quick)};
 }
 
 }  // namespace drape::bench
