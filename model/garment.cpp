@@ -6,7 +6,7 @@
 #include <numeric>
 #include <set>
 #include <stdexcept>
-#include <tuple>
+#include <utility>
 
 #include "model/sheet/cells.hpp"
 #include "solver/base/registry.hpp"
@@ -62,6 +62,12 @@ Eigen::VectorXd masses_of(const Sheet& sheet) {
   return sheet.material.density * (areas.array() > 0).select(areas, mean);
 }
 
+void require_cloth(const Grid& grid, const std::vector<int>& particles, const SeamSide& side) {
+  const std::vector<int> outside = grid.outside();  // in order
+  if (std::ranges::any_of(particles, [&](int i) { return std::ranges::binary_search(outside, i); }))
+    throw std::invalid_argument(fmt::format("expected cloth on all of {}, a cut leaves a part of it outside", shown(side)));
+}
+
 /// Adds a value of each particle of a panel to that of its node.
 void add(const Garment::Panel& panel, const Eigen::VectorXd& own, Eigen::VectorXd& all) {
   for (int i = 0; i < own.size(); ++i) all[panel.node(i)] += own[i];
@@ -106,28 +112,32 @@ Garment::Garment(const Scene& scene) {
 
 const Garment::Panel& Garment::panel(const std::string& name) const { return named<Panel>(panels_, name); }
 
+std::vector<std::pair<int, int>> Garment::pairs(const SeamRule& seam) const {
+  const Panel &one = panel(seam.one.panel), &other = panel(seam.other.panel);
+  const std::vector<int> first = sewn_particles(one.sheet.grid, seam.one);
+  const std::vector<int> second = sewn_particles(other.sheet.grid, seam.other);
+  if (first.size() != second.size())
+    throw std::invalid_argument(fmt::format("expected as many particles on {} as on {}, not {} and {}", shown(seam.one),
+                                            shown(seam.other), first.size(), second.size()));
+  const double l = length(one.sheet.grid.parameters(), first), m = length(other.sheet.grid.parameters(), second);
+  if (std::max(l, m) > (1 + seam.ease) * std::min(l, m))
+    throw std::invalid_argument(
+        fmt::format("expected lengths that differ by {:g} % at most (ease = {:g}), {} has {:.4g} m and {} {:.4g} m",
+                    100 * seam.ease, seam.ease, shown(seam.one), l, shown(seam.other), m));
+  require_cloth(one.sheet.grid, first, seam.one);
+  require_cloth(other.sheet.grid, second, seam.other);
+  std::vector<std::pair<int, int>> all;
+  for (std::size_t k = 0; k < first.size(); ++k) all.emplace_back(one.first + first[k], other.first + second[k]);
+  return all;
+}
+
 void Garment::sew(std::span<const SeamRule> seams) {
   Joined joined(particles_);
-  for (const SeamRule& seam : seams) {
-    const Panel &one = panel(seam.one.panel), &other = panel(seam.other.panel);
-    const std::vector<int> first = sewn_particles(one.sheet.grid, seam.one),
-                           second = sewn_particles(other.sheet.grid, seam.other);
-    if (first.size() != second.size())
-      throw std::invalid_argument(fmt::format("expected as many particles on {} as on {}, not {} and {}", shown(seam.one),
-                                              shown(seam.other), first.size(), second.size()));
-    const double l = length(one.sheet.grid.parameters(), first), m = length(other.sheet.grid.parameters(), second);
-    if (std::max(l, m) > (1 + seam.ease) * std::min(l, m))
-      throw std::invalid_argument(
-          fmt::format("expected lengths that differ by {:g} % at most (ease = {:g}), {} has {:.4g} m and {} {:.4g} m",
-                      100 * seam.ease, seam.ease, shown(seam.one), l, shown(seam.other), m));
-    for (const auto& [side, particles, grid] :
-         {std::tuple(&seam.one, &first, &one.sheet.grid), {&seam.other, &second, &other.sheet.grid}})
-      for (const int i : grid->outside())
-        if (std::ranges::count(*particles, i) > 0)
-          throw std::invalid_argument(
-              fmt::format("expected cloth on all of {}, a cut leaves a part of it outside", shown(*side)));
-    for (std::size_t k = 0; k < first.size(); ++k) joined.join(one.first + first[k], other.first + second[k]);
-  }
+  for (std::size_t k = 0; k < seams.size(); ++k) try {
+      for (const auto& [i, j] : pairs(seams[k])) joined.join(i, j);
+    } catch (const std::invalid_argument& error) {
+      throw std::invalid_argument(fmt::format("seams[{}]: {}", k, error.what()));
+    }
   std::vector<int> node(static_cast<std::size_t>(particles_), -1);
   nodes_ = 0;
   for (Panel& panel : panels_)
@@ -140,7 +150,7 @@ void Garment::sew(std::span<const SeamRule> seams) {
     for (const Edge& edge : edges(panel.sheet.grid))
       if (panel.node(edge.i) == panel.node(edge.j))
         throw std::invalid_argument(
-            fmt::format("expected particles that are no neighbours, {} and {} of {} would be one", edge.i, edge.j, panel.name));
+            fmt::format("seams: expected to join no neighbours, {} and {} of {} would be one", edge.i, edge.j, panel.name));
 }
 
 Eigen::VectorXd Garment::masses() const {

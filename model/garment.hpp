@@ -3,6 +3,7 @@
 #include <map>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "model/obstacles/surface.hpp"
@@ -68,6 +69,8 @@ class Garment {
   std::vector<int> spread(const std::vector<int>& nodes) const;
 
  private:
+  /// The particles that a seam joins.
+  std::vector<std::pair<int, int>> pairs(const SeamRule& seam) const;
   void sew(std::span<const SeamRule> seams);
 
   /// The velocities of nodes that seams pull together.

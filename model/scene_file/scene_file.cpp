@@ -42,6 +42,40 @@ toml::table parse(std::string_view text, std::string_view origin) {
   }
 }
 
+/// Puts the entries of a table into another one, tables into tables; anything else replaces what is there.
+void merge(const toml::table& from, toml::table& to) {
+  for (const auto& [key, node] : from)
+    if (const toml::table* table = node.as_table(); table != nullptr && to.get_as<toml::table>(key) != nullptr)
+      merge(*table, *to.get_as<toml::table>(key));
+    else
+      to.insert_or_assign(key, node);
+}
+
+std::string text_of_scene(const std::string& name_or_file);
+
+/// Replaces a scene that changes another, its `base`, by the whole.
+void complete(toml::table& root, const std::string& file) {
+  const toml::node* base = root.get("base");
+  if (base == nullptr) return;
+  const Value value(*base, "base", file);
+  const std::string name = value.text();
+  const bool is_file = name.ends_with(".toml");
+  const std::string path = is_file ? value.input_file("a scene file", most_scene_bytes) : name;
+  std::string text;
+  try {
+    text = text_of_scene(path);
+  } catch (const SceneError& error) {
+    value.fail(fmt::format("the name of a scene or a file: {}", error.what()));
+  }
+  toml::table whole = parse(text, path);
+  if (whole.contains("base")) value.fail("a scene without a base of its own");
+  parse_scene(text, path);  // what is wrong there is said of it
+  root.erase("base");
+  whole.erase("name");  // a file without one is called as it is
+  merge(root, whole);
+  root = std::move(whole);
+}
+
 /// The value of an override: TOML if it is TOML, else a bare word.
 toml::table parse_value(const Override& change) {
   if (line_nested_deeper(change.value, most_levels) > 0)
@@ -151,14 +185,10 @@ void check_panels(const Scene& scene, const std::string& origin) {
     throw SceneError(fmt::format("{}: trim.file: expected a scene without panels", origin));
   if (scene.panels.empty() && !scene.seams.empty())
     throw SceneError(fmt::format("{}: seams: expected panels, which they join", origin));
-  for (std::size_t k = 0; k < scene.seams.size(); ++k) {
-    Scene sewn = scene;
-    sewn.seams = {scene.seams[k]};
-    try {
-      Garment{sewn};
-    } catch (const std::invalid_argument& error) {
-      throw SceneError(fmt::format("{}: seams[{}]: {}", origin, k, error.what()));
-    }
+  try {
+    Garment{scene};
+  } catch (const std::invalid_argument& error) {
+    throw SceneError(fmt::format("{}: {}", origin, error.what()));
   }
 }
 
@@ -198,6 +228,15 @@ std::string read_file(const std::filesystem::path& path) {
   }
 }
 
+std::string text_of_scene(const std::string& name_or_file) {
+  if (name_or_file.ends_with(".toml")) return read_file(name_or_file);
+  try {
+    return std::string(base::find_named(builtin_scenes(), "scene", name_or_file).toml);
+  } catch (const std::invalid_argument& error) {
+    throw SceneError(fmt::format("{}, or a file ending in .toml", error.what()));
+  }
+}
+
 }  // namespace
 
 Override parse_override(std::string_view text) {
@@ -210,6 +249,7 @@ Override parse_override(std::string_view text) {
 Scene parse_scene(std::string_view toml, std::string_view origin, std::span<const Override> overrides) {
   const std::string file(origin);
   toml::table root = parse(toml, origin);
+  complete(root, file);
   Origins origins;
   if (std::ranges::any_of(overrides, [](const Override& change) { return change.key == "material.fabric"; }))
     root.erase("material");  // the file's moduli would change the fabric's
@@ -236,12 +276,7 @@ Scene parse_scene(std::string_view toml, std::string_view origin, std::span<cons
 }
 
 Scene load_scene(const std::string& name_or_file, std::span<const Override> overrides) {
-  if (name_or_file.ends_with(".toml")) return parse_scene(read_file(name_or_file), name_or_file, overrides);
-  try {
-    return parse_scene(base::find_named(builtin_scenes(), "scene", name_or_file).toml, name_or_file, overrides);
-  } catch (const std::invalid_argument& error) {
-    throw SceneError(fmt::format("{}, or a file ending in .toml", error.what()));
-  }
+  return parse_scene(text_of_scene(name_or_file), name_or_file, overrides);
 }
 
 std::string to_toml(const Scene& scene) {

@@ -20,7 +20,8 @@ struct Override {
 /// Splits "key=value". Throws SceneError.
 Override parse_override(std::string_view text);
 
-/// Reads scene text. `origin` names it in messages. Throws SceneError.
+/// Reads scene text. `origin` names it in messages. With `base`, the name or file of another scene, the text changes that: keys
+/// replace its keys, lists its lists. Throws SceneError.
 Scene parse_scene(std::string_view toml, std::string_view origin, std::span<const Override> overrides = {});
 
 /// A built-in scene by name, or a file whose name ends in .toml; without a key `name` it is called as the file is. Throws

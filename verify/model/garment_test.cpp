@@ -242,7 +242,12 @@ TEST(GarmentFiles, ThatAreWrongAreRefused) {
            {seam("panel = 'a', side = 'right'", "panel = 'b', side = 'left', ends = [0, 4]"),
             "a.toml: seams[0]: expected ends below 4, the particles on b left, not 0 and 4"},
            {seam("panel = 'a', side = 'right', ends = [0, 2]", "panel = 'a', side = 'right', ends = [1, 3]"),
-            "a.toml: seams[0]: expected particles that are no neighbours, 2 and 5 of a would be one"},
+            "a.toml: seams: expected to join no neighbours, 2 and 5 of a would be one"},
+           {"panels = [{name = 'a', grid.n = 5, grid.cut = [{ line = [[0.3, -1], [3, -1]] }, { line = [[3, -1], [3, 3]] }, { "
+            "line = [[3, 3], [0.3, 3]] }, "
+            "{ line = [[0.3, 3], [0.3, -1]] }]}, {name = 'b', grid.n = 5}]\nseams = [{one = {panel = 'a', side = 'left'}, "
+            "other = {panel = 'b', side = 'left'}}]",
+            "a.toml: seams[0]: expected cloth on all of a left"},
            {seam("panel = 'a', side = 'top'", "panel = 'b', side = 'left'"),
             "a.toml:4: seams.one.side = 'top': expected one of \"lower\", \"right\", \"upper\", \"left\""},
            {seam("panel = 'a'", "panel = 'b', side = 'left'"), "a.toml:4: seams.one = "},
@@ -253,7 +258,7 @@ TEST(GarmentFiles, ThatAreWrongAreRefused) {
            {"trim.file = 'nothing.obj'", "a.toml:4: trim.file = 'nothing.obj': "},
        }) {
     try {
-      model::parse_scene(two_panels + lines, "a.toml");
+      model::parse_scene(lines.starts_with("panels") ? "name = 'cut'\n" + lines : two_panels + lines, "a.toml");
       FAIL() << lines;
     } catch (const model::SceneError& error) {
       EXPECT_THAT(error.what(), testing::StartsWith(says));

@@ -91,6 +91,7 @@ struct Mannequin : ShapeRule {
 
   double height = drawn;  ///< [m]
   double arms = 25;       ///< angle with the vertical [degrees]
+  double legs = 0;        ///< the same [degrees]
   double speed = 0;       ///< of walking [m/s]; 0: it stands
   double walks_from = 0;  ///< the time at which it begins to walk [s]
 
@@ -110,14 +111,14 @@ struct Mannequin : ShapeRule {
     trunk({-0.045, 0, 1.08}, 0.09, {0.045, 0, 1.08}, 0.09);          // waist
     trunk({-0.08, 0.005, 0.93}, 0.1, {0.08, 0.005, 0.93}, 0.1);      // hips
     for (const double side : {-1.0, 1.0}) {
-      const Vector3d knee = knee_of(side), ankle(side * 0.1, 0.01, 0.08), elbow = elbow_of(side);
+      const Vector3d knee = knee_of(side), ankle = of_leg(side, {0.1, 0.01, 0.08}), elbow = elbow_of(side);
       const Vector3d wrist = elbow + 0.25 * down(side);
       add(Limb::upper_arm, side, shoulder_of(side), 0.047, elbow, 0.038);
       add(Limb::forearm, side, elbow, 0.038, wrist, 0.027);
       add(Limb::forearm, side, wrist, 0.028, wrist + 0.13 * down(side), 0.022);  // hand
       add(Limb::thigh, side, hip_of(side), 0.085, knee, 0.052);
       add(Limb::shank, side, knee, 0.052, ankle, 0.038);
-      add(Limb::shank, side, {side * 0.1, 0.025, 0.04}, 0.04, {side * 0.12, -0.13, 0.03}, 0.03);  // foot
+      add(Limb::shank, side, of_leg(side, {0.1, 0.025, 0.04}), 0.04, of_leg(side, {0.12, -0.13, 0.03}), 0.03);  // foot
     }
     return all;
   }
@@ -172,7 +173,14 @@ struct Mannequin : ShapeRule {
   Vector3d shoulder_of(double side) const { return {side * 0.165, 0.01, 1.39}; }
   Vector3d elbow_of(double side) const { return shoulder_of(side) + 0.29 * down(side); }
   Vector3d hip_of(double side) const { return {side * 0.09, 0, 0.9}; }
-  Vector3d knee_of(double side) const { return {side * 0.095, -0.005, 0.48}; }
+  Vector3d knee_of(double side) const { return of_leg(side, {0.095, -0.005, 0.48}); }
+
+  /// Where a point of the left leg of a figure with parallel legs is, or its mirror image.
+  Vector3d of_leg(double side, const Vector3d& p) const {
+    if (legs == 0) return {side * p.x(), p.y(), p.z()};
+    const Vector3d hip = hip_of(1), way = Eigen::AngleAxisd(-legs * std::numbers::pi / 180, Vector3d::UnitY()) * (p - hip);
+    return {side * (hip + way).x(), (hip + way).y(), (hip + way).z()};
+  }
 
   /// The integral of the share of its speed, from the beginning on [s].
   static double way_to_speed(double s) { return s * s * s - s * s * s * s / 2; }
@@ -212,10 +220,18 @@ void read_arms(const Value& value, ShapeRule& rule) {
   at<&Mannequin::arms>.in(rule) = arms;
 }
 
+void read_legs(const Value& value, ShapeRule& rule) {
+  const double legs = value.non_negative();
+  if (legs > 30) value.fail("an angle of at most 30 degrees");
+  at<&Mannequin::legs>.in(rule) = legs;
+}
+
 constexpr Key<ShapeRule> mannequin_keys[] = {
     {"height", "m", "from its soles, at z = 0, to the top of its head", at<&Mannequin::height>, check::positive},
     {"arms", "degrees", "angle of its arms with the vertical", read_arms,
      [](const ShapeRule& rule) -> Data { return at<&Mannequin::arms>.in(rule); }},
+    {"legs", "degrees", "angle by which each of its legs is spread", read_legs,
+     [](const ShapeRule& rule) -> Data { return at<&Mannequin::legs>.in(rule); }},
     {"walk", "m/s", "speed at which it walks along -y; 0: it stands", at<&Mannequin::speed>, check::non_negative},
     {"walk_from", "s", "when it begins to walk", at<&Mannequin::walks_from>, check::non_negative},
 };

@@ -1,8 +1,10 @@
 // bench_integrators run --frames: the meshes that it writes are the sheet and its obstacles.
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <sstream>
 
 #include "model/cloth.hpp"
@@ -170,6 +172,22 @@ TEST(Frames, ShowTheSurfacesOfObstaclesWhereTheyAreFromOutside) {
         EXPECT_GT(obstacle.nearest(pose.to_body(centre(obj, f) + 0.02 * out)).distance, 0.01) << k;
       }
     }
+}
+
+/// Vertices are nodes: those that a seam has merged are one, and cells on both sides of it have them.
+TEST(Frames, OfGarmentsShowWhatIsSewn) {
+  const BenchIntegrators program;
+  program.output({"run", "--scene", "sewn_dress", "--until", "0.62", "--no-reference", "--repeat", "1", "--method",
+                  "imex-euler", "--step", "0.02", "--frames", "a", "--every", "0.2"});
+  for (int k = 0; k < 4; ++k) {
+    const Obj sheet = mesh(program, fmt::format("a/sewn_dress-imex-euler-0.02/sheet-000{}.obj", k));
+    EXPECT_EQ(sheet.vertices.size(), k < 3 ? 2 * 25 * 38 : 2 * 25 * 38 - 2 * 28 - 2 * 5) << k;
+    EXPECT_EQ(sheet.faces.size(), 2 * 24 * 37);
+    std::vector<int> uses(sheet.vertices.size());
+    for (const std::vector<int>& face : sheet.faces)
+      for (const int corner : face) ++uses.at(static_cast<std::size_t>(corner));
+    EXPECT_EQ(std::ranges::count(uses, 0), 0) << k;
+  }
 }
 
 }  // namespace

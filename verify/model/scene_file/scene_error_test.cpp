@@ -55,6 +55,12 @@ const std::vector<BadScene> bad_scenes = {
     {"key_twice", "description = 'a'\ndescription = 'b'", "a.toml:3: "},
     {"syntax_error", "[grid]\nn = \n", "a.toml:3: Error while parsing key-value pair: expected value, saw "},
 
+    {"unknown_base", "base = 'felt'", "a.toml:2: base = 'felt': expected the name of a scene or a file: unknown scene 'felt': expected one of ball, "},
+    {"number_for_a_base", "base = 3", "a.toml:2: base = 3: expected a text in quotes"},
+    {"base_of_a_base", "base = 'walking_dress'", "a.toml:2: base = 'walking_dress': expected a scene without a base of its own"},
+    {"base_that_is_no_file", "base = 'nowhere.toml'", "a.toml:2: base = 'nowhere.toml': "},
+    {"key_of_no_base", "base = 'ball'\ngrid.m = 3", "a.toml:3: unknown key 'grid.m'"},
+
     {"not_a_number", "[material]\ndensity = nan", "a.toml:3: material.density = nan: expected a finite number"},
     {"infinity", "end.time = inf", "a.toml:2: end.time = inf: expected a finite number"},
     {"infinity_in_a_list", "material.tension = [1, -inf]", "a.toml:2: material.tension = -inf: expected a finite number"},

@@ -297,8 +297,29 @@ TEST(SceneFile, IsReadFromDisk) {
   EXPECT_EQ(to_toml(model::load_scene(file)), to_toml(parsed(complete)));
 }
 
-// --- Built-in scenes
-// -----------------------------------------------------------------------------------------------------------
+// --- Scenes that change others -----------------------------------------------------------------------------------------------
+
+TEST(BaseOfAScene, IsChangedByItsKeys) {
+  const Scene changed = parsed("base = 'hung-edge'\nname = 'other'\nmaterial.damping = 3\n[[pins]]\nwhere = 'corners'");
+  Scene expected = model::load_scene("hung-edge");
+  expected.name = "other";
+  expected.sheet.material.damping = {3, 3};
+  expected.pins = {{.where = "corners", .particles = {}}};
+  EXPECT_EQ(to_toml(changed), to_toml(expected));
+}
+
+TEST(BaseOfAScene, MayBeAFileBesideIt) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "base.toml") << complete;
+  std::ofstream(folder / "derived.toml") << "base = 'base.toml'\ngrid.n = [4, 3]";
+  Scene expected = parsed(complete, {"grid.n=[4, 3]"});
+  expected.name = "derived";
+  EXPECT_EQ(to_toml(model::load_scene(folder / "derived.toml")), to_toml(expected));
+}
+
+TEST(BaseOfAScene, IsOverriddenAfterAll) { EXPECT_EQ(parsed("base = 'hung-edge'\ngrid.n = 5", {"grid.n=7"}).sheet.grid.nu, 7); }
+
+// --- Built-in scenes ---------------------------------------------------------------------------------------------------------
 
 class BuiltinScene : public TestWithParam<model::BuiltinScene> {};
 INSTANTIATE_TEST_SUITE_P(, BuiltinScene, testing::ValuesIn(model::builtin_scenes()), [](const auto& test) {
