@@ -203,6 +203,7 @@ void check_trajectory(Check& check, const std::string& group) {
   });
   for_each(state_fields,
            [&](const auto& field) { frames.see(path(field), check.numbers(path(field), "float64", 3, field.unit)); });
+  if (const std::string panels = group + "/panels"; check.find(panels) != nullptr) check.numbers(panels, "int32", 2, "1");
 }
 
 void check_run(Check& check, const std::string& group) {

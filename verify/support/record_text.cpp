@@ -37,8 +37,8 @@ std::string as_text(const results::RunRecord& run) {
                         momentum, angular);
   }
   if (trajectory) {
-    const auto& [nu, nv, times, states, stretch, constraint] = *trajectory;
-    text += fmt::format("{} {} {} {}\n", nu, nv, times, constraint);
+    const auto& [nu, nv, panels, times, states, stretch, constraint] = *trajectory;
+    text += fmt::format("{} {} {} {} {}\n", nu, nv, panels, times, constraint);
     for (const solver::State& y : states) text += fmt::format("{} {}\n", vectors_as_text(y.x), vectors_as_text(y.v));
     for (const Eigen::VectorXd& strains : stretch) text += fmt::format("{}\n", fmt::join(strains, " "));
   }

@@ -100,6 +100,16 @@ TEST(Mannequin, GivesContactsWithAllPartsInReach) {
   for (const solver::Contact& c : found) EXPECT_EQ(c.friction, 0.2);
 }
 
+/// The left ankle is spread about the hip, the right one is its mirror image.
+TEST(Mannequin, SpreadsItsLegs) {
+  const Obstacle straight(mannequin()), spread(mannequin(", legs = 12"));
+  const double angle = 12 * std::numbers::pi / 180, x = 0.01, z = -0.82;
+  const Vector3d ankle(0.09 + x * std::cos(angle) - z * std::sin(angle), 0.01, 0.9 + x * std::sin(angle) + z * std::cos(angle));
+  EXPECT_NEAR(spread.nearest(ankle).distance, straight.nearest({0.1, 0.01, 0.08}).distance, 1e-12);
+  EXPECT_NEAR(spread.nearest({-ankle.x(), ankle.y(), ankle.z()}).distance, spread.nearest(ankle).distance, 1e-12);
+  EXPECT_GT(spread.nearest({0, 0, 0.7}).distance, straight.nearest({0, 0, 0.7}).distance + 0.02);
+}
+
 // --- Walking ---------------------------------------------------------------------------------------------------------------
 
 constexpr double speed = 1.2, from = 0.5;

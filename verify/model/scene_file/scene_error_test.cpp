@@ -196,6 +196,7 @@ const std::vector<BadScene> bad_scenes = {
     {"mesh_without_file", "obstacles = [{shape = 'mesh'}]", "a.toml:2: obstacles = { shape = 'mesh' }: expected 'file' in every mesh"},
     {"flat_box", "obstacles = [{shape = 'box', size = [1, 0, 1]}]", "a.toml:2: obstacles.size = 0: expected a number above 0"},
     {"sphere_inside_out", "obstacles = [{shape = 'sphere', radius = -1}]", "a.toml:2: obstacles.radius = -1: expected a number above 0"},
+    {"legs_too_far_apart", "obstacles = [{shape = 'mannequin', legs = 45}]", "a.toml:2: obstacles.legs = 45: expected an angle of at most 30 degrees"},
     {"arms_over_the_head", "obstacles = [{shape = 'mannequin', arms = 120}]",
      "a.toml:2: obstacles.arms = 120: expected an angle with the vertical of at most 90 degrees"},
     {"negative_friction", "obstacles = [{shape = 'plane', friction = -1}]",

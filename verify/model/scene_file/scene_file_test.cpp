@@ -286,8 +286,8 @@ TEST(SceneFile, NamesAllShapesInItsHelp) {
   const std::string help = std::ranges::find(keys, "obstacles", &model::KeyHelp::path)->description;
   EXPECT_THAT(
       help,
-      HasSubstr(
-          "shape = plane | sphere, radius | box, size | cylinder, radius, height | mannequin, height, arms | mesh, file, "));
+      HasSubstr("shape = plane | sphere, radius | box, size | cylinder, radius, height | mannequin, height, arms, legs, walk, "
+                "walk_from | mesh, file, "));
 }
 
 TEST(SceneFile, IsReadFromDisk) {

@@ -133,7 +133,9 @@ model::Scene scene_of(const BentSheet& sheet, int n) {
   m.bend = {sheet.bend, sheet.bend};
   m.bend_projected = sheet.force == BendingForce::along_normal;
   scene.sheet.gravity[2] = -sheet.body_force;
-  scene.pins = {{"left edge", {}}, {"right edge", {}, {false, false, true}}, {"all", {}, {false, true, false}}};
+  scene.pins = {{.where = "left edge", .particles = {}},
+                {.where = "right edge", .particles = {}, .directions = {false, false, true}},
+                {.where = "all", .particles = {}, .directions = {false, true, false}}};
   return scene;
 }
 

@@ -24,7 +24,7 @@ model::Scene scene_of(int springs, double length, double modulus) {
   model::Scene scene;
   scene.sheet.grid = {springs + 1, 1, length, 0.05};
   scene.sheet.material.tension = {modulus, modulus};
-  scene.pins = {{"left edge", {}}, {"right edge", {}}};
+  scene.pins = {{.where = "left edge", .particles = {}}, {.where = "right edge", .particles = {}}};
   return scene;
 }
 

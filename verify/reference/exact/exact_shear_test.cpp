@@ -125,7 +125,7 @@ model::Scene scene_of(const SideloadedSheet& sheet, int n) {
   scene.sheet.material.tension = {sheet.modulus, sheet.modulus};
   scene.sheet.material.shear = sheet.shear;
   scene.sheet.gravity[1] = sheet.body_force;
-  scene.pins = {{"left edge", {}}, {"all", {}, {false, false, true}}};
+  scene.pins = {{.where = "left edge", .particles = {}}, {.where = "all", .particles = {}, .directions = {false, false, true}}};
   return scene;
 }
 

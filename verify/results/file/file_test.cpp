@@ -72,6 +72,7 @@ RunRecord full_record() {
   run.contact = results::ContactRecord{4e-3, 1e-9, 0.25, nan};
   run.trajectory = TrajectoryRecord{.nu = 2,
                                     .nv = 1,
+                                    .panels = {{1, 1}, {1, 1}},
                                     .times = {0, 0.25, infinity},
                                     .states = {run.final_state, {run.final_state.v, run.final_state.x}, run.final_state},
                                     .stretch = {Eigen::Vector2d(1, 2), Eigen::Vector2d(nan, 3), Eigen::Vector2d(4, 1e-300)},
@@ -351,6 +352,15 @@ TEST(ReadRuns, RefusesTrajectoriesWhoseFramesAreNotAllThere) {
   RunFile(folder / "runs.h5", {}).add(run);
   EXPECT_THAT(complaint([&] { read_runs(folder / "runs.h5"); }),
               HasSubstr("runs.h5: trajectory/stretch: expected 2 numbers in each of 4 frames"));
+}
+
+TEST(ReadRuns, RefusesPanelsThatAreNotAllOfTheParticles) {
+  const base::TemporaryFolder folder;
+  RunRecord run = full_record();
+  run.trajectory->panels = {{2, 2}};
+  RunFile(folder / "runs.h5", {}).add(run);
+  EXPECT_THAT(complaint([&] { read_runs(folder / "runs.h5"); }),
+              HasSubstr("runs.h5: trajectory/panels: expected nu and nv of panels with 2 particles together"));
 }
 
 TEST(ReadRuns, RefusesForeignHdf5AndOtherVersions) {

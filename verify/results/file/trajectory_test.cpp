@@ -35,7 +35,7 @@ TEST(Trajectory, IsThereAtTheTimesAskedForFromTheStartOn) {
   ASSERT_THAT(all, SizeIs(2));
   for (const RunRecord& run : all) {
     ASSERT_TRUE(run.trajectory);
-    const auto& [nu, nv, times, states, stretch, constraint] = *run.trajectory;
+    const auto& [nu, nv, panels, times, states, stretch, constraint] = *run.trajectory;
     EXPECT_EQ(nu, 5);
     EXPECT_EQ(nv, 4);
     EXPECT_THAT(times, ElementsAre(0, 0.015, 0.03, 0.045));
@@ -47,7 +47,7 @@ TEST(Trajectory, HasTheStatesOfTheRun) {
   const BenchIntegrators program;
   const auto all = runs(program, tiny + Words{"--method", "bdf2", "--step", "0.01", "--trajectory", "every=0.005"});
   const model::Scene scene = model::load_scene("hung-edge", std::vector<model::Override>{{"grid.n", "[5, 4]"}});
-  const auto& [nu, nv, times, states, stretch, constraint] = *all[0].trajectory;
+  const auto& [nu, nv, panels, times, states, stretch, constraint] = *all[0].trajectory;
   ASSERT_THAT(states, SizeIs(11));
   EXPECT_EQ(states[0].x, model::start(scene).x);
   EXPECT_EQ(states[10].x, all[0].final_state.x);
