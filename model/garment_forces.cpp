@@ -102,7 +102,8 @@ std::vector<solver::CompliantConstraint> GarmentForces::constraints() const {
   return all;
 }
 
-void GarmentForces::visit(double t, const Vectors& x, const Vectors& v, const JacobianEntries& entries) {
+void GarmentForces::visit(const Moment& now, const JacobianEntries& entries) {
+  const auto& [t, x, v] = now;
   if (Part& part = parts_.front(); part.panel.nodes.empty()) return part.forces.visit(t, x, v, entries);
   for (Part& part : parts_) {
     const auto by_nodes = [&panel = part.panel](const JacobianEntries::Add& add) {
@@ -117,14 +118,16 @@ void GarmentForces::jacobian(double t, const Vectors& x, const Vectors& v, Exact
                              SparseMatrix& df_dv) {
   ++jacobians_;
   normal_evaluations_ += needs_normals();
-  matrix.assemble([&](const JacobianEntries& entries) { visit(t, x, v, entries); }, df_dx, df_dv);
+  const Moment now{t, x, v};
+  matrix.assemble([this, &now](const JacobianEntries& entries) { visit(now, entries); }, df_dx, df_dv);
 }
 
 void GarmentForces::newton_matrix(double t, const Vectors& x, const Vectors& v, double gamma, NewtonMatrix& matrix,
                                   SparseMatrix& J) {
   ++newton_matrices_;
   normal_evaluations_ += needs_normals();
-  matrix.assemble([&](const JacobianEntries& entries) { visit(t, x, v, entries); }, gamma, J);
+  const Moment now{t, x, v};
+  matrix.assemble([this, &now](const JacobianEntries& entries) { visit(now, entries); }, gamma, J);
 }
 
 SparseMatrix GarmentForces::sum_of(SparseMatrix (PanelForces::*matrix)() const) const {

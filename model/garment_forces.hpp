@@ -55,8 +55,14 @@ class GarmentForces {
     bool active = false, constrains = false, without_energy = false;
   };
 
+  /// Together, so that a function that refers to it needs no memory of its own.
+  struct Moment {
+    double t;
+    const Vectors &x, &v;
+  };
+
   bool kinds_with(bool Kind::*property) const;
-  void visit(double t, const Vectors& x, const Vectors& v, const JacobianEntries& entries);
+  void visit(const Moment& now, const JacobianEntries& entries);
   SparseMatrix sum_of(SparseMatrix (PanelForces::*matrix)() const) const;
 
   std::shared_ptr<const Garment> garment_;

@@ -17,14 +17,14 @@ class PanelMemory final : public TermMemory {
   void carry(double t, const State& y, MutableVariables z) override { memory_->carry(t, own(y), z); }
   void rate(const State& y, const Variables& z, MutableVariables dz) const override { memory_->rate(own(y), z, dz); }
   void respond(double gamma, const State& y, const Variables& r, const State& d, MutableVariables dz) const override {
-    memory_->respond(gamma, own(y), r, own(d), dz);
+    memory_->respond(gamma, own(y), r, own(d, other_), dz);
   }
   double energy(const State& y, const Variables& z) const override { return memory_->energy(own(y), z); }
   void add_branches(const State& y, const Variables& z, std::vector<int>& now) const override {
     memory_->add_branches(own(y), z, now);
   }
   double first_kink(double h, double from, const State& y0, const Variables& z, const State& y1) const override {
-    return memory_->first_kink(h, from, own(y0), z, own(y1));
+    return memory_->first_kink(h, from, own(y0), z, own(y1, other_));
   }
   std::int64_t stiffness_changes() const override { return memory_->stiffness_changes(); }
   void add_stiffness(std::vector<Eigen::Triplet<double>>& entries) const override {
@@ -36,15 +36,18 @@ class PanelMemory final : public TermMemory {
 
  private:
   /// The state of the panel's particles, without internal variables.
-  State own(const State& y) const {
-    State gathered;
+  const State& own(const State& y, State& gathered) const {
+    gathered.x.resize(y.x.size() > 0 ? std::ssize(panel_.nodes) : 0, 3);
+    gathered.v.resize(y.v.size() > 0 ? std::ssize(panel_.nodes) : 0, 3);
     if (y.x.size() > 0) panel_.seen(y.x, gathered.x);
     if (y.v.size() > 0) panel_.seen(y.v, gathered.v);
     return gathered;
   }
+  const State& own(const State& y) const { return own(y, own_); }
 
   std::shared_ptr<TermMemory> memory_;
   const Garment::Panel& panel_;
+  mutable State own_, other_;
 };
 
 }  // namespace

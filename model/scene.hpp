@@ -119,7 +119,7 @@ struct Scene {
   std::vector<PhaseRule> phases;  ///< `until` ascends
   double end = 1;                 ///< [s]
 
-  // Of a phase (model/phases.hpp):
+  // What phases have besides (model/phases.hpp):
   double begin = 0;  ///< [s]
   SeamState seam_state = SeamState::sewn;
 };

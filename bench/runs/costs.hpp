@@ -15,7 +15,7 @@ struct Costs {
   double total() const { return forces + detection + rest; }
 };
 
-/// Of the first steps of a run of a scene with one phase, without compiling it.
+/// The costs of the first steps of a run of a scene with one phase, without compiling it.
 Costs costs(const RunSpec& spec, std::size_t most_steps);
 
 }  // namespace drape::bench

@@ -32,7 +32,7 @@ Eigen::VectorXd mean_strain(const std::vector<model::Edge>& edges, const solver:
   return sum.cwiseQuotient(count.cwiseMax(1));
 }
 
-/// Of all nodes.
+/// What constrains each node.
 std::vector<int> constraints(const model::Scene& scene, const model::Cloth& cloth, double t, const solver::Vectors& x) {
   std::vector<int> kinds(static_cast<std::size_t>(cloth.ode.particles()), int(results::Constraint::free));
   const std::vector<bool> touching = in_contact(scene, cloth, t, x);

@@ -43,12 +43,12 @@ toml::table parse(std::string_view text, std::string_view origin) {
 }
 
 /// Puts the entries of a table into another one, tables into tables; anything else replaces what is there.
-void merge(const toml::table& from, toml::table& to) {
-  for (const auto& [key, node] : from)
-    if (const toml::table* table = node.as_table(); table != nullptr && to.get_as<toml::table>(key) != nullptr)
+void merge(toml::table& from, toml::table& to) {
+  for (auto&& [key, node] : from)
+    if (toml::table* table = node.as_table(); table != nullptr && to.get_as<toml::table>(key) != nullptr)
       merge(*table, *to.get_as<toml::table>(key));
     else
-      to.insert_or_assign(key, node);
+      node.visit([&to, &name = key](auto& value) { to.insert_or_assign(name, std::move(value)); });  // a copy has no line
 }
 
 std::string text_of_scene(const std::string& name_or_file);

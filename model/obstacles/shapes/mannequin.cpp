@@ -165,7 +165,7 @@ struct Mannequin : ShapeRule {
  private:
   double scale() const { return height / drawn; }
 
-  // Of a figure of 1.7 m.
+  // Places in a figure of 1.7 m.
   Vector3d down(double side) const {
     const double angle = arms * std::numbers::pi / 180;
     return {side * std::sin(angle), 0, -std::cos(angle)};

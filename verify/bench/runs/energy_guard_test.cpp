@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "bench/runs/run.hpp"
+#include "model/phases.hpp"
 #include "model/scene_file/scene_file.hpp"
 #include "verify/support/slow.hpp"
 
@@ -34,7 +35,7 @@ constexpr double lossless = 1 / (1 + EnergyGuard::tolerated);
 /// The largest energy over the limit in a run.
 double largest_part(const Scene& scene, const char* method, double until, double h) {
   const Cloth cloth = model::compile(scene);
-  EnergyGuard guard(scene, cloth);
+  EnergyGuard guard(model::phases(scene).front(), cloth);
   solver::Integrator integrator(cloth.ode, solver::method(method), {}, cloth.start);
   double largest = 0;
   const auto result = integrate(integrator, until, h, [&](const solver::StepReport& step) {

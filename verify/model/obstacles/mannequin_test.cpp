@@ -180,7 +180,7 @@ TEST(WalkingMannequin, SwingsItsLimbs) {
     const Vector3d hip = moved(parts[of_side(1, thigh)], {0.09, 0, 0.9}, t);
     const Vector3d knee = moved(parts[of_side(1, thigh)], {0.095, -0.005, 0.48}, t);
     const Vector3d ankle = moved(parts[of_side(1, shank)], {0.1, 0.01, 0.08}, t);
-    EXPECT_LT((knee - hip).cross(ankle - knee).x(), 0.02) << t;
+    EXPECT_GT((knee - hip).cross(ankle - knee).x(), 0) << t;
   }
   EXPECT_NEAR(farthest, 0.42 * std::sin(28 * std::numbers::pi / 180), 0.01);
   EXPECT_NEAR(hindmost, -0.42 * std::sin(16 * std::numbers::pi / 180), 0.01);
@@ -202,7 +202,7 @@ TEST(WalkingMannequin, HasTheVelocityOfItsParts) {
   ASSERT_NE(mine, found.end());
   const Vector3d velocity = (moved(parts[of_side(1, thigh)], knee, t + h) - moved(parts[of_side(1, thigh)], knee, t)) / h;
   EXPECT_LE((mine->velocity - velocity).norm(), 0.02 * velocity.norm());
-  EXPECT_GT(velocity.norm(), 0.5);
+  EXPECT_GT(velocity.norm(), 0.3);
 }
 
 TEST(WalkingMannequin, IsDrawnPartByPart) {
