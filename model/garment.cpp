@@ -14,10 +14,8 @@
 namespace drape::model {
 namespace {
 
-constexpr std::string_view side_names[] = {"lower", "right", "upper", "left"};
-
 std::string shown(const SeamSide& side) {
-  return fmt::format("{} {}", side.panel, side_names[static_cast<std::size_t>(side.side)]);
+  return fmt::format("{} {}", side.panel, panel_side_names[static_cast<std::size_t>(side.side)]);
 }
 
 template <class Panel>
@@ -30,9 +28,9 @@ const Panel& named(const std::vector<Panel>& panels, const std::string& name) {
 }
 
 /// Sets of particles that are one node.
-class Joined {
+class NodeSets {
  public:
-  explicit Joined(int count) : parent_(static_cast<std::size_t>(count)) { std::iota(parent_.begin(), parent_.end(), 0); }
+  explicit NodeSets(int count) : parent_(static_cast<std::size_t>(count)) { std::iota(parent_.begin(), parent_.end(), 0); }
 
   int root(int i) {
     while (parent(i) != i) i = parent(i) = parent(parent(i));
@@ -132,7 +130,7 @@ std::vector<std::pair<int, int>> Garment::pairs(const SeamRule& seam) const {
 }
 
 void Garment::sew(std::span<const SeamRule> seams) {
-  Joined joined(particles_);
+  NodeSets joined(particles_);
   for (std::size_t k = 0; k < seams.size(); ++k) try {
       for (const auto& [i, j] : pairs(seams[k])) joined.join(i, j);
     } catch (const std::invalid_argument& error) {

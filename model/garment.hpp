@@ -3,6 +3,7 @@
 #include <map>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -10,6 +11,9 @@
 #include "model/scene.hpp"
 
 namespace drape::model {
+
+/// In the order of PanelSide.
+inline constexpr std::string_view panel_side_names[] = {"lower", "right", "upper", "left"};
 
 /// The panels of a scene and what joins them. Particles are those of the panels, one panel after the other; those that seams
 /// join are one node, and nodes are what moves. A scene without panels has one, its sheet, whose particles are the nodes.

@@ -7,7 +7,7 @@ namespace drape::model {
 namespace {
 
 /// Where a path is at a time: at rest before its first point and after its last.
-Eigen::Vector3d at(const std::vector<PathPoint>& path, double t) {
+Eigen::Vector3d place_at(const std::vector<PathPoint>& path, double t) {
   const auto next = std::ranges::upper_bound(path, t, {}, &PathPoint::t);
   if (next == path.begin()) return next->position;
   if (next == path.end()) return path.back().position;
@@ -19,7 +19,7 @@ Eigen::Vector3d at(const std::vector<PathPoint>& path, double t) {
 std::vector<PinRule> uniform(std::vector<PinRule> pins, double begin, double end) {
   for (PinRule& pin : pins) {
     if (pin.path.empty()) continue;
-    pin.velocity = (at(pin.path, end) - at(pin.path, begin)) / (end - begin);
+    pin.velocity = (place_at(pin.path, end) - place_at(pin.path, begin)) / (end - begin);
     pin.path.clear();
   }
   return pins;

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "model/garment.hpp"
 #include "model/scene_file/keys.hpp"
 #include "model/scene_file/pin_keys.hpp"
 #include "solver/base/registry.hpp"
@@ -15,7 +16,6 @@ namespace drape::model {
 namespace {
 
 constexpr std::array<std::string_view, 3> sections = {"grid", "material", "start"};
-constexpr std::string_view side_names[] = {"lower", "right", "upper", "left"};
 
 /// "grid.n" as its section and its name there.
 std::pair<std::string_view, std::string_view> split(std::string_view key) {
@@ -58,7 +58,7 @@ Data ends_data(const SeamSide& side) {
 
 constexpr Key<SeamSide> side_keys[] = {
     {"panel", "", "the name of a panel", at<&SeamSide::panel>, check::text, true},
-    {"side", "", "\"lower\", \"right\", \"upper\" or \"left\"", at<&SeamSide::side>, check::one_of<side_names>, true},
+    {"side", "", "\"lower\", \"right\", \"upper\" or \"left\"", at<&SeamSide::side>, check::one_of<panel_side_names>, true},
     {"ends", "", "[first, last] particle of the side, as the seam goes", read_ends, ends_data},
 };
 
@@ -92,12 +92,12 @@ void read_gravity(const Value& value, PhaseOfScene& rule) { rule.phase.gravity =
 
 Data gravity_data(const PhaseOfScene& rule) { return rule.phase.gravity ? to_data(*rule.phase.gravity) : Data(); }
 
-void read_pins(const Value& value, PhaseOfScene& rule) {
+void read_phase_pins(const Value& value, PhaseOfScene& rule) {
   std::vector<PinRule>& pins = rule.phase.pins.emplace();
   for (const Value& pin : value.list()) pins.push_back(read_pin(pin, rule.scene));
 }
 
-Data pins_data(const PhaseOfScene& rule) {
+Data phase_pins_data(const PhaseOfScene& rule) {
   if (!rule.phase.pins) return {};
   List pins;
   for (const PinRule& pin : *rule.phase.pins) pins.emplace_back(entries_of(pin, rule.scene));
@@ -108,7 +108,7 @@ constexpr Key<PhaseOfScene> phase_keys[] = {
     {"until", "s", "its end", at<&PhaseOfScene::phase, &PhaseRule::until>, check::positive, true},
     {"gravity", "m/s²", "[x, y, z]", read_gravity, gravity_data},
     {"seams", "", "\"sewn\", \"pulled\" or \"open\"", at<&PhaseOfScene::phase, &PhaseRule::seams>, check::one_of<seam_states>},
-    {"pins", "", "instead of those of the scene", read_pins, pins_data},
+    {"pins", "", "instead of those of the scene", read_phase_pins, phase_pins_data},
 };
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "verify/support/convergence.hpp"
 #include "verify/support/manufactured_materials.hpp"
 #include "verify/support/manufactured_sheets.hpp"
+#include "verify/support/slow.hpp"
 #include "verify/support/small_problems.hpp"
 
 namespace drape::verify::manufactured_space_time_test {
@@ -74,6 +75,7 @@ class ManufacturedSpaceTime : public testing::TestWithParam<Case> {};
 INSTANTIATE_TEST_SUITE_P(, ManufacturedSpaceTime, testing::ValuesIn(cases()), name_of_case);
 
 TEST_P(ManufacturedSpaceTime, OrderIsTheSecond) {
+  DRAPE_SLOW();
   const auto& [name, named, motion] = GetParam();
   const Method& method = solver::method(name);
   const auto measured = has_order(convergence(named.material, motion, method, method.order), 2);

@@ -148,7 +148,7 @@ struct Mannequin : ShapeRule {
     const double under_way = std::clamp(t - walks_from, 0.0, 1.0), share = under_way * under_way * (3 - 2 * under_way);
     const double way = speed * (t - walks_from > 1 ? t - walks_from - 0.5 : way_to_speed(under_way));
     const double phase = 2 * std::numbers::pi * way / (0.8 * height) + (limb.side > 0 ? std::numbers::pi : 0);
-    const Pose whole{{0, -way, -0.008 * height * share * (1 - std::cos(2 * phase))}};
+    Pose whole{{0, -way, -0.008 * height * share * (1 - std::cos(2 * phase))}};
     const double hip = share * (6 + 22 * std::sin(phase)), knee = share * (24 + 22 * std::cos(phase - 0.35));
     const double shoulder = -share * 18 * std::sin(phase), elbow = share * 12;
     switch (limb.limb) {

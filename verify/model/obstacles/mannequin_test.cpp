@@ -118,7 +118,7 @@ std::vector<Obstacle> walking() { return parts_of(mannequin(", walk = 1.2, walk_
 
 /// The parts of a side, which follow seven of the trunk.
 enum Part : std::size_t { upper_arm, forearm, hand, thigh, shank, foot, count };
-std::size_t of_side(double side, Part part) { return 7 + (side < 0 ? 0 : count) + part; }
+std::size_t of_side(double side, Part part) { return 7 + (side < 0 ? std::size_t{0} : std::size_t{count}) + part; }
 
 Vector3d moved(const Obstacle& part, const Vector3d& p, double t) { return part.pose(t).to_world(p); }
 
