@@ -1,5 +1,6 @@
 #pragma once
 
+#include "model/keys/data.hpp"
 #include "model/keys/value.hpp"
 #include "model/scene.hpp"
 
