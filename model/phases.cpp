@@ -68,9 +68,10 @@ NextPhase compile_next(const Scene& phase, const Cloth& before, const solver::St
   const solver::State of_particles{before.garment->spread(y.x), before.garment->spread(y.v)};
   solver::State start = garment->gathered(of_particles);
   start.z = y.z;
-  const auto kinetic = [](const Eigen::VectorXd& mass, const Vectors& v) { return 0.5 * mass.dot(v.rowwise().squaredNorm()); };
-  const double lost = kinetic(before.ode.mass, y.v) - kinetic(garment->masses(), start.v);
-  return {compile(phase, std::move(garment), std::move(start), before.ode.work), lost};
+  const Vectors merged = start.v;  // before pins prescribe theirs
+  Cloth cloth = compile(phase, std::move(garment), std::move(start), before.ode.work);
+  const double lost = solver::kinetic_energy(before.ode, y.v) - solver::kinetic_energy(cloth.ode, merged);
+  return {std::move(cloth), lost};
 }
 
 }  // namespace drape::model

@@ -18,7 +18,7 @@ double sunk_corners(const model::Scene& scene, const results::RunRecord& run) {
 
 }  // namespace
 
-std::string Draping::ending() const {
+std::string ending(solver::Outcome outcome, double last_good_time) {
   return outcome == solver::Outcome::success ? "success" : fmt::format("{} at {:.4g} s", to_string(outcome), last_good_time);
 }
 

@@ -36,6 +36,9 @@ inline const std::map<std::string_view, PublishedRun> published_table_3_2{{"imex
                                                                           {"bdf2", {{122, 857}, 2.57}},
                                                                           {"midpoint", {{494, 813}, 4.39}}};
 
+/// "success", or how a run ended else and when.
+std::string ending(solver::Outcome outcome, double last_good_time);
+
 /// What became of a falling sheet, beside what the thesis prints of it.
 struct Draping {
   std::int64_t updates = 0, cg_iterations = 0;
@@ -44,9 +47,6 @@ struct Draping {
   solver::Outcome outcome = solver::Outcome::success;
   double last_good_time = 0;  ///< [s]
   std::optional<PublishedWork> as_published;
-
-  /// "success", or what else and when.
-  std::string ending() const;
 };
 
 Draping draping(const model::Scene& scene, const results::RunRecord& run, const std::optional<PublishedWork>& as_published);
@@ -61,7 +61,7 @@ inline constexpr results::ColumnOf<Draping> draping_columns[] = {
     {"contacts", "in contact", "1", "particles that touched something in the last step", results::Role::quantity,
      results::field<&Draping::contacts>},
     {"outcome", "outcome", "", "how the run ended", results::Role::outcome,
-     [](const Draping& run) { return results::to_datum(run.ending()); }},
+     [](const Draping& run) { return results::to_datum(ending(run.outcome, run.last_good_time)); }},
     {"thesis_updates", "thesis: updates", "1", "printed in the thesis", results::Role::note,
      [](const Draping& run) { return run.as_published ? results::to_datum(run.as_published->updates) : results::Datum(); }},
     {"thesis_cg_iterations", "thesis: CG", "1", "printed in the thesis", results::Role::note,

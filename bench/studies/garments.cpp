@@ -131,9 +131,7 @@ std::vector<DressRun> run_dress(bool quick, Checkpoint& checkpoint) {
     });
     row.updates = work_count(run, "updates"), row.cg_iterations = work_count(run, "cg_iterations");
     row.clearance = run.contact->clearance, row.energy_rise = run.contact->energy_rise;
-    row.outcome = run.outcome == solver::Outcome::success
-                      ? "success"
-                      : fmt::format("{} at {:.4g} s", to_string(run.outcome), run.last_good_time);
+    row.outcome = ending(run.outcome, run.last_good_time);
     counts.push_back(steps_to_time(run));
     checkpoint.advance();
   }

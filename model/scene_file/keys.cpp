@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 #include "model/fabric.hpp"
@@ -36,54 +37,27 @@ std::vector<Value> rules(const Value& value) {
   return all;
 }
 
-void read_pins(const Value& value, Scene& scene) {
-  for (const Value& pin : rules(value)) scene.pins.push_back(read_pin(pin, scene));
+/// Reads the entries of a member one after the other, each with the scene as it is until then if it asks for one.
+template <auto member, auto read_one>
+void read_entries_of(const Value& value, Scene& scene) {
+  for (const Value& entry : rules(value)) {
+    if constexpr (std::is_invocable_v<decltype(read_one), const Value&, const Scene&>)
+      (scene.*member).push_back(read_one(entry, scene));
+    else
+      (scene.*member).push_back(read_one(entry));
+  }
 }
 
-Data pins_data(const Scene& scene) {
-  List pins;
-  for (const PinRule& pin : scene.pins) pins.emplace_back(entries_of(pin, scene));
-  return pins;
-}
-
-void read_panels(const Value& value, Scene& scene) {
-  for (const Value& panel : rules(value)) scene.panels.push_back(read_panel(panel, scene));
-}
-
-Data panels_data(const Scene& scene) {
-  List panels;
-  for (const PanelRule& panel : scene.panels) panels.emplace_back(entries_of(panel, scene));
-  return panels;
-}
-
-void read_seams(const Value& value, Scene& scene) {
-  for (const Value& seam : rules(value)) scene.seams.push_back(read_seam(seam));
-}
-
-Data seams_data(const Scene& scene) {
-  List seams;
-  for (const SeamRule& seam : scene.seams) seams.emplace_back(entries_of(seam));
-  return seams;
-}
-
-void read_phases(const Value& value, Scene& scene) {
-  for (const Value& phase : rules(value)) scene.phases.push_back(read_phase(phase, scene));
-}
-
-Data phases_data(const Scene& scene) {
-  List phases;
-  for (const PhaseRule& phase : scene.phases) phases.emplace_back(entries_of(phase, scene));
-  return phases;
-}
-
-void read_obstacles(const Value& value, Scene& scene) {
-  for (const Value& obstacle : rules(value)) scene.obstacles.push_back(read_obstacle(obstacle));
-}
-
-Data obstacles_data(const Scene& scene) {
-  List obstacles;
-  for (const ObstacleRule& rule : scene.obstacles) obstacles.emplace_back(entries_of(rule));
-  return obstacles;
+template <auto member>
+Data data_of_entries(const Scene& scene) {
+  List all;
+  for (const auto& entry : scene.*member) {
+    if constexpr (requires { entries_of(entry, scene); })
+      all.emplace_back(entries_of(entry, scene));
+    else
+      all.emplace_back(entries_of(entry));
+  }
+  return all;
 }
 
 // --- What is in two members --------------------------------------------------------------------------------------------------
@@ -446,7 +420,7 @@ std::span<const SceneKey> scene_key_table() {
       {"forces.air", "N s/m³", "c_w ρ_air: resistance of the air to motion across the sheet",
        in_sheet<&Sheet::air>, check::non_negative},
 
-      {"obstacles", "", of_obstacles, read_obstacles, obstacles_data},
+      {"obstacles", "", of_obstacles, read_entries_of<&Scene::obstacles, read_obstacle>, data_of_entries<&Scene::obstacles>},
 
       {"contact.distance", "m", "d: what is nearer to an obstacle than this is in its collision area",
        in_contact<&ContactRule::distance>, check::positive},
@@ -469,11 +443,11 @@ std::span<const SceneKey> scene_key_table() {
       {"start.position", "m", "of the origin of the pattern at t = 0", in_start<&Start::position>, check::number},
 
       {"panels", "", "list of { name, grid, material, start }: cloth of several panels, each with keys of these sections, which change those of the scene",
-       read_panels, panels_data},
+       read_entries_of<&Scene::panels, read_panel>, data_of_entries<&Scene::panels>},
       {"seams", "", "list of { one, other, ease }: sides { panel, side, ends } whose particles are one; one may be longer by the part ease",
-       read_seams, seams_data},
-      {"pins", "", "list of { panel, where | particles | circle, directions, velocity | path }: prescribed motion", read_pins, pins_data},
-      {"phases", "", "list of { until, gravity, seams, pins }: times in which these are other than after the last", read_phases, phases_data},
+       read_entries_of<&Scene::seams, read_seam>, data_of_entries<&Scene::seams>},
+      {"pins", "", "list of { panel, where | particles | circle, directions, velocity | path }: prescribed motion", read_entries_of<&Scene::pins, read_pin>, data_of_entries<&Scene::pins>},
+      {"phases", "", "list of { until, gravity, seams, pins }: times in which these are other than after the last", read_entries_of<&Scene::phases, read_phase>, data_of_entries<&Scene::phases>},
 
       {"rest.shape", "", "\"flat\" or \"start\": bending is at rest in the shape at t = 0",
        at<&Scene::rest>, check::one_of<rest_shapes>},
