@@ -9,7 +9,7 @@
 #include <tuple>
 
 #include "model/garment.hpp"
-#include "model/obstacles/mesh_shape.hpp"
+#include "model/obstacles/mesh_file.hpp"
 #include "model/sheet/edges.hpp"
 #include "solver/base/registry.hpp"
 

@@ -93,11 +93,12 @@ export function particleName({panels}, i) {
   return panels.length > 1 ? `${place} of panel ${panel + 1}` : place;
 }
 
-/** The geometry of a surface, made once: runs share it. */
+/** The geometry of a surface, made once: runs share it, and the time. */
 function surfaceGeometry(surface) {
   if (surface.geometry) return surface.geometry;
   const geometry = new THREE.BufferGeometry();
-  geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(bytesOf(surface.vertices).buffer), 3));
+  surface.positions = new Float32Array(bytesOf(surface.vertices).buffer);
+  geometry.setAttribute("position", new THREE.BufferAttribute(surface.positions.slice(0, 3 * surface.count), 3));
   geometry.setIndex(new THREE.BufferAttribute(new Uint32Array(bytesOf(surface.triangles).buffer), 1));
   geometry.computeVertexNormals();
   return (surface.geometry = geometry);
@@ -113,11 +114,18 @@ function makeObstacle({surface, poses}) {
   if (!surface.smooth)
     body.add(
         new THREE.LineSegments(new THREE.EdgesGeometry(geometry, 40), new THREE.LineBasicMaterial({color: 0x4a5560})));
-  return {body, poses};
+  return {body, poses, surface};
 }
 
 /** Moves an obstacle to where it is at a time. */
-export function placeObstacle({body, poses}, times, t) {
+export function placeObstacle({body, poses, surface}, times, t) {
+  const {positions, geometry, count} = surface;
+  if (positions.length > 3 * count) {
+    positionsAt({times, positions, particles: count}, t, geometry.attributes.position.array);
+    geometry.attributes.position.needsUpdate = true;
+    geometry.computeVertexNormals();
+    geometry.computeBoundingSphere();
+  }
   const moves = poses.length > 7, {below, above, share} = moves ? framesAt(times, t) : {below: 0, above: 0, share: 0};
   const position = (frame) => new THREE.Vector3().fromArray(poses, 7 * frame),
         turn = (frame) => new THREE.Quaternion().fromArray(poses, 7 * frame + 3);

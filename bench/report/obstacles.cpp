@@ -11,6 +11,7 @@
 
 #include "bench/report/base64.hpp"
 #include "model/obstacles/contacts.hpp"
+#include "model/obstacles/surface.hpp"
 #include "model/scene_file/scene_file.hpp"
 
 namespace drape::bench {
@@ -55,11 +56,18 @@ std::string packed(const std::vector<Number>& numbers) {
   return base64(std::as_bytes(std::span(numbers)));
 }
 
-Json page_surface(const model::Polygons& polygons, bool smooth) {
+/// Vertices at each of the times, or once if it does not deform.
+Json page_surface(const model::Polygons& polygons, const model::Obstacle& obstacle, std::span<const double> times,
+                  bool smooth) {
+  constexpr double any = 0;
   std::vector<float> places;
-  for (const Eigen::Vector3d& vertex : polygons.vertices)
-    for (const double x : vertex) places.push_back(static_cast<float>(x));
-  return {{"vertices", packed(places)}, {"triangles", packed(triangles(polygons))}, {"smooth", smooth}};
+  for (const double t : obstacle.deforming() != nullptr ? times : std::span(&any, 1))
+    for (const Eigen::Vector3d& vertex : vertices_at(obstacle, polygons, t))
+      for (const double x : vertex) places.push_back(static_cast<float>(x));
+  return {{"count", polygons.vertices.size()},
+          {"vertices", packed(places)},
+          {"triangles", packed(triangles(polygons))},
+          {"smooth", smooth}};
 }
 
 std::size_t index_of(Json surface, Json& surfaces) {
@@ -93,7 +101,7 @@ Json drawn_obstacles(const Readable& read, const results::TrajectoryRecord& traj
     const model::ObstacleRule& rule = read.scene.obstacles[k];
     const double plane_side = 4 * model::size(read.scene);
     const auto draw = [&](const model::Polygons& surface, const model::Obstacle& obstacle) {
-      drawn.push_back({{"surface", index_of(page_surface(surface, rule.kind->smooth), surfaces)},
+      drawn.push_back({{"surface", index_of(page_surface(surface, obstacle, trajectory.times, rule.kind->smooth), surfaces)},
                        {"poses", packed_poses(rule, obstacle, trajectory.times)}});
     };
     if (!rule.shape->moves()) {

@@ -7,10 +7,10 @@
 namespace drape::bench {
 
 /// The obstacles of a run with a trajectory, out of its scene as it was recorded: `drawn` has each with the index of its
-/// surface (triangles; appended to `surfaces` unless it is there) and its poses, a position [m] and a quaternion x, y, z, w:
-/// one of each frame, or one if it does not move. `missing` says which cannot be drawn, and why: meshes are in files of their
-/// own, which may be gone or have changed. `clearance` is the least distance of a particle from them in each frame [m], unless
-/// one is missing.
+/// surface (triangles, with vertices of each frame if they deform; appended to `surfaces` unless it is there) and its poses, a
+/// position [m] and a quaternion x, y, z, w: one of each frame, or one if it does not move. `missing` says which cannot be
+/// drawn, and why: meshes are in files of their own, which may be gone or have changed. `clearance` is the least distance of a
+/// particle from them in each frame [m], unless one is missing.
 nlohmann::ordered_json page_obstacles(const results::RunRecord& run, nlohmann::ordered_json& surfaces);
 
 }  // namespace drape::bench

@@ -33,7 +33,8 @@ std::string reference_file(const TrueMotion& truth, std::span<const double> time
 }
 
 std::string readme(const TrueMotion& truth, std::span<const double> times) {
-  return fmt::format(R"(The scene {0}, as a benchmark for simulators of cloth.
+  return fmt::format(
+      R"(The scene {0}, as a benchmark for simulators of cloth.
 
 {1}.
 
@@ -56,10 +57,13 @@ its positions at times of its choice, from t = 0 to at most {4:g} s, as an HDF5 
 The order of the vertices does not matter, nor do additional ones. With --cost SECONDS, what the simulator took on the
 same machine, its cost is compared as well.
 )",
-                     base::printable(truth.scene.name),
-                     truth.scene.description.empty() ? "It has no description" : base::printable(truth.scene.description),
-                     truth.scene.obstacles.empty() ? "" : "\nobstacle-k.obj  obstacle k of scene.json, where it is at t = 0",
-                     truth.families, truth.scene.end, times[1]);
+      base::printable(truth.scene.name),
+      truth.scene.description.empty() ? "It has no description" : base::printable(truth.scene.description),
+      truth.scene.obstacles.empty()
+          ? ""
+          : "\nobstacle-k.obj  obstacle k of scene.json, where it is at t = 0; obstacle-k-n.obj at that of frame n, "
+            "counted from 0,\n              where parts of it move or it deforms",
+      truth.families, truth.scene.end, times[1]);
 }
 
 }  // namespace
@@ -75,6 +79,9 @@ std::map<std::string, std::string> exported(const TrueMotion& truth, std::span<c
   for (std::size_t k = 0; k < scene.obstacles.size(); ++k) {
     const model::PosedObstacle obstacle(scene.obstacles[k], 4 * model::size(scene));
     files[fmt::format("obstacle-{}.obj", k)] = obj(0, obstacle.at(0));
+    if (!scene.obstacles[k].shape->moves()) continue;
+    for (std::size_t n = 0; n < times.size(); ++n)
+      files[fmt::format("obstacle-{}-{:04}.obj", k, n)] = obj(times[n], obstacle.at(times[n]));
   }
   return files;
 }

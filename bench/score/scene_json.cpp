@@ -91,7 +91,8 @@ Json pins(const model::Cloth& cloth, std::span<const double> times) {
   return all;
 }
 
-/// Shape and numbers: what else there is of it, as the file of a mesh, is in obstacle-k.obj.
+/// Shape and numbers: what else there is of it, as the file of a mesh, is in obstacle-k.obj, its motion in itself in
+/// obstacle-k-n.obj.
 Json shape(const model::ObstacleRule& rule) {
   Json entry{{"shape", rule.kind->name}, {"meaning", rule.kind->description}};
   for (const model::KeyValue& key : model::key_values(rule))

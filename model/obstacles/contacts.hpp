@@ -1,9 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "model/obstacles/obstacle.hpp"
+#include "model/obstacles/posed_mesh.hpp"
 #include "model/sheet/grid.hpp"
 #include "solver/split_ode.hpp"
 
@@ -35,10 +37,11 @@ struct Depth {
 ///
 /// Every particle is asked for the nearest point of every obstacle at the beginning of the step; the half-space behind that
 /// point moves with the obstacle and must not be left by the end of the step. A convex obstacle is thereby never tunnelled,
-/// however long the step: it lies on one side of the half-space. Limits: particles are not watched that would have to go more
-/// than d and twice as far as the fastest one and gravity go in a step; one obstacle gives a particle one half-space, so in
-/// hollows narrower than the way of a step the other wall is seen a step later; edges and faces of the sheet between particles
-/// are not tested (chapter 5).
+/// however long the step: it lies on one side of the half-space. Where an obstacle deforms, the particle is carried to the end
+/// of the step by the triangle that is nearest, and the half-space is behind the point that is nearest there and then. Limits:
+/// particles are not watched that would have to go more than d and twice as far as the fastest one and gravity go in a step;
+/// one obstacle gives a particle one half-space, so in hollows narrower than the way of a step the other wall is seen a step
+/// later; edges and faces of the sheet between particles are not tested (chapter 5).
 class Contacts {
  public:
   /// For this number of particles under this acceleration [m/s²]. Throws std::invalid_argument if the mesh of an obstacle
@@ -50,7 +53,7 @@ class Contacts {
   void find(double t, double h, const solver::State& y, std::vector<solver::Contact>& found);
 
   /// Sets `found` to the particles that are in a collision area.
-  void inside(double t, const Vectors& x, std::vector<Depth>& found) const;
+  void inside(double t, const Vectors& x, std::vector<Depth>& found);
 
   /// Distance of each particle from the nearest obstacle, N, negative inside [m].
   Eigen::VectorXd distances(double t, const Vectors& x) const;
@@ -58,14 +61,34 @@ class Contacts {
   std::span<const Obstacle> obstacles() const { return obstacles_; }
 
  private:
-  /// An answer that bounds later ones: distances change at most as far as the particle moves in the obstacle's frame.
+  /// An answer that bounds others: distances change at most as far as the particle moves in the obstacle's frame, and the
+  /// surface there.
   struct Answer {
     Eigen::Vector3d p;
     Nearest nearest{0, Eigen::Vector3d::Zero()};
+    double way = 0;  ///< MovingMesh::way of a surface that deforms [m]
     bool known = false;
   };
 
+  /// A point on the border of the collision area, in the frame of the obstacle.
+  struct Border {
+    Eigen::Vector3d begin, end;  ///< of the step, where the obstacle takes it
+    Eigen::Vector3d normal;      ///< at the end
+  };
+
+  /// The surface of an obstacle that deforms, at the beginning and the end of a step.
+  struct Deforming {
+    PosedMesh begin, end;
+
+    void set_times(double t, double h);
+
+    /// The point of the border to which a particle is nearest at the end when `at`, which is nearest at the beginning, has
+    /// carried it there.
+    Border border(const Eigen::Vector3d& p, const MaterialPoint& at, double distance) const;
+  };
+
   std::vector<Obstacle> obstacles_;
+  std::vector<std::optional<Deforming>> deforming_;  ///< for each obstacle
   double distance_, relaxation_;
   double moment_;  ///< [s]: obstacles move uniformly between key frames
   double gravity_;

@@ -17,11 +17,18 @@ struct Nearest {
   Eigen::Vector3d normal;  ///< unit: the direction in which the distance grows, away from the obstacle
 };
 
-/// A rigid shape in its own frame.
+class PosedMesh;
+
+/// A shape in its own frame.
 class Shape {
  public:
   virtual ~Shape() = default;
+
+  /// Where it is nearest; of a shape that deforms, at its first key time.
   virtual Nearest nearest(const Eigen::Vector3d& p) const = 0;
+
+  /// The surface of a shape that deforms, at its first key time; null if it is rigid.
+  virtual const PosedMesh* deforming() const { return nullptr; }
 };
 
 /// Position [m] and orientation of a rigid body.
@@ -58,7 +65,8 @@ class ShapeRule {
   /// The surface in its own frame, for looking at; of a plane a square with the given side [m]. Throws as make() does.
   virtual Polygons surface(double plane_side) const = 0;
 
-  /// Whether its parts move in its frame; then where one is at a time [s], which is at rest in its own, and its surface.
+  /// Whether its parts move in its frame or deform; then where one is at a time [s] and its surface in its own frame, of one
+  /// that deforms at its first key time.
   virtual bool moves() const { return false; }
   virtual Pose pose_of_part(std::size_t /*part*/, double /*t*/) const { return {}; }
   virtual Polygons surface_of_part(std::size_t /*part*/, double plane_side) const { return surface(plane_side); }
@@ -102,8 +110,9 @@ class Obstacle {
   Pose pose(double t) const;
   double friction() const { return friction_; }
 
-  /// In the frame of the obstacle.
+  /// In the frame of the obstacle, as Shape has it.
   Nearest nearest(const Eigen::Vector3d& p) const { return shape_->nearest(p); }
+  const PosedMesh* deforming() const { return shape_->deforming(); }
 
  private:
   std::shared_ptr<const Shape> shape_;

@@ -10,7 +10,7 @@ constexpr double creeping = 1e-3;
 
 }  // namespace
 
-Reaction::Reaction(std::shared_ptr<const Contacts> contacts, const ContactRule& rule, Eigen::VectorXd mass)
+Reaction::Reaction(std::shared_ptr<Contacts> contacts, const ContactRule& rule, Eigen::VectorXd mass)
     : contacts_(std::move(contacts)), rule_(rule), mass_(std::move(mass)) {}
 
 bool Reaction::acts(double t, const Vectors& x) {

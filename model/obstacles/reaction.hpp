@@ -15,7 +15,7 @@ namespace drape::model {
 /// switched, and no Jacobian knows of it.
 class Reaction {
  public:
-  Reaction(std::shared_ptr<const Contacts> contacts, const ContactRule& rule, Eigen::VectorXd mass);
+  Reaction(std::shared_ptr<Contacts> contacts, const ContactRule& rule, Eigen::VectorXd mass);
 
   /// Whether any particle is in the collision area.
   bool acts(double t, const Vectors& x);
@@ -24,7 +24,7 @@ class Reaction {
   void add(const Vectors& v, const Vectors& before, Vectors& f) const;
 
  private:
-  std::shared_ptr<const Contacts> contacts_;
+  std::shared_ptr<Contacts> contacts_;
   ContactRule rule_;
   Eigen::VectorXd mass_;
   std::vector<Depth> inside_;

@@ -1,5 +1,6 @@
 #include "model/obstacles/surface.hpp"
 
+#include "model/obstacles/posed_mesh.hpp"
 #include "model/sheet/cells.hpp"
 
 namespace drape::model {
@@ -12,6 +13,12 @@ Polygons sheet_polygons(const Grid& grid, const solver::Vectors& x) {
   if (polygons.faces.empty())
     for (const Edge& edge : edges(grid)) polygons.faces.push_back({edge.i, edge.j});
   return polygons;
+}
+
+std::vector<Eigen::Vector3d> vertices_at(const Obstacle& obstacle, const Polygons& surface, double t) {
+  std::vector<Eigen::Vector3d> vertices = surface.vertices;
+  if (const PosedMesh* mesh = obstacle.deforming()) mesh->moving().place(t, vertices);
+  return vertices;
 }
 
 PosedObstacle::PosedObstacle(const ObstacleRule& rule, double plane_side) {
@@ -27,7 +34,7 @@ Polygons PosedObstacle::at(double t) const {
   for (const auto& [obstacle, surface] : parts_) {
     const Pose pose = obstacle.pose(t);
     const int first = static_cast<int>(posed.vertices.size());
-    for (const Eigen::Vector3d& vertex : surface.vertices) posed.vertices.push_back(pose.to_world(vertex));
+    for (const Eigen::Vector3d& vertex : vertices_at(obstacle, surface, t)) posed.vertices.push_back(pose.to_world(vertex));
     for (std::vector<int> face : surface.faces) {
       for (int& corner : face) corner += first;
       posed.faces.push_back(std::move(face));

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <vector>
+
 #include "model/obstacles/obstacle.hpp"
 #include "model/sheet/grid.hpp"
 
@@ -7,6 +10,9 @@ namespace drape::model {
 
 /// A sheet as quadrilaterals, one for each cell, a chain as lines. Vertices are the particles.
 Polygons sheet_polygons(const Grid& grid, const solver::Vectors& x);
+
+/// The vertices of a surface of an obstacle or of its part, which ShapeRule has, at a time [s] in its own frame.
+std::vector<Eigen::Vector3d> vertices_at(const Obstacle& obstacle, const Polygons& surface, double t);
 
 /// An obstacle with its surface, as ShapeRule has it.
 class PosedObstacle {

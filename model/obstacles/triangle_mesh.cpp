@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 #include <tuple>
 #include <utility>
@@ -71,14 +72,6 @@ std::pair<double, double> six_volumes(const TriangleMesh& mesh) {
   return {sum, magnitude};
 }
 
-Vector3d face_normal(const TriangleMesh& mesh, const std::array<int, 3>& triangle) {
-  const auto [a, b, c] = corners(mesh, triangle);
-  const Vector3d ab = b - a, ac = c - a, n = ab.cross(ac);
-  if (n.norm() <= 8 * std::numeric_limits<double>::epsilon() * ab.norm() * ac.norm())
-    fail(mesh, fmt::format("expected triangles with an area, the one at ({}, {}, {}) has none", a.x(), a.y(), a.z()));
-  return n.normalized();
-}
-
 double angle(const Vector3d& a, const Vector3d& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
 /// n/|n|; where faces cancel, that of one of them.
@@ -98,28 +91,57 @@ void turn_outward(TriangleMesh& mesh) {
   for (std::array<int, 3>& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
 }
 
-std::vector<std::array<Vector3d, parts_of_triangle>> pseudo_normals(const TriangleMesh& mesh) {
+void require_volume(const TriangleMesh& mesh) {
+  for (const std::array<int, 3>& triangle : mesh.triangles) {
+    const auto [a, b, c] = corners(mesh, triangle);
+    const Vector3d ab = b - a, ac = c - a;
+    if (ab.cross(ac).norm() <= 8 * std::numeric_limits<double>::epsilon() * ab.norm() * ac.norm())
+      fail(mesh, fmt::format("expected triangles with an area, the one at ({}, {}, {}) has none", a.x(), a.y(), a.z()));
+  }
+  constexpr double none = 1e-12;
+  const auto [volume, magnitude] = six_volumes(mesh);
+  if (volume < -none * magnitude) fail(mesh, "expected a mesh that is not inside out");
+  if (volume <= none * magnitude) fail(mesh, "expected a mesh that encloses a volume");
+}
+
+Vector3d face_normal(const Corners& corners) {
+  const auto& [a, b, c] = corners;
+  return (b - a).cross(c - a).normalized();
+}
+
+PseudoNormals::PseudoNormals(const TriangleMesh& mesh)
+    : neighbours_(mesh.triangles.size()), first_(mesh.vertices.size() + 1, 0), around_(3 * mesh.triangles.size()) {
   const std::vector<HalfEdge> edges = half_edges(mesh);
   check_closed(mesh, edges);
-  std::vector<std::array<Vector3d, parts_of_triangle>> normals(mesh.triangles.size());
-  std::vector<Vector3d> of_vertices(mesh.vertices.size(), Vector3d::Zero());
-  for (std::size_t t = 0; t < normals.size(); ++t) {
-    const Vector3d n = normals[t][face_part] = face_normal(mesh, mesh.triangles[t]);
-    const Corners c = corners(mesh, mesh.triangles[t]);
-    for (int k = 0; k < 3; ++k) of_vertices[mesh.triangles[t][k]] += angle(c[(k + 1) % 3] - c[k], c[(k + 2) % 3] - c[k]) * n;
-  }
-  if (const auto [volume, magnitude] = six_volumes(mesh); volume <= 1e-12 * magnitude)
-    fail(mesh, "expected a mesh that encloses a volume");
-
   for (std::size_t e = 0; e < edges.size(); e += 2) {
-    const Vector3d &n1 = normals[edges[e].triangle][face_part], &n2 = normals[edges[e + 1].triangle][face_part];
-    for (const HalfEdge& side : {edges[e], edges[e + 1]})
-      normals[side.triangle][first_edge_part + side.side] = unit(n1 + n2, n1);
+    neighbours_[edges[e].triangle][edges[e].side] = edges[e + 1].triangle;
+    neighbours_[edges[e + 1].triangle][edges[e + 1].side] = edges[e].triangle;
   }
-  for (std::size_t t = 0; t < normals.size(); ++t)
-    for (int k = 0; k < 3; ++k)
-      normals[t][first_corner_part + k] = unit(of_vertices[mesh.triangles[t][k]], normals[t][face_part]);
-  return normals;
+  for (const std::array<int, 3>& triangle : mesh.triangles)
+    for (const int v : triangle) ++first_[v + 1];
+  std::partial_sum(first_.begin(), first_.end(), first_.begin());
+  std::vector<int> next(first_.begin(), first_.end() - 1);
+  for (int t = 0; t < std::ssize(mesh.triangles); ++t)
+    for (const int v : mesh.triangles[t]) around_[next[v]++] = t;
+}
+
+Vector3d PseudoNormals::at(const TriangleMesh& mesh, int triangle, int part) const {
+  const auto face = [&](int t) { return face_normal(corners(mesh, mesh.triangles[t])); };
+  if (part == face_part) return face(triangle);
+  if (part < first_corner_part) {
+    const auto [one, other] = std::minmax(triangle, neighbours_[triangle][part - first_edge_part]);
+    const Vector3d n = face(one);
+    return unit(n + face(other), n);
+  }
+  const int v = mesh.triangles[triangle][part - first_corner_part];
+  Vector3d sum = Vector3d::Zero();
+  for (int k = first_[v]; k < first_[v + 1]; ++k) {
+    const std::array<int, 3>& t = mesh.triangles[around_[k]];
+    const Corners c = corners(mesh, t);
+    const std::ptrdiff_t at = std::ranges::find(t, v) - t.begin();
+    sum += angle(c[(at + 1) % 3] - c[at], c[(at + 2) % 3] - c[at]) * face_normal(c);
+  }
+  return unit(sum, face(triangle));
 }
 
 TrianglePoint nearest_on_triangle(const Corners& corners, const Vector3d& p) {
@@ -144,6 +166,22 @@ TrianglePoint nearest_on_triangle(const Corners& corners, const Vector3d& p) {
   const double wb = c_ab * a_ac - a_ab * c_ac;
   if (wb <= 0 && a_ac >= 0 && c_ac <= 0) return edge(2, c_ac / (c_ac - a_ac));
   return {a + (wb * ab + wc * ac) / (wa + wb + wc), face_part};
+}
+
+Vector3d barycentric(const Corners& corners, const TrianglePoint& at) {
+  if (at.part >= first_corner_part) return Vector3d::Unit(at.part - first_corner_part);
+  if (at.part >= first_edge_part) {
+    const int from = at.part - first_edge_part, to = (from + 1) % 3;
+    const Vector3d edge = corners[to] - corners[from];
+    Vector3d weights = Vector3d::Zero();
+    weights[to] = edge.dot(at.point - corners[from]) / edge.squaredNorm();
+    weights[from] = 1 - weights[to];
+    return weights;
+  }
+  const auto& [a, b, c] = corners;
+  const Vector3d n = (b - a).cross(c - a), ap = at.point - a;
+  const double wb = ap.cross(c - a).dot(n) / n.squaredNorm(), wc = (b - a).cross(ap).dot(n) / n.squaredNorm();
+  return {1 - wb - wc, wb, wc};
 }
 
 }  // namespace drape::model

@@ -17,18 +17,35 @@ struct TriangleMesh {
 /// Turns a mesh round that is inside out.
 void turn_outward(TriangleMesh& mesh);
 
+/// Throws std::invalid_argument with the name of the mesh unless every triangle has an area and the mesh encloses a volume.
+void require_volume(const TriangleMesh& mesh);
+
 using Corners = std::array<Eigen::Vector3d, 3>;
 
 Corners corners(const TriangleMesh& mesh, const std::array<int, 3>& triangle);
 
-/// Parts of a triangle: its face, the edges from corner k to the next, the corners.
-inline constexpr int face_part = 0, first_edge_part = 1, first_corner_part = 4, parts_of_triangle = 7;
+/// Unit; 0 if the triangle has no area.
+Eigen::Vector3d face_normal(const Corners& corners);
 
-/// For every triangle the unit pseudo-normals of its parts [Bærentzen, Aanæs 2005]: p is outside where p minus the nearest
-/// point has a positive product with the pseudo-normal of the part on which that point lies. Throws std::invalid_argument with
-/// the name of the mesh unless every triangle has an area, every edge belongs to two triangles that agree on which side is
-/// outside, and the mesh encloses a volume.
-std::vector<std::array<Eigen::Vector3d, parts_of_triangle>> pseudo_normals(const TriangleMesh& mesh);
+/// Parts of a triangle: its face, the edges from corner k to the next, the corners.
+inline constexpr int face_part = 0, first_edge_part = 1, first_corner_part = 4;
+
+/// The unit pseudo-normals of a closed mesh [Bærentzen, Aanæs 2005]: p is outside where p minus the nearest point has a
+/// positive product with the pseudo-normal of the part on which that point lies.
+class PseudoNormals {
+ public:
+  /// Throws std::invalid_argument with the name of the mesh unless every edge belongs to two triangles that agree on which side
+  /// is outside.
+  explicit PseudoNormals(const TriangleMesh& mesh);
+
+  /// With the vertices where they are in `mesh`, which has the same triangles.
+  Eigen::Vector3d at(const TriangleMesh& mesh, int triangle, int part) const;
+
+ private:
+  std::vector<std::array<int, 3>> neighbours_;  ///< triangles across the edges
+  std::vector<int> first_;                      ///< place of the first triangle of each vertex, and the end
+  std::vector<int> around_;                     ///< triangles of the vertices
+};
 
 /// The point of a triangle nearest to another, and the part on which it lies.
 struct TrianglePoint {
@@ -38,5 +55,8 @@ struct TrianglePoint {
 
 /// [Ericson 2005, Real-Time Collision Detection, 5.1.5]
 TrianglePoint nearest_on_triangle(const Corners& corners, const Eigen::Vector3d& p);
+
+/// Barycentric coordinates of such a point.
+Eigen::Vector3d barycentric(const Corners& corners, const TrianglePoint& at);
 
 }  // namespace drape::model

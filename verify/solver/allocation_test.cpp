@@ -5,9 +5,13 @@
 #include <atomic>
 #include <cerrno>
 #include <cstdlib>
+#include <memory>
+#include <vector>
 
 #include "model/cloth.hpp"
+#include "model/obstacles/posed_mesh.hpp"
 #include "model/scene_file/scene_file.hpp"
+#include "verify/support/mesh_files.hpp"
 #include "verify/support/slow.hpp"
 #include "verify/support/small_problems.hpp"
 
@@ -148,6 +152,19 @@ TEST(StageSolvers, DoNotAllocate) {
     options.stage = &kind;
     EXPECT_EQ(allocations_of_steps(cloth, solver::method("bdf2"), options), 0) << kind.name;
   }
+}
+
+TEST(MovingMesh, DoesNotAllocateWhenItIsSetToATimeAndAsked) {
+  const model::TriangleMesh mesh = spiky_mesh(1), thin = spiky_mesh(0.5);
+  const std::vector<model::KeyVertices> keys{{0, "", mesh.vertices}, {1, "", thin.vertices}};
+  model::PosedMesh posed(std::make_shared<model::MovingMesh>(mesh, keys));
+  EXPECT_EQ(allocations_of([&] {
+              for (const double t : {0.5, 0.25, 2.0}) {
+                posed.set_time(t);
+                posed.velocity(posed.touch({0.3, 0.4, 2}).at);
+              }
+            }),
+            0);
 }
 
 TEST_P(Allocations, AreSeenIfTheForceAllocates) {

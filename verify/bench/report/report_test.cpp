@@ -190,8 +190,24 @@ Table creep() {
   return table;
 }
 
+const std::string rising_box = R"(shape = "box"
+size = [0.5, 0.5, 0.1]
+motion = [{ time = 0, position = [0.4, 0.4, -0.4] }, { time = 0.1, position = [0.4, 0.4, 0.1] }])";
+
+/// The same by its vertices.
+std::string rising_mesh(const std::filesystem::path& folder) {
+  model::TriangleMesh box = box_mesh({0.5, 0.5, 0.1});
+  for (Eigen::Vector3d& v : box.vertices) v += Eigen::Vector3d(0.4, 0.4, -0.4);
+  write_mesh(folder / "low.ply", box);
+  for (Eigen::Vector3d& v : box.vertices) v.z() += 0.5;
+  write_mesh(folder / "high.ply", box);
+  return R"(shape = "mesh"
+file = "low.ply"
+frames = [{ time = 0, file = "low.ply" }, { time = 0.1, file = "high.ply" }])";
+}
+
 /// A sheet on a box that rises, beside other obstacles.
-std::string scene_on_box(const std::string& name, const std::string& others) {
+std::string scene_on_box(const std::string& name, const std::string& box, const std::string& others) {
   return fmt::format(R"(name = "{}"
 [grid]
 n = 6
@@ -202,11 +218,9 @@ tension = 300
 [forces]
 gravity = [0, 0, -9.81]
 [[obstacles]]
-shape = "box"
-size = [0.5, 0.5, 0.1]
-motion = [{{ time = 0, position = [0.4, 0.4, -0.4] }}, {{ time = 0.1, position = [0.4, 0.4, 0.1] }}]
+{}
 {})",
-                     name, others);
+                     name, box, others);
 }
 
 /// What the scripts of the tests below see of one page, in one go: a browser takes seconds to start.
@@ -376,10 +390,10 @@ TEST(Report, ShowsAllThereIs) {  // one test, since a browser takes seconds to s
   const BenchIntegrators program;
   record(program, "hung-corners", {"--set", "grid.n=6", "--method", "bdf2,sbdf2", "--step", "0.02,0.01", "--out", "runs.h5"});
   const Words once{"--method", "bdf2", "--step", "0.01", "--no-reference", "--repeat", "1", "--out"};
-  program.write("box.toml", scene_on_box("on box", ""));
+  program.write("box.toml", scene_on_box("on box", rising_box, ""));
   record(program, "box.toml", once + Words{"box.h5"});
-  program.write("gone.toml",
-                scene_on_box("box and more", "[[obstacles]]\nshape = \"mesh\"\nfile = \"gone.obj\"\nposition = [3, 0, 0]\n"));
+  program.write("gone.toml", scene_on_box("box and more", rising_mesh(program.folder()),
+                                          "[[obstacles]]\nshape = \"mesh\"\nfile = \"gone.obj\"\nposition = [3, 0, 0]\n"));
   write_mesh(program.folder() / "gone.obj", box_mesh({0.1, 0.1, 0.1}));
   record(program, "gone.toml", once + Words{"gone.h5"});
   std::filesystem::remove(program.folder() / "gone.obj");

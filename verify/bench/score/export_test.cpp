@@ -102,6 +102,10 @@ shape = "sphere"
 radius = 0.25
 position = [0.5, 0.5, 3]
 friction = 0.5
+[[obstacles]]
+shape = "mannequin"
+position = [0, 3, -3]
+walk = 1
 [end]
 time = 0.02
 )";
@@ -119,6 +123,10 @@ TEST(Export, TellsWherePinsAndObstaclesAre) {
   EXPECT_EQ(scene.at("obstacles")[0].at("key_frames")[0].at("position"), json({0.5, 0.5, 3.0}));
   EXPECT_EQ(scene.at("contact").at("distance").at("unit"), "m");
   EXPECT_THAT(files.at("a/obstacle-0.obj"), HasSubstr("\nf "));
+  EXPECT_FALSE(files.contains("a/obstacle-0-0001.obj")) << "its motion is in scene.json";
+  EXPECT_EQ(files.at("a/obstacle-1-0000.obj"), files.at("a/obstacle-1.obj"));
+  EXPECT_THAT(files.at("a/obstacle-1-0002.obj"), testing::AllOf(HasSubstr("# t = 0.02 s\n"), HasSubstr("\nf ")));
+  EXPECT_NE(files.at("a/obstacle-1-0002.obj").substr(13), files.at("a/obstacle-1-0000.obj").substr(10)) << "it walks";
 }
 
 TEST(Export, LeavesNothingWhereItCannotBeDone) {
