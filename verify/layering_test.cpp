@@ -56,6 +56,7 @@ const std::vector<Room> rooms = {
     {"model/obstacles/shapes", {"model/obstacles/shapes/"}, {"model/obstacles"}},
     {"model", {"model/"}, {"model/jacobian", "model/obstacles/shapes"}},
     {"model/scene_file", {"model/scene_file/"}, {"model"}},
+    {"model/pattern", {"model/pattern/"}, {"model/scene_file"}},
 
     {"reference's vocabulary",
      {"reference/newton_solves.", "reference/tableaux.", "reference/trajectory.", "reference/distance."},
@@ -114,8 +115,9 @@ const std::vector<Confined> confined_libraries = {
      {"verify/reference/sundials/state_vector_test.cpp", "reference/sundials/"}},
     {{"cholmod", "suitesparse/cholmod", "Eigen/CholmodSupport"}, {"solver/linear/"}},
     {{"klu", "suitesparse/klu"}, {"solver/linear/klu_factor.cpp"}},
-    {{"assimp/"}, {"model/obstacles/mesh_shape.cpp"}},
-    {{"unsupported/Eigen/BVH"}, {"model/obstacles/mesh_shape.cpp", "model/trimmed_surface.cpp"}},
+    {{"assimp/"}, {"model/obstacles/mesh_file.cpp"}},
+    {{"glpk.h"}, {"model/pattern/quad_layout.cpp"}},
+    {{"unsupported/Eigen/BVH"}, {"model/trimmed_surface.cpp"}},
 };
 
 /// The text without its comments; "//" in a string is none.

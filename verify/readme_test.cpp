@@ -170,6 +170,7 @@ void expect_parses(const std::string& arguments) {
   bench::add_report(app);
   bench::add_export(app);
   bench::add_fabric(app);
+  bench::add_pattern(app);
   bench::add_score(app, "");
   app.parse_complete_callback([&app] {  // before the commands' own, which do not run
     for (const CLI::App* command : app.get_subcommands()) expect_names(*command);

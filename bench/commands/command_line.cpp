@@ -102,6 +102,7 @@ int run_command_line(int argc, const char* const* argv) {
   add_report(app);
   add_export(app);
   add_fabric(app);
+  add_pattern(app);
   add_score(app, command_line);
   app.footer(
       fmt::format("Examples:\n"

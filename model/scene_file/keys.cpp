@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "model/fabric.hpp"
-#include "model/obstacles/mesh_shape.hpp"
+#include "model/obstacles/mesh_file.hpp"
 #include "model/scene_file/obstacle_keys.hpp"
 #include "model/scene_file/outline_keys.hpp"
 #include "model/scene_file/panel_keys.hpp"
@@ -88,13 +88,8 @@ Data grid_size_data(const Scene& scene) { return List{scene.sheet.grid.size_u, s
 
 template <auto which>
 void read_outline(const Value& value, Scene& scene) {
-  Grid& grid = scene.sheet.grid;
-  grid.outline.*which = read_curve(rules(value));
-  const Outline& o = grid.outline;
-  if (o.lower.empty() || o.upper.empty() || o.left.empty() || o.right.empty()) return;
-  const Vectors pattern = grid.parameters();
-  const Eigen::RowVector3d size = pattern.colwise().maxCoeff() - pattern.colwise().minCoeff();
-  grid.size_u = size[0], grid.size_v = size[1];
+  scene.sheet.grid.outline.*which = read_curve(rules(value));
+  fit_size(scene.sheet.grid);
 }
 
 template <auto which>

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <string>
 
 #include "model/keys/key.hpp"
@@ -58,11 +60,14 @@ CurvePiece read_piece(const Value& value) {
   const std::vector<KeyInfo> keys = [] {
     std::vector<KeyInfo> all;
     for (const PieceKind& kind : piece_kinds) all.push_back({kind.name, "m", "[x, y] of its points"});
+    all.push_back({"cells", "1", "of the grid along it"});
     return all;
   }();
   require_keys(value, "piece of a curve", keys);
-  if (value.table().size() != 1) value.fail("one of line, arc and bezier in every piece");
   CurvePiece piece;
+  const toml::node* cells = value.table().get("cells");
+  if (cells != nullptr) piece.cells = value.child("cells", *cells).count();
+  if (value.table().size() != (cells == nullptr ? 1 : 2)) value.fail("one of line, arc and bezier in every piece");
   for (const PieceKind& kind : piece_kinds)
     if (const toml::node* points = value.table().get(kind.name)) {
       piece.kind = kind.kind;
@@ -91,6 +96,38 @@ void check_corners(const Outline& o, const std::string& origin) {
                                corner.end, corner.other, corner.other_end, shown(corner.other_point), shown(corner.point)));
 }
 
+/// A side of a grid: n particles, graded or not.
+struct GridSide {
+  std::string_view name;
+  const std::vector<CurvePiece>& pieces;
+  int n;
+  double grading;
+
+  bool has_its_cells() const { return counted_cells(pieces) == 0 || counted_cells(pieces) == n - 1; }
+};
+
+std::array<GridSide, 4> sides_of(const Grid& grid) {
+  const Outline& o = grid.outline;
+  return {{{"lower", o.lower, grid.nu, grid.grading_u},
+           {"right", o.right, grid.nv, grid.grading_v},
+           {"upper", o.upper, grid.nu, grid.grading_u},
+           {"left", o.left, grid.nv, grid.grading_v}}};
+}
+
+/// Pieces that count cells do so on a whole side, and have all of its cells.
+void check_cells(const Grid& grid, const std::string& origin) {
+  for (const GridSide& side : sides_of(grid)) {
+    const std::int64_t counted = counted_cells(side.pieces);
+    if (counted == 0) continue;
+    if (std::ranges::any_of(side.pieces, [](const CurvePiece& piece) { return piece.cells == 0; }))
+      fail(origin, fmt::format("grid.{}: expected cells of all of its pieces, or of none", side.name));
+    if (!side.has_its_cells())
+      fail(origin,
+           fmt::format("grid.{}: expected {} cells on its pieces, as grid.n has, not {}", side.name, side.n - 1, counted));
+    if (side.grading != 1) fail(origin, fmt::format("grid.{}: expected a grading of 1 beside cells of pieces", side.name));
+  }
+}
+
 /// The corners of all quadrilaterals turn left, more than round-off does.
 void check_lines(const Grid& grid, const std::string& origin) {
   constexpr double flattest = 1e-6;
@@ -115,6 +152,7 @@ void check_cut(const Grid& grid, const std::string& origin) {
   if (!same(begin, end, Curve(grid.cut).length()))
     fail(origin, fmt::format("grid.cut: expected to end where it begins, at {}, not at {}: the curve is open", shown(begin),
                              shown(end)));
+  if (counted_cells(grid.cut) > 0) fail(origin, "grid.cut: expected no cells, it is not along the grid");
   if (crosses_itself(closed_polygon(grid.cut))) fail(origin, "grid.cut: expected a curve that does not cross itself");
   if (grid.border_cells == BorderCells::whole) fail(origin, "grid.border_cells: expected \"dual\" beside a cut");
   if (cells(grid).empty()) fail(origin, "grid.cut: expected a curve with cloth inside, it lies beside the grid");
@@ -138,9 +176,19 @@ Data curve_data(const std::vector<CurvePiece>& curve) {
   for (const CurvePiece& piece : curve) {
     List points;
     for (const Vector2d& point : piece.points) points.emplace_back(List{point.x(), point.y()});
-    pieces.emplace_back(Entries{{std::string(kind_of(piece).name), points}});
+    Entries entries{{std::string(kind_of(piece).name), points}};
+    if (piece.cells > 0) entries.push_back({"cells", double(piece.cells)});
+    pieces.emplace_back(std::move(entries));
   }
   return pieces;
+}
+
+void fit_size(Grid& grid) {
+  const std::array<GridSide, 4> sides = sides_of(grid);
+  if (std::ranges::any_of(sides, [](const GridSide& side) { return side.pieces.empty() || !side.has_its_cells(); })) return;
+  const Vectors pattern = grid.parameters();
+  const Eigen::RowVector3d size = pattern.colwise().maxCoeff() - pattern.colwise().minCoeff();
+  grid.size_u = size[0], grid.size_v = size[1];
 }
 
 void check_outline(const Grid& grid, const std::string& origin) {
@@ -155,6 +203,7 @@ void check_outline(const Grid& grid, const std::string& origin) {
     for (const auto& [name, side] : {std::pair("lower", &o.lower), {"right", &o.right}, {"upper", &o.upper}, {"left", &o.left}})
       if (side->empty()) fail(origin, fmt::format("grid.{}: expected all of lower, right, upper and left, or none", name));
     check_corners(o, origin);
+    check_cells(grid, origin);
   }
   check_lines(grid, origin);
   if (grid.is_cut()) check_cut(grid, origin);

@@ -12,6 +12,9 @@ std::vector<CurvePiece> read_curve(const std::vector<Value>& entries);
 /// Its pieces as a list.
 Data curve_data(const std::vector<CurvePiece>& curve);
 
+/// Gives a grid the size of the box around its outline, if that has four sides with the grid's cells.
+void fit_size(Grid& grid);
+
 /// Throws SceneError unless the sides of a grid's outline meet in four corners, its lines do not cross, and its cut is closed,
 /// does not cross itself and leaves cloth. `origin`: of the scene.
 void check_outline(const Grid& grid, const std::string& origin);

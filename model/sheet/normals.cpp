@@ -23,16 +23,27 @@ Neighbours Normals::neighbours(int i) const {
           grid_.index(a, std::min(b + 1, grid_.nv - 1))};
 }
 
+Neighbours Normals::distinct(const Vectors& x, int i) const {
+  Neighbours around = neighbours(i);
+  if (x.row(around.left) == x.row(around.right)) around.left = i;
+  if (x.row(around.lower) == x.row(around.upper)) around.lower = i;
+  return around;
+}
+
 void Normals::evaluate(const Vectors& x, Vectors& n) const {
+  const auto cross = [&](const Neighbours& at) -> Eigen::RowVector3d {
+    return (x.row(at.right) - x.row(at.left)).cross(x.row(at.upper) - x.row(at.lower));
+  };
   for (int i = 0; i < grid_.particles(); ++i) {
-    const auto [left, right, lower, upper] = neighbours(i);
-    const Eigen::RowVector3d cross = (x.row(right) - x.row(left)).cross(x.row(upper) - x.row(lower));
-    n.row(i) = cross / cross.norm();
+    n.row(i) = cross(neighbours(i));
+    double length = n.row(i).norm();
+    if (length == 0) n.row(i) = cross(distinct(x, i)), length = n.row(i).norm();
+    n.row(i) /= length;
   }
 }
 
 std::array<std::pair<int, Eigen::Matrix3d>, 4> Normals::derivative(const Vectors& x, int i) const {
-  const auto [left, right, lower, upper] = neighbours(i);
+  const auto [left, right, lower, upper] = distinct(x, i);
   const Eigen::Vector3d tu = x.row(right) - x.row(left), tv = x.row(upper) - x.row(lower);
   const Eigen::Vector3d cross = tu.cross(tv);
   const Eigen::Vector3d N = cross.normalized();

@@ -9,7 +9,7 @@
 namespace drape::model {
 
 /// Vertex normals N = (t_u × t_v)° of a grid, the tangents being differences of the neighbours, one-sided on borders and
-/// along a cut.
+/// along a cut and at the tip of a dart, whose sides are sewn together.
 class Normals {
  public:
   explicit Normals(const Grid& grid);
@@ -22,6 +22,9 @@ class Normals {
 
  private:
   Neighbours neighbours(int i) const;
+
+  /// With the particle itself in the place of a neighbour that is sewn to the one opposite.
+  Neighbours distinct(const Vectors& x, int i) const;
 
   Grid grid_;
   std::vector<Neighbours> along_cut_;  ///< of all particles; empty if there is no cut

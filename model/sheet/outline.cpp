@@ -56,6 +56,26 @@ double bezier_length(const std::vector<Vector2d>& p, double from, double to) {
 
 constexpr int measured_parts = 64;  ///< of a Bézier curve, whose lengths are computed
 
+/// Particles on a side.
+struct Side {
+  std::vector<double> places;  ///< as parts of its length
+  std::vector<Vector2d> points;
+
+  /// `given`: the places unless pieces count cells.
+  Side(const std::vector<CurvePiece>& pieces, const std::vector<double>& given) : places(given) {
+    const Curve curve(pieces);
+    if (counted_cells(pieces) > 0) {
+      places = {0};
+      for (std::size_t k = 0; k < pieces.size(); ++k) {
+        const double begin = places.back(), end = curve.length_up_to(k) / curve.length();
+        const int cells = pieces[k].cells;
+        for (int cell = 1; cell <= cells; ++cell) places.push_back(begin + (end - begin) * cell / cells);
+      }
+    }
+    for (const double place : places) points.push_back(curve.at(place));
+  }
+};
+
 }  // namespace
 
 Curve::Curve(const std::vector<CurvePiece>& pieces) {
@@ -132,23 +152,23 @@ std::vector<double> graded(int n, double grading) {
   return places;
 }
 
+std::int64_t counted_cells(const std::vector<CurvePiece>& side) {
+  std::int64_t sum = 0;
+  for (const CurvePiece& piece : side) sum += piece.cells;
+  return sum;
+}
+
 solver::Vectors transfinite(const Outline& outline, const std::vector<double>& u, const std::vector<double>& v) {
-  const auto points = [](const std::vector<CurvePiece>& side, const std::vector<double>& parts) {
-    const Curve curve(side);
-    std::vector<Vector2d> all;
-    for (const double part : parts) all.push_back(curve.at(part));
-    return all;
-  };
-  const std::vector<Vector2d> lower = points(outline.lower, u), upper = points(outline.upper, u);
-  const std::vector<Vector2d> left = points(outline.left, v), right = points(outline.right, v);
+  const Side lower(outline.lower, u), upper(outline.upper, u), left(outline.left, v), right(outline.right, v);
   const auto nu = static_cast<Eigen::Index>(u.size()), nv = static_cast<Eigen::Index>(v.size());
   solver::Vectors all(nu * nv, 3);
   for (Eigen::Index b = 0; b < nv; ++b)
     for (Eigen::Index a = 0; a < nu; ++a) {
-      const double s = u[a], t = v[b];
-      const Vector2d sides = (1 - t) * lower[a] + t * upper[a] + (1 - s) * left[b] + s * right[b];
-      const Vector2d corners =
-          (1 - t) * ((1 - s) * lower.front() + s * lower.back()) + t * ((1 - s) * upper.front() + s * upper.back());
+      const double du = upper.places[a] - lower.places[a], dv = right.places[b] - left.places[b];
+      const double s = (lower.places[a] + left.places[b] * du) / (1 - du * dv), t = left.places[b] + s * dv;
+      const Vector2d sides = (1 - t) * lower.points[a] + t * upper.points[a] + (1 - s) * left.points[b] + s * right.points[b];
+      const Vector2d corners = (1 - t) * ((1 - s) * lower.points.front() + s * lower.points.back()) +
+                               t * ((1 - s) * upper.points.front() + s * upper.points.back());
       all.row(a + nu * b) << (sides - corners).transpose(), 0;
     }
   return all;

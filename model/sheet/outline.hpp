@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <vector>
 
 #include "solver/state.hpp"
@@ -15,6 +16,7 @@ struct CurvePiece {
     bezier,  ///< with these control points
   } kind = Kind::line;
   std::vector<Eigen::Vector2d> points;  ///< [m]
+  int cells = 0;  ///< of a grid along a piece of its side, with equal lengths; 0: the side says where its particles are
 
   bool operator==(const CurvePiece&) const = default;
 };
@@ -26,6 +28,9 @@ class Curve {
   explicit Curve(const std::vector<CurvePiece>& pieces);
 
   double length() const { return pieces_.back().end; }  ///< [m]
+
+  /// The length up to the end of a piece [m].
+  double length_up_to(std::size_t piece) const { return pieces_[piece].end; }
 
   /// The point at a part of the length, from 0 to 1.
   Eigen::Vector2d at(double part) const;
@@ -55,10 +60,15 @@ Outline parallelogram(const Eigen::Vector2d& u, const Eigen::Vector2d& v);
 /// constant factor.
 std::vector<double> graded(int n, double grading);
 
+/// The cells that pieces of a side count; 0: they do not.
+std::int64_t counted_cells(const std::vector<CurvePiece>& side);
+
 /// Points inside an outline by transfinite interpolation [Gordon, Hall 1973; Etzmuß 2002, 2.7]:
 ///   s(u, v) = (1 − v) lower(u) + v upper(u) + (1 − u) left(v) + u right(v)
 ///             − (1 − u)(1 − v) P00 − u (1 − v) P10 − (1 − u) v P01 − u v P11.
-/// Row a + |u| b is the point of u[a], v[b]: x, y, and z = 0 [m].
+/// Row a + |u| b is the point of u[a], v[b]: x, y, and z = 0 [m]. A side whose pieces count cells has its own places, whose
+/// number must be that of u or v; u and v of a point are then where the lines between places on opposite sides of the unit
+/// square meet.
 solver::Vectors transfinite(const Outline& outline, const std::vector<double>& u, const std::vector<double>& v);
 
 }  // namespace drape::model

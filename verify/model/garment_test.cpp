@@ -144,6 +144,26 @@ TEST(Garments, RememberAsTheWhole) {
   }
 }
 
+void expect_jacobian_of_forces(const model::Cloth& cloth, const std::vector<int>& nodes) {
+  const int n = cloth.ode.particles();
+  const State y{cloth.start.x + random_vectors(n, 0.04, 1), random_vectors(n, 0.3, 2)};
+  SparseMatrix df_dx, df_dv;
+  cloth.ode.jacobian(0, y.x, y.v, df_dx, df_dv);
+  constexpr double step = 1e-6;
+  for (const int k : nodes)
+    for (int c = 0; c < 3; ++c) {
+      State plus = y, minus = y, faster = y, slower = y;
+      plus.x(k, c) += step, minus.x(k, c) -= step, faster.v(k, c) += step, slower.v(k, c) -= step;
+      const auto column = [&](const SparseMatrix& matrix) {
+        return Eigen::VectorXd(Eigen::MatrixXd(matrix).col(3 * k + c)).reshaped<Eigen::RowMajor>(n, 3).eval();
+      };
+      const Vectors by_x = (evaluate(cloth.ode.force, plus) - evaluate(cloth.ode.force, minus)) / (2 * step);
+      const Vectors by_v = (evaluate(cloth.ode.force, faster) - evaluate(cloth.ode.force, slower)) / (2 * step);
+      EXPECT_LE(largest(by_x - column(df_dx)), 1e-6 * largest(by_x));
+      EXPECT_LE(largest(by_v - column(df_dv)), 1e-6 * std::max(1.0, largest(by_v)));
+    }
+}
+
 /// With everything that a sheet can have, bending and normals included, on a tube that is sewn to a second panel.
 TEST(Garments, HaveTheJacobianOfTheirForces) {
   ForceCase force = force_case("all_of_the_thesis");
@@ -159,23 +179,20 @@ TEST(Garments, HaveTheJacobianOfTheirForces) {
   scene.panels[1].start.position[2] = 0.6;
   const model::Cloth cloth = model::compile(scene);
   ASSERT_EQ(cloth.ode.particles(), 5 * 4 + 5 * 3 - 5);
-  const int n = cloth.ode.particles();
-  const State y{cloth.start.x + random_vectors(n, 0.04, 1), random_vectors(n, 0.3, 2)};
-  SparseMatrix df_dx, df_dv;
-  cloth.ode.jacobian(0, y.x, y.v, df_dx, df_dv);
-  constexpr double step = 1e-6;
-  for (const int k : {0, 1, 5 * 3 + 2, n - 1})
-    for (int c = 0; c < 3; ++c) {
-      State plus = y, minus = y, faster = y, slower = y;
-      plus.x(k, c) += step, minus.x(k, c) -= step, faster.v(k, c) += step, slower.v(k, c) -= step;
-      const auto column = [&](const SparseMatrix& matrix) {
-        return Eigen::VectorXd(Eigen::MatrixXd(matrix).col(3 * k + c)).reshaped<Eigen::RowMajor>(n, 3).eval();
-      };
-      const Vectors by_x = (evaluate(cloth.ode.force, plus) - evaluate(cloth.ode.force, minus)) / (2 * step);
-      const Vectors by_v = (evaluate(cloth.ode.force, faster) - evaluate(cloth.ode.force, slower)) / (2 * step);
-      EXPECT_LE(largest(by_x - column(df_dx)), 1e-6 * largest(by_x));
-      EXPECT_LE(largest(by_v - column(df_dv)), 1e-6 * std::max(1.0, largest(by_v)));
-    }
+  expect_jacobian_of_forces(cloth, {0, 1, 5 * 3 + 2, cloth.ode.particles() - 1});
+}
+
+/// At the tip of a dart both neighbours along the border are one.
+TEST(Garments, HaveNormalsAtTheTipsOfDarts) {
+  ForceCase force = force_case("all_of_the_thesis");
+  force.material.shear_form = ShearForm::conservative;
+  Scene scene = scene_of(force, Grid());
+  scene.panels = {{"front", "", {6, 4, 1.2, 0.6}, force.material, {}}};
+  scene.seams = {{{"front", PanelSide::upper, {3, 2}}, {"front", PanelSide::upper, {1, 2}}}};
+  const model::Cloth cloth = model::compile(scene);
+  ASSERT_EQ(cloth.ode.particles(), 6 * 4 - 1);
+  constexpr int first_of_border = 6 * 3;
+  expect_jacobian_of_forces(cloth, {first_of_border - 4, first_of_border + 1, first_of_border + 2});
 }
 
 /// The two ends of a wrapped panel meet, and lines keep their lengths.

@@ -68,6 +68,26 @@ TEST(ProgramFabric, RefusesInOneLineWhatIsNoMaterial) {
   refused(R"({"density": 1, "stretching": [[1, 2, 3, 4]]})", "stretching: expected 6 rows of 4 numbers");
 }
 
+/// A skirt of two panels: what is printed runs, sewing included.
+TEST(ProgramPattern, MakesASceneThatRuns) {
+  const BenchIntegrators program;
+  const std::string edges = R"([{"endpoints": [0, 1]}, {"endpoints": [1, 2]}, {"endpoints": [2, 3]}, {"endpoints": [3, 0]}])";
+  const auto panel = [&](const std::string& translation) {
+    return R"({"vertices": [[-60, 0], [60, 0], [30, 50], [-30, 50]], "edges": )" + edges +
+           R"(, "rotation": [0, 0, 0], "translation": )" + translation + "}";
+  };
+  const auto seam = [](int one, int other) {
+    return "[{\"panel\": \"front\", \"edge\": " + std::to_string(one) +
+           "}, {\"panel\": \"back\", \"edge\": " + std::to_string(other) + "}]";
+  };
+  program.write("skirt.json", R"({"pattern": {"panels": {"front": )" + panel("[0, 50, 25]") + R"(, "back": )" +
+                                  panel("[0, 50, -25]") + R"(}, "stitches": [)" + seam(1, 1) + ", " + seam(3, 3) + "]}}");
+  program.write("skirt.toml", program.output({"pattern", "skirt.json", "--spacing", "0.1"}));
+  const auto rows = parse_csv(program.output({"run", "--scene", "skirt.toml", "--method", "imex-euler", "--step", "0.01",
+                                              "--until", "0.52", "--no-reference", "--format", "csv"}));
+  EXPECT_THAT(rows, AllOf(SizeIs(1), Each(Contains(Row::value_type("outcome", "success")))));
+}
+
 // --- Names ---------------------------------------------------------------------------------------------------------------
 
 TEST(ProgramList, HasTheNamesThatOtherProgramsRelyOn) {

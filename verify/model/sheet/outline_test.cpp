@@ -112,5 +112,23 @@ TEST(Transfinite, FillsQuadrilateralsAndSectors) {
     }
 }
 
+/// Particles are where pieces end, and lines between them are straight on the unit square.
+TEST(Transfinite, HasTheCellsThatPiecesCount) {
+  const model::Outline square{.lower = {{line, {{0, 0}, {0.3, 0}}, 2}, {line, {{0.3, 0}, {1, 0}}, 1}},
+                              .upper = {{line, {{0, 1}, {1, 1}}}},
+                              .left = {{line, {{0, 0}, {0, 0.9}}, 1}, {line, {{0, 0.9}, {0, 1}}, 2}},
+                              .right = {{line, {{1, 0}, {1, 1}}}}};
+  const auto inside = transfinite(square, model::graded(4, 1), model::graded(4, 1));
+  expect_near(inside.row(1).head<2>(), {0.15, 0});
+  expect_near(inside.row(2).head<2>(), {0.3, 0});
+  expect_near(inside.row(4).head<2>(), {0, 0.9});
+  expect_near(inside.row(8).head<2>(), {0, 0.95});
+  const auto cross = [](double x, double y) {
+    return 0.15 + y * (1.0 / 3 - 0.15) - x;
+  };  // on the line between (0.15, 0) and (1/3, 1)
+  for (const int b : {1, 2}) EXPECT_NEAR(cross(inside(1 + 4 * b, 0), inside(1 + 4 * b, 1)), 0, rounding);
+  EXPECT_NEAR(0.9 + inside(5, 0) * (1.0 / 3 - 0.9), inside(5, 1), rounding);
+}
+
 }  // namespace
 }  // namespace drape::verify::outline_test

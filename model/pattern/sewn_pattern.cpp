@@ -1,0 +1,221 @@
+#include "model/pattern/sewn_pattern.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <string_view>
+
+#include "model/garment.hpp"
+#include "model/keys/scene_error.hpp"
+#include "model/pattern/quad_layout.hpp"
+#include "model/scene_file/scene_file.hpp"
+#include "model/sheet/cut.hpp"
+
+namespace drape::model {
+namespace {
+
+constexpr double most_particles = 1e6;
+constexpr double sewing_time = 0.5;  // [s]
+
+/// What is not in a pattern: a cloth, a body and times.
+constexpr std::string_view surroundings = R"(
+name = "pattern"
+
+[material]
+density = 0.3
+tension = 300
+damping = 1
+shear = 3
+bend = 2e-5
+bend_projected = false
+
+[forces]
+gravity = [0, 0, -9.81]
+air = 0.05
+
+[start]
+plane = "vertical"
+
+[[obstacles]]
+shape = "mannequin"
+friction = 0.3
+
+[contact]
+distance = 0.02
+
+[end]
+time = 3
+)";
+
+/// Where an edge is in a grid: a side, and the particles at its ends, counterclockwise.
+struct EdgeOfGrid {
+  PanelSide side;
+  int begin, end;
+};
+
+/// Of every edge of a panel.
+std::vector<EdgeOfGrid> edges_of_grid(const FourSides& sides, const std::vector<int>& cells) {
+  std::vector<EdgeOfGrid> all(cells.size());
+  for (std::size_t side = 0; side < 4; ++side) {
+    const bool is_opposite = side >= 2;  // upper and left go against the outline
+    int whole = 0, passed = 0;
+    for (std::size_t edge = sides[side]; edge != sides[(side + 1) % 4]; edge = (edge + 1) % cells.size()) whole += cells[edge];
+    for (std::size_t edge = sides[side]; edge != sides[(side + 1) % 4]; edge = (edge + 1) % cells.size()) {
+      const int begin = passed, end = passed += cells[edge];
+      all[edge] =
+          is_opposite ? EdgeOfGrid{PanelSide(side), whole - begin, whole - end} : EdgeOfGrid{PanelSide(side), begin, end};
+    }
+  }
+  return all;
+}
+
+/// The ends of an edge before it is sewn [m].
+std::array<Eigen::Vector3d, 2> ends_of(const SewingPattern& pattern, const EdgeOfPanel& at) {
+  const PatternPanel& panel = pattern.panel(at);
+  const auto placed = [&](const Eigen::Vector2d& p) -> Eigen::Vector3d {
+    return panel.position + panel.rotation * Eigen::Vector3d(p.x(), 0, p.y());
+  };
+  const std::vector<Eigen::Vector2d>& points = pattern.edge(at).curve.points;
+  return {placed(points.front()), placed(points.back())};
+}
+
+Eigen::Vector3d in_degrees(const Eigen::Matrix3d& rotation) {
+  const Eigen::AngleAxisd turn(rotation);
+  return turn.angle() * 180 / std::numbers::pi * turn.axis();
+}
+
+/// How two edges can be sewn: the sum of the ways of their ends [m].
+struct Ways {
+  double same;      ///< if the edges, counterclockwise both, run side by side
+  double opposite;  ///< if they run in opposite directions
+};
+
+Ways ways(const SewingPattern& pattern, const Stitch& stitch) {
+  const auto [a, b] = ends_of(pattern, stitch[0]);
+  const auto [c, d] = ends_of(pattern, stitch[1]);
+  return {(a - c).norm() + (b - d).norm(), (a - d).norm() + (b - c).norm()};
+}
+
+/// Sets of panels that are known to show the same or different faces on the outside of the cloth.
+class ShownFaces {
+ public:
+  explicit ShownFaces(std::size_t panels) : parent_(panels), turned_(panels, false) {
+    std::iota(parent_.begin(), parent_.end(), 0);
+  }
+
+  /// Whether they show different faces; `guess`, which holds from now on, if that is not known.
+  bool differ(std::size_t one, std::size_t other, bool guess) {
+    const auto [i, i_turned] = root(one);
+    const auto [j, j_turned] = root(other);
+    const bool differ = i == j ? i_turned != j_turned : guess;
+    if (i != j) parent_[j] = i, turned_[j] = (i_turned != j_turned) != guess;
+    return differ;
+  }
+
+ private:
+  /// Of its set, and whether it shows another face than that.
+  std::pair<std::size_t, bool> root(std::size_t panel) const {
+    bool turned = false;
+    for (; parent_[panel] != panel; panel = parent_[panel]) turned = turned != turned_[panel];
+    return {panel, turned};
+  }
+
+  std::vector<std::size_t> parent_;
+  std::vector<bool> turned_;  ///< against the parent
+};
+
+/// Whether edges are sewn side by side: those of panels that show the same face run in opposite directions. The ends that are
+/// nearer meet, where that is clearest first; the others follow from the faces.
+std::vector<bool> side_by_side(const SewingPattern& pattern) {
+  std::vector<std::size_t> order(pattern.stitches.size());
+  std::iota(order.begin(), order.end(), 0);
+  const auto doubt = [&](std::size_t k) {
+    const Ways of = ways(pattern, pattern.stitches[k]);
+    return -std::abs(of.same - of.opposite);
+  };
+  std::ranges::stable_sort(order, {}, doubt);
+  ShownFaces faces(pattern.panels.size());
+  std::vector<bool> all(order.size());
+  for (const std::size_t k : order) {
+    const auto& [one, other] = pattern.stitches[k];
+    const Ways of = ways(pattern, pattern.stitches[k]);
+    all[k] = faces.differ(one.panel, other.panel, of.same < of.opposite);
+  }
+  return all;
+}
+
+/// The part by which one side of a seam is longer than the other, as particles are placed.
+double excess(const Scene& scene, const SeamRule& seam) {
+  const auto length = [&](const SeamSide& side) {
+    const Grid& grid = find_panel(scene, side.panel).grid;
+    const Vectors pattern = grid.parameters();
+    const std::vector<int> particles = sewn_particles(grid, side);
+    double sum = 0;
+    for (std::size_t k = 1; k < particles.size(); ++k)
+      sum += (pattern.row(particles[k]) - pattern.row(particles[k - 1])).norm();
+    return sum;
+  };
+  const double one = length(seam.one), other = length(seam.other);
+  return std::max(one, other) / std::min(one, other) - 1;
+}
+
+}  // namespace
+
+SewnPattern sew(const SewingPattern& pattern, double spacing) {
+  double area = 0;
+  for (const PatternPanel& panel : pattern.panels) {
+    std::vector<CurvePiece> outline;
+    for (const PatternEdge& edge : panel.edges) outline.push_back(edge.curve);
+    area += polygon_area(closed_polygon(outline));
+  }
+  if (area > most_particles * spacing * spacing)
+    throw SceneError(fmt::format("spacing: expected at least {:.2g} m, since the pattern has {:.3g} m²",
+                                 std::sqrt(area / most_particles), area));
+  const auto [sides, cells] = quad_layout(pattern, spacing);
+  SewnPattern sewn{parse_scene(surroundings, pattern.file), {}};
+  Scene& scene = sewn.scene;
+  scene.name = pattern.name;
+  std::vector<std::vector<EdgeOfGrid>> places;
+  for (std::size_t k = 0; k < pattern.panels.size(); ++k) {
+    const PatternPanel& panel = pattern.panels[k];
+    PanelRule& rule = scene.panels.emplace_back(PanelRule{panel.name, "", {}, scene.sheet.material, scene.start});
+    rule.grid = grid_of(panel, sides[k], cells[k]);
+    rule.start.rotation = in_degrees(panel.rotation);
+    rule.start.position = panel.position;
+    places.push_back(edges_of_grid(sides[k], cells[k]));
+  }
+  const std::vector<bool> run_side_by_side = side_by_side(pattern);
+  for (std::size_t k = 0; k < pattern.stitches.size(); ++k) {
+    const auto& [one, other] = pattern.stitches[k];
+    const EdgeOfGrid &first = places[one.panel][one.edge], &second = places[other.panel][other.edge];
+    SeamRule seam{{pattern.panel(one).name, first.side, {first.begin, first.end}},
+                  {pattern.panel(other).name, second.side, {second.begin, second.end}}};
+    if (!run_side_by_side[k]) std::swap(seam.other.ends[0], seam.other.ends[1]);
+    const Ways of = ways(pattern, pattern.stitches[k]);
+    const double way = run_side_by_side[k] ? of.same : of.opposite, other_way = of.same + of.opposite - way;
+    std::string& remark = sewn.remarks.emplace_back(
+        fmt::format("{} edge {} with {} edge {}: ends {:.2f} m away, the other way round {:.2f} m", seam.one.panel,
+                    pattern.edge(one).number, seam.other.panel, pattern.edge(other).number, way, other_way));
+    if (way > other_way) remark += "; sewn so that no panel is inside out";
+    if (const double gathered = excess(scene, seam); gathered > seam.ease / 2) {
+      seam.ease = std::ceil(100 * (gathered + seam.ease)) / 100;
+      remark += fmt::format("; {:.0f} % are gathered", 100 * gathered);
+    }
+    scene.seams.push_back(std::move(seam));
+  }
+  if (!scene.seams.empty()) scene.phases.push_back({sewing_time, Eigen::Vector3d::Zero(), SeamState::pulled, {}});
+  try {
+    const Garment garment(scene);
+    scene.description = fmt::format("The pattern {} of {} panels, {} particles, sewn around a mannequin", pattern.name,
+                                    pattern.panels.size(), garment.nodes());
+  } catch (const std::invalid_argument& error) {
+    throw SceneError(fmt::format("{}: {}", pattern.file, error.what()));
+  }
+  return sewn;
+}
+
+}  // namespace drape::model

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "model/pattern/sewing_pattern.hpp"
+#include "model/scene.hpp"
+
+namespace drape::model {
+
+/// A scene in which a pattern is sewn around a mannequin, and what a reader should know of how it was made.
+struct SewnPattern {
+  Scene scene;
+  std::vector<std::string> remarks;  ///< a line each
+};
+
+/// Panels become grids with cells of about this length [m], stitches become seams: since a pattern does not say which ends of
+/// two edges meet, those that are nearer do. Throws SceneError, naming the panel, if one cannot be a grid.
+SewnPattern sew(const SewingPattern& pattern, double spacing);
+
+}  // namespace drape::model
