@@ -29,8 +29,11 @@ void print_changes(const model::Scene& scene, const model::Scene& from) {
     const auto* table = std::get_if<model::Entries>(&row.value);
     if (table == nullptr) continue;
     fmt::print("\n[[{}]]\n", row.key);
-    for (const auto& [key, data] : *table)
-      if (const std::string value = to_toml(data); !value.empty() && own[key] != value) fmt::print("{} = {}\n", key, value);
+    for (const auto& [key, data] : *table) {
+      const std::string value = to_toml(data);
+      const bool is_usual = own.contains(key) ? own[key] == value : value.empty() || value == "[]";
+      if (!is_usual) fmt::print("{} = {}\n", key, value);
+    }
   }
 }
 
