@@ -74,7 +74,7 @@ const std::vector<Room> rooms = {
     {"bench/studies", {"bench/studies/"}, {"bench/runs"}},
     {"bench/report", {"bench/report/"}, {"bench/runs"}},
     {"bench/score", {"bench/score/"}, {"bench/studies"}},
-    {"bench/commands", {"bench/commands/"}, {"bench/score", "bench/report"}},
+    {"bench/commands", {"bench/commands/"}, {"bench/score", "bench/report", "model/pattern"}},
     {"bench/kernels", {"bench/kernels/"}, {"model/scene_file"}},
     {"bench", {"bench/"}, {"bench/commands"}},
 

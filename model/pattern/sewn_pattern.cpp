@@ -57,7 +57,7 @@ struct EdgeOfGrid {
   int begin, end;
 };
 
-/// Of every edge of a panel.
+/// Where all edges of a panel are.
 std::vector<EdgeOfGrid> edges_of_grid(const FourSides& sides, const std::vector<int>& cells) {
   std::vector<EdgeOfGrid> all(cells.size());
   for (std::size_t side = 0; side < 4; ++side) {
@@ -117,7 +117,7 @@ class ShownFaces {
   }
 
  private:
-  /// Of its set, and whether it shows another face than that.
+  /// The root of its set, and whether it shows another face than that.
   std::pair<std::size_t, bool> root(std::size_t panel) const {
     bool turned = false;
     for (; parent_[panel] != panel; panel = parent_[panel]) turned = turned != turned_[panel];
