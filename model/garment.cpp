@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numeric>
 #include <set>
 #include <stdexcept>
 #include <utility>
 
 #include "model/sheet/cells.hpp"
+#include "solver/base/disjoint_sets.hpp"
 #include "solver/base/registry.hpp"
 
 namespace drape::model {
@@ -25,33 +25,6 @@ const Panel& named(const std::vector<Panel>& panels, const std::string& name) {
   std::vector<std::string_view> names;
   for (const Panel& panel : panels) names.push_back(panel.name);
   throw std::invalid_argument(base::unknown_name("panel", name, names));
-}
-
-/// Sets of particles that are one node.
-class NodeSets {
- public:
-  explicit NodeSets(int count) : parent_(static_cast<std::size_t>(count)) { std::iota(parent_.begin(), parent_.end(), 0); }
-
-  int root(int i) {
-    while (parent(i) != i) i = parent(i) = parent(parent(i));
-    return i;
-  }
-
-  void join(int i, int j) {
-    i = root(i), j = root(j);
-    parent(std::max(i, j)) = std::min(i, j);
-  }
-
- private:
-  int& parent(int i) { return parent_[static_cast<std::size_t>(i)]; }
-
-  std::vector<int> parent_;
-};
-
-double length(const Vectors& pattern, const std::vector<int>& particles) {
-  double sum = 0;
-  for (std::size_t k = 1; k < particles.size(); ++k) sum += (pattern.row(particles[k]) - pattern.row(particles[k - 1])).norm();
-  return sum;
 }
 
 Eigen::VectorXd masses_of(const Sheet& sheet) {
@@ -117,7 +90,7 @@ std::vector<std::pair<int, int>> Garment::pairs(const SeamRule& seam) const {
   if (first.size() != second.size())
     throw std::invalid_argument(fmt::format("expected as many particles on {} as on {}, not {} and {}", shown(seam.one),
                                             shown(seam.other), first.size(), second.size()));
-  const double l = length(one.sheet.grid.parameters(), first), m = length(other.sheet.grid.parameters(), second);
+  const double l = sewn_length(one.sheet.grid, seam.one), m = sewn_length(other.sheet.grid, seam.other);
   if (std::max(l, m) > (1 + seam.ease) * std::min(l, m))
     throw std::invalid_argument(
         fmt::format("expected lengths that differ by {:g} % at most (ease = {:g}), {} has {:.4g} m and {} {:.4g} m",
@@ -130,7 +103,7 @@ std::vector<std::pair<int, int>> Garment::pairs(const SeamRule& seam) const {
 }
 
 void Garment::sew(std::span<const SeamRule> seams) {
-  NodeSets joined(particles_);
+  base::DisjointSets joined(particles_);  // whose particles are one node
   for (std::size_t k = 0; k < seams.size(); ++k) try {
       for (const auto& [i, j] : pairs(seams[k])) joined.join(i, j);
     } catch (const std::invalid_argument& error) {
@@ -291,6 +264,14 @@ std::vector<int> sewn_particles(const Grid& grid, const SeamSide& side) {
     }
     if (k == last) return all;
   }
+}
+
+double sewn_length(const Grid& grid, const SeamSide& side) {
+  const Vectors pattern = grid.parameters();
+  const std::vector<int> particles = sewn_particles(grid, side);
+  double sum = 0;
+  for (std::size_t k = 1; k < particles.size(); ++k) sum += (pattern.row(particles[k]) - pattern.row(particles[k - 1])).norm();
+  return sum;
 }
 
 }  // namespace drape::model

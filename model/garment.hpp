@@ -96,4 +96,7 @@ const PanelRule& find_panel(const Scene& scene, const std::string& name);
 /// The particles of a side of a grid that a seam joins, in its order.
 std::vector<int> sewn_particles(const Grid& grid, const SeamSide& side);
 
+/// The length of the chords between them on the pattern [m].
+double sewn_length(const Grid& grid, const SeamSide& side);
+
 }  // namespace drape::model

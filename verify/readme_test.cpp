@@ -161,17 +161,7 @@ void expect_parses(const std::string& arguments) {
   app.require_subcommand(0, 1);
   app.set_version_flag("--version", "");
   int exit_code = 0;
-  bench::add_list(app);
-  bench::add_run(app, "");
-  bench::add_study(app, "");
-  bench::add_inspect(app, exit_code);
-  bench::add_compare(app, exit_code);
-  bench::add_check(app, "", exit_code);
-  bench::add_report(app);
-  bench::add_export(app);
-  bench::add_fabric(app);
-  bench::add_pattern(app);
-  bench::add_score(app, "");
+  bench::add_commands(app, "", exit_code);
   app.parse_complete_callback([&app] {  // before the commands' own, which do not run
     for (const CLI::App* command : app.get_subcommands()) expect_names(*command);
     throw CLI::Success();

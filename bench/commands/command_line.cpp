@@ -76,6 +76,20 @@ std::string farewell(const Interrupted& interrupted) {
 
 }  // namespace
 
+void add_commands(CLI::App& app, const std::string& command_line, int& exit_code) {
+  add_list(app);
+  add_run(app, command_line);
+  add_study(app, command_line);
+  add_inspect(app, exit_code);
+  add_compare(app, exit_code);
+  add_check(app, command_line, exit_code);
+  add_report(app);
+  add_export(app);
+  add_fabric(app);
+  add_pattern(app);
+  add_score(app, command_line);
+}
+
 int run_command_line(int argc, const char* const* argv) {
   std::string command_line = "bench_integrators";
   for (int k = 1; k < argc; ++k) command_line += " " + shell_word(argv[k]);
@@ -92,18 +106,8 @@ int run_command_line(int argc, const char* const* argv) {
   app.require_subcommand(0, 1);
   app.formatter(std::make_shared<HelpFormat>());
   app.set_version_flag("--version", version_text, "show the version");
-  add_list(app);
-  add_run(app, command_line);
-  add_study(app, command_line);
   int exit_code = 0;
-  add_inspect(app, exit_code);
-  add_compare(app, exit_code);
-  add_check(app, command_line, exit_code);
-  add_report(app);
-  add_export(app);
-  add_fabric(app);
-  add_pattern(app);
-  add_score(app, command_line);
+  add_commands(app, command_line, exit_code);
   app.footer(
       fmt::format("Examples:\n"
                   "  {0} run --scene hung-edge --method bdf2,sbdf2 --step 0.01,0.005\n"

@@ -20,6 +20,9 @@ void add_inspect(CLI::App& app, int& exit_code);
 void add_compare(CLI::App& app, int& exit_code);
 void add_check(CLI::App& app, const std::string& command_line, int& exit_code);
 
+/// All of them.
+void add_commands(CLI::App& app, const std::string& command_line, int& exit_code);
+
 /// What the program does without a subcommand.
 void do_main_job();
 

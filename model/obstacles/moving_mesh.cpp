@@ -52,7 +52,8 @@ void MovingMesh::place(double t, std::vector<Vector3d>& vertices) const {
 
 Vector3d MovingMesh::velocity(double t, int vertex) const {
   if (t < keys_.front().t || t >= keys_.back().t) return Vector3d::Zero();
-  const KeyVertices &last = keys_[moment(t).key], &next = keys_[moment(t).key + 1];
+  const std::size_t key = moment(t).key;
+  const KeyVertices &last = keys_[key], &next = keys_[key + 1];
   return (next.vertices[vertex] - last.vertices[vertex]) / (next.t - last.t);
 }
 

@@ -144,15 +144,9 @@ std::vector<Vector2d> polygon_of(const PatternEdge& edge) {
 
 /// Whether two chains of lines cross, beside the corners where they meet.
 bool chains_cross(const std::vector<Vector2d>& one, const std::vector<Vector2d>& other) {
-  const auto side = [](const Vector2d& from, const Vector2d& to, const Vector2d& p) {
-    const Vector2d along = to - from, away = p - from;
-    return along.x() * away.y() - along.y() * away.x();
-  };
   for (std::size_t i = 0; i + 1 < one.size(); ++i)
     for (std::size_t j = 0; j + 1 < other.size(); ++j)
-      if (side(one[i], one[i + 1], other[j]) * side(one[i], one[i + 1], other[j + 1]) < 0 &&
-          side(other[j], other[j + 1], one[i]) * side(other[j], other[j + 1], one[i + 1]) < 0)
-        return true;
+      if (lines_cross(one[i], one[i + 1], other[j], other[j + 1])) return true;
   return false;
 }
 

@@ -8,12 +8,11 @@
 #include <map>
 #include <memory>
 #include <numbers>
-#include <numeric>
-#include <optional>
 #include <set>
 
 #include "model/keys/scene_error.hpp"
 #include "model/scene_file/outline_keys.hpp"
+#include "solver/base/disjoint_sets.hpp"
 
 namespace drape::model {
 namespace {
@@ -82,8 +81,7 @@ class Corners {
  private:
   double length(const FourSides& corners, std::size_t side) const {
     double sum = 0;
-    for (std::size_t edge = corners[side]; edge != corners[(side + 1) % 4]; edge = (edge + 1) % lengths_.size())
-      sum += lengths_[edge];
+    for (const std::size_t edge : edges_of_side(corners, side, lengths_.size())) sum += lengths_[edge];
     return sum;
   }
 
@@ -172,25 +170,29 @@ class Sides {
 /// Edges with the same number of cells, since they are sewn.
 class SewnEdges {
  public:
-  explicit SewnEdges(const SewingPattern& pattern) {
+  explicit SewnEdges(const SewingPattern& pattern) : sets_(total(pattern)) {
+    int first = 0;
     for (const PatternPanel& panel : pattern.panels) {
-      first_.push_back(static_cast<int>(parent_.size()));
-      for (std::size_t edge = 0; edge < panel.edges.size(); ++edge) parent_.push_back(static_cast<int>(parent_.size()));
+      first_.push_back(first);
+      first += static_cast<int>(panel.edges.size());
     }
-    for (const auto& [one, other] : pattern.stitches) parent_[root(place(other))] = root(place(one));
+    for (const auto& [one, other] : pattern.stitches) sets_.join(place(one), place(other));
   }
 
-  int count() const { return static_cast<int>(parent_.size()); }
-  int set_of(const EdgeOfPanel& at) { return root(place(at)); }
+  int count() const { return sets_.count(); }
+  int set_of(const EdgeOfPanel& at) { return sets_.root(place(at)); }
 
  private:
-  int place(const EdgeOfPanel& at) const { return first_[at.panel] + static_cast<int>(at.edge); }
-  int root(int i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
+  static int total(const SewingPattern& pattern) {
+    std::size_t sum = 0;
+    for (const PatternPanel& panel : pattern.panels) sum += panel.edges.size();
+    return static_cast<int>(sum);
   }
 
-  std::vector<int> first_, parent_;
+  int place(const EdgeOfPanel& at) const { return first_[at.panel] + static_cast<int>(at.edge); }
+
+  std::vector<int> first_;
+  base::DisjointSets sets_;
 };
 
 /// A mixed-integer programme of GLPK. Columns and rows count from 1.
@@ -265,11 +267,9 @@ std::vector<std::vector<int>> cells_of_edges(const SewingPattern& pattern, const
   for (std::size_t panel = 0; panel < pattern.panels.size(); ++panel)
     for (const std::size_t side : {0, 1}) {
       std::map<int, double> factors;
-      const FourSides& of = sides[panel];
       const std::size_t count = pattern.panels[panel].edges.size();
-      for (std::size_t edge = of[side]; edge != of[side + 1]; edge = (edge + 1) % count)
-        factors[column[sewn.set_of({panel, edge})]] += 1;
-      for (std::size_t edge = of[side + 2]; edge != of[(side + 3) % 4]; edge = (edge + 1) % count)
+      for (const std::size_t edge : edges_of_side(sides[panel], side, count)) factors[column[sewn.set_of({panel, edge})]] += 1;
+      for (const std::size_t edge : edges_of_side(sides[panel], side + 2, count))
         factors[column[sewn.set_of({panel, edge})]] -= 1;
       programme.require(factors, 0);
     }
@@ -292,11 +292,17 @@ CurvePiece backwards(CurvePiece piece) {
 
 int cells_on(const FourSides& sides, const std::vector<int>& cells, std::size_t side) {
   int sum = 0;
-  for (std::size_t edge = sides[side]; edge != sides[(side + 1) % 4]; edge = (edge + 1) % cells.size()) sum += cells[edge];
+  for (const std::size_t edge : edges_of_side(sides, side, cells.size())) sum += cells[edge];
   return sum;
 }
 
 }  // namespace
+
+std::vector<std::size_t> edges_of_side(const FourSides& sides, std::size_t side, std::size_t edges) {
+  std::vector<std::size_t> all;
+  for (std::size_t edge = sides[side]; edge != sides[(side + 1) % 4]; edge = (edge + 1) % edges) all.push_back(edge);
+  return all;
+}
 
 QuadLayout quad_layout(const SewingPattern& pattern, double spacing) {
   std::vector<Sides> all;
@@ -320,7 +326,7 @@ Outline outline_of(const PatternPanel& panel, const FourSides& sides, const std:
   Outline outline;
   std::vector<CurvePiece>* const all[] = {&outline.lower, &outline.right, &outline.upper, &outline.left};
   for (std::size_t side = 0; side < 4; ++side) {
-    for (std::size_t edge = sides[side]; edge != sides[(side + 1) % 4]; edge = (edge + 1) % panel.edges.size()) {
+    for (const std::size_t edge : edges_of_side(sides, side, panel.edges.size())) {
       CurvePiece piece = panel.edges[edge].curve;
       if (!cells.empty()) piece.cells = cells[edge];
       all[side]->push_back(side < 2 ? piece : backwards(piece));

@@ -12,6 +12,9 @@ namespace drape::model {
 /// The edges of a panel with which its lower, right, upper and left side begin, counterclockwise.
 using FourSides = std::array<std::size_t, 4>;
 
+/// The edges of one of its sides, counterclockwise. `edges`: of the panel.
+std::vector<std::size_t> edges_of_side(const FourSides& sides, std::size_t side, std::size_t edges);
+
 /// How panels are filled with the cells of grids.
 struct QuadLayout {
   std::vector<FourSides> sides;         ///< of every panel

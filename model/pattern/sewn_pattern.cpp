@@ -4,10 +4,12 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <numeric>
 #include <string_view>
+#include <utility>
 
 #include "model/garment.hpp"
 #include "model/keys/scene_error.hpp"
@@ -61,13 +63,14 @@ struct EdgeOfGrid {
 std::vector<EdgeOfGrid> edges_of_grid(const FourSides& sides, const std::vector<int>& cells) {
   std::vector<EdgeOfGrid> all(cells.size());
   for (std::size_t side = 0; side < 4; ++side) {
+    const std::vector<std::size_t> edges = edges_of_side(sides, side, cells.size());
     const bool is_opposite = side >= 2;  // upper and left go against the outline
-    int whole = 0, passed = 0;
-    for (std::size_t edge = sides[side]; edge != sides[(side + 1) % 4]; edge = (edge + 1) % cells.size()) whole += cells[edge];
-    for (std::size_t edge = sides[side]; edge != sides[(side + 1) % 4]; edge = (edge + 1) % cells.size()) {
-      const int begin = passed, end = passed += cells[edge];
-      all[edge] =
-          is_opposite ? EdgeOfGrid{PanelSide(side), whole - begin, whole - end} : EdgeOfGrid{PanelSide(side), begin, end};
+    int place = 0;
+    if (is_opposite)
+      for (const std::size_t edge : edges) place += cells[edge];
+    for (const std::size_t edge : edges) {
+      const int begin = place, end = place += is_opposite ? -cells[edge] : cells[edge];
+      all[edge] = {PanelSide(side), begin, end};
     }
   }
   return all;
@@ -94,7 +97,7 @@ struct Ways {
   double opposite;  ///< if they run in opposite directions
 };
 
-Ways ways(const SewingPattern& pattern, const Stitch& stitch) {
+Ways ways_of(const SewingPattern& pattern, const Stitch& stitch) {
   const auto [a, b] = ends_of(pattern, stitch[0]);
   const auto [c, d] = ends_of(pattern, stitch[1]);
   return {(a - c).norm() + (b - d).norm(), (a - d).norm() + (b - c).norm()};
@@ -130,35 +133,22 @@ class ShownFaces {
 
 /// Whether edges are sewn side by side: those of panels that show the same face run in opposite directions. The ends that are
 /// nearer meet, where that is clearest first; the others follow from the faces.
-std::vector<bool> side_by_side(const SewingPattern& pattern) {
+std::vector<bool> side_by_side(const SewingPattern& pattern, const std::vector<Ways>& ways) {
   std::vector<std::size_t> order(pattern.stitches.size());
   std::iota(order.begin(), order.end(), 0);
-  const auto doubt = [&](std::size_t k) {
-    const Ways of = ways(pattern, pattern.stitches[k]);
-    return -std::abs(of.same - of.opposite);
-  };
-  std::ranges::stable_sort(order, {}, doubt);
+  std::ranges::stable_sort(order, {}, [&](std::size_t k) { return -std::abs(ways[k].same - ways[k].opposite); });
   ShownFaces faces(pattern.panels.size());
   std::vector<bool> all(order.size());
   for (const std::size_t k : order) {
     const auto& [one, other] = pattern.stitches[k];
-    const Ways of = ways(pattern, pattern.stitches[k]);
-    all[k] = faces.differ(one.panel, other.panel, of.same < of.opposite);
+    all[k] = faces.differ(one.panel, other.panel, ways[k].same < ways[k].opposite);
   }
   return all;
 }
 
 /// The part by which one side of a seam is longer than the other, as particles are placed.
 double excess(const Scene& scene, const SeamRule& seam) {
-  const auto length = [&](const SeamSide& side) {
-    const Grid& grid = find_panel(scene, side.panel).grid;
-    const Vectors pattern = grid.parameters();
-    const std::vector<int> particles = sewn_particles(grid, side);
-    double sum = 0;
-    for (std::size_t k = 1; k < particles.size(); ++k)
-      sum += (pattern.row(particles[k]) - pattern.row(particles[k - 1])).norm();
-    return sum;
-  };
+  const auto length = [&](const SeamSide& side) { return sewn_length(find_panel(scene, side.panel).grid, side); };
   const double one = length(seam.one), other = length(seam.other);
   return std::max(one, other) / std::min(one, other) - 1;
 }
@@ -188,15 +178,17 @@ SewnPattern sew(const SewingPattern& pattern, double spacing) {
     rule.start.position = panel.position;
     places.push_back(edges_of_grid(sides[k], cells[k]));
   }
-  const std::vector<bool> run_side_by_side = side_by_side(pattern);
+  std::vector<Ways> ways;
+  for (const Stitch& stitch : pattern.stitches) ways.push_back(ways_of(pattern, stitch));
+  const std::vector<bool> run_side_by_side = side_by_side(pattern, ways);
   for (std::size_t k = 0; k < pattern.stitches.size(); ++k) {
     const auto& [one, other] = pattern.stitches[k];
     const EdgeOfGrid &first = places[one.panel][one.edge], &second = places[other.panel][other.edge];
     SeamRule seam{{pattern.panel(one).name, first.side, {first.begin, first.end}},
                   {pattern.panel(other).name, second.side, {second.begin, second.end}}};
     if (!run_side_by_side[k]) std::swap(seam.other.ends[0], seam.other.ends[1]);
-    const Ways of = ways(pattern, pattern.stitches[k]);
-    const double way = run_side_by_side[k] ? of.same : of.opposite, other_way = of.same + of.opposite - way;
+    const double way = run_side_by_side[k] ? ways[k].same : ways[k].opposite;
+    const double other_way = run_side_by_side[k] ? ways[k].opposite : ways[k].same;
     std::string& remark = sewn.remarks.emplace_back(
         fmt::format("{} edge {} with {} edge {}: ends {:.2f} m away, the other way round {:.2f} m", seam.one.panel,
                     pattern.edge(one).number, seam.other.panel, pattern.edge(other).number, way, other_way));

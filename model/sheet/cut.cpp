@@ -43,6 +43,13 @@ std::vector<Vector2d> left_part(std::span<const Vector2d> polygon, const Vector2
 }
 
 /// Sides that only meet do not cross: one end of one lies at an end of the other, exactly.
+bool lines_cross(const Vector2d& from, const Vector2d& to, const Vector2d& other_from, const Vector2d& other_to) {
+  const auto parts = [](const Vector2d& begin, const Vector2d& end, const Vector2d& p, const Vector2d& q) {
+    return cross(end - begin, p - begin) * cross(end - begin, q - begin) < 0;
+  };
+  return parts(from, to, other_from, other_to) && parts(other_from, other_to, from, to);
+}
+
 bool crosses_itself(std::span<const Vector2d> polygon) {
   struct Side {
     Vector2d from, to;
@@ -52,13 +59,9 @@ bool crosses_itself(std::span<const Vector2d> polygon) {
   std::vector<Side> sides;
   for (std::size_t k = 0; k < polygon.size(); ++k) sides.push_back({polygon[k], polygon[(k + 1) % polygon.size()]});
   std::ranges::sort(sides, {}, &Side::left);
-  const auto parts = [](const Side& line, const Side& other) {
-    const Vector2d along = line.to - line.from;
-    return cross(along, other.from - line.from) * cross(along, other.to - line.from) < 0;
-  };
   for (auto one = sides.begin(); one != sides.end(); ++one)
     for (auto other = one + 1; other != sides.end() && other->left() <= one->right(); ++other)
-      if (parts(*one, *other) && parts(*other, *one)) return true;
+      if (lines_cross(one->from, one->to, other->from, other->to)) return true;
   return false;
 }
 

@@ -20,6 +20,10 @@ double polygon_area(std::span<const Eigen::Vector2d> polygon);
 std::vector<Eigen::Vector2d> left_part(std::span<const Eigen::Vector2d> polygon, const Eigen::Vector2d& from,
                                        const Eigen::Vector2d& to);
 
+/// Whether two straight lines, from one point to another each, cross between their ends.
+bool lines_cross(const Eigen::Vector2d& from, const Eigen::Vector2d& to, const Eigen::Vector2d& other_from,
+                 const Eigen::Vector2d& other_to);
+
 /// Whether two sides of a polygon cross.
 bool crosses_itself(std::span<const Eigen::Vector2d> polygon);
 

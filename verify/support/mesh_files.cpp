@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <random>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -149,6 +150,14 @@ void write_mesh(const std::filesystem::path& file, const TriangleMesh& mesh) {
   } else {
     throw std::invalid_argument(file.string() + ": expected .obj, .ply, .stl, .gltf or .glb");
   }
+}
+
+std::vector<Vector3d> random_points(int count, double extent, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> coordinate(-extent, extent);
+  std::vector<Vector3d> points(static_cast<std::size_t>(count));
+  for (Vector3d& p : points) p = {coordinate(random), coordinate(random), coordinate(random)};
+  return points;
 }
 
 TriangleMesh box_mesh(const Vector3d& size) {

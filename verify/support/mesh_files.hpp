@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
 #include "model/obstacles/triangle_mesh.hpp"
 
@@ -10,6 +11,9 @@ namespace drape::verify {
 /// .gltf (its numbers in a file beside it) or .glb. In the last two the triangles are shared out between two nodes, of which
 /// the second is mirrored, below one that scales and shifts.
 void write_mesh(const std::filesystem::path& file, const model::TriangleMesh& mesh);
+
+/// Points in a cube around the origin.
+std::vector<Eigen::Vector3d> random_points(int count, double extent, unsigned seed);
 
 /// A box around the origin.
 model::TriangleMesh box_mesh(const Eigen::Vector3d& size);

@@ -13,7 +13,6 @@
 #include <cstdint>
 #include <fstream>
 #include <memory>
-#include <random>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -48,14 +47,6 @@ using testing::AllOf;
 using testing::EndsWith;
 using testing::HasSubstr;
 using testing::StartsWith;
-
-std::vector<Vector3d> random_points(int count, double extent) {
-  std::mt19937 random(5);
-  std::uniform_real_distribution<double> coordinate(-extent, extent);
-  std::vector<Vector3d> points(count);
-  for (Vector3d& p : points) p = {coordinate(random), coordinate(random), coordinate(random)};
-  return points;
-}
 
 template <class Move>
 TriangleMesh moved(TriangleMesh mesh, const Move& move) {
@@ -117,7 +108,7 @@ TEST_F(Shifted, HasTheDistancesOfTheRigidMesh) {
   for (const double t : {-1.0, 0.5, 0.8, 1.1, 1.5, 7.0}) {
     const PosedMesh mesh = posed(vertices, t);
     const Vector3d velocity = t >= 0.5 && t < 1.5 ? shift : Vector3d(0, 0, 0);
-    for (const Vector3d& p : random_points(100, 2)) {
+    for (const Vector3d& p : random_points(100, 2, 5)) {
       const auto expected = motion.nearest(motion.pose(t).to_body(p));
       const auto [nearest, at] = mesh.touch(p);
       EXPECT_NEAR(nearest.distance, expected.distance, 4e-15);
@@ -145,7 +136,7 @@ void expect_same(const std::vector<solver::Contact>& one, const std::vector<solv
 }
 
 TEST_F(Shifted, HasTheContactsOfTheRigidMesh) {
-  const std::vector<Vector3d> points = random_points(200, 1.3);
+  const std::vector<Vector3d> points = random_points(200, 1.3, 5);
   solver::State y{solver::Vectors(200, 3), solver::Vectors::Constant(200, 3, 0.7)};
   for (int i = 0; i < 200; ++i) y.x.row(i) = points[i];
   solver::Counters work, other_work;
@@ -203,7 +194,7 @@ TEST(Turned, HasTheContactsOfTheRigidMesh) {
   model::Contacts vertices = contacts_of(obstacle(frames.keys()), 200, work);
   model::Contacts motion = contacts_of(
       obstacle(frames.rigid() + ", motion = [{ time = 0 }, { time = 0.1, rotation = [0, 0, 9] }]"), 200, other_work);
-  const std::vector<Vector3d> points = random_points(200, 1);
+  const std::vector<Vector3d> points = random_points(200, 1, 5);
   solver::State y{solver::Vectors(200, 3), solver::Vectors::Zero(200, 3)};
   for (int i = 0; i < 200; ++i) y.x.row(i) = points[i];
   std::vector<solver::Contact> found, expected;
@@ -239,7 +230,7 @@ TEST_F(Pulsating, HasTheDistancesOfTheScaledMesh) {
     const Obstacle scaled(obstacle(fmt::format("{}, scale = {}", frames_.rigid(), size(t))));
     const PosedMesh mesh = posed(growing_, t);
     int inside = 0;
-    for (const Vector3d& p : random_points(200, 1.8)) {
+    for (const Vector3d& p : random_points(200, 1.8, 5)) {
       const auto [distance, normal] = mesh.nearest(p);
       EXPECT_NEAR(distance, scaled.nearest(p).distance, 4e-15);
       EXPECT_LE((normal - scaled.nearest(p).normal).norm(), 1e-13);
@@ -252,7 +243,7 @@ TEST_F(Pulsating, HasTheDistancesOfTheScaledMesh) {
 TEST_F(Pulsating, HasTheVelocityOfItsSurface) {
   for (const double t : {0.0, 0.3, 1.7}) {
     const PosedMesh mesh = posed(growing_, t);
-    for (const Vector3d& p : random_points(200, 1.8)) {
+    for (const Vector3d& p : random_points(200, 1.8, 5)) {
       const auto [nearest, at] = mesh.touch(p);
       const Vector3d surface = p - nearest.distance * nearest.normal;
       EXPECT_NEAR(at.weights.sum(), 1, 1e-15);
@@ -270,7 +261,7 @@ TEST_F(Pulsating, HasContactsThatMoveWithItsMaterial) {
       obstacle(frames_.keys() + ", motion = [{ time = 0 }, { time = 2, position = [0, 0, 1], rotation = [0, 0, 90] }]");
   const double t = 0.4, h = 0.02, d = 0.01;
   solver::State y{solver::Vectors(200, 3), solver::Vectors::Zero(200, 3)};
-  const std::vector<Vector3d> points = random_points(200, 1.1);
+  const std::vector<Vector3d> points = random_points(200, 1.1, 5);
   for (int i = 0; i < 200; ++i) y.x.row(i) = points[i] + Vector3d(0, 0, 0.2);
   solver::Counters work;
   model::Contacts contacts = contacts_of(turning, 200, work);
@@ -337,7 +328,7 @@ TEST(Hierarchy, RefittedFindsWhatARebuiltOneFinds) {
   model::TriangleHierarchy refitted(from);
   refitted.refit(to);
   const model::TriangleHierarchy rebuilt(to);
-  for (const Vector3d& p : random_points(500, 3)) {
+  for (const Vector3d& p : random_points(500, 3, 5)) {
     double least = 1e9;
     for (const auto& triangle : to.triangles)
       least = std::min(least, (p - model::nearest_on_triangle(corners(to, triangle), p).point).norm());

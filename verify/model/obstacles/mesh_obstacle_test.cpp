@@ -9,7 +9,6 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
-#include <random>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -45,19 +44,11 @@ Obstacle obstacle(const TriangleMesh& mesh) {
   return read(folder / "mesh.ply");
 }
 
-std::vector<Vector3d> random_points(int count, double extent) {
-  std::mt19937 random(11);
-  std::uniform_real_distribution<double> coordinate(-extent, extent);
-  std::vector<Vector3d> points(count);
-  for (Vector3d& p : points) p = {coordinate(random), coordinate(random), coordinate(random)};
-  return points;
-}
-
 // --- A box, from each format -------------------------------------------------------------------------------------------------
 
 void expect_box(const Obstacle& mesh, const Vector3d& size) {
   const Obstacle box(verify::obstacle(fmt::format("shape = 'box', size = [{}, {}, {}]", size[0], size[1], size[2])));
-  for (const Vector3d& p : random_points(300, size.maxCoeff())) {
+  for (const Vector3d& p : random_points(300, size.maxCoeff(), 11)) {
     EXPECT_NEAR(mesh.nearest(p).distance, box.nearest(p).distance, 1e-12);
     EXPECT_LE((mesh.nearest(p).normal - box.nearest(p).normal).norm(), 1e-12);
   }
@@ -142,7 +133,7 @@ TEST(Mesh, HasTheLeastDistanceOfItsTriangles) {
     const TriangleMesh mesh = spiky_mesh(radius);
     const Obstacle quick = obstacle(mesh);
     int inside = 0;
-    for (const Vector3d& p : random_points(400, 1.25 * std::max(1., radius))) {
+    for (const Vector3d& p : random_points(400, 1.25 * std::max(1., radius), 11)) {
       const double distance = brute_distance(p, mesh);
       EXPECT_NEAR(quick.nearest(p).distance, distance, 1e-14);
       inside += distance < 0;
