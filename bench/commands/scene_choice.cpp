@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <stdexcept>
 
 #include "bench/runs/available_memory.hpp"
 #include "model/at_rest.hpp"
+#include "model/clear_start.hpp"
 #include "model/scene_file/scene_file.hpp"
 #include "solver/base/printable.hpp"
 
@@ -16,6 +18,11 @@ model::Scene SceneChoice::load() const {
   for (const std::string& text : sets) overrides.push_back(model::parse_override(text));
   model::Scene loaded = model::load_scene(scene, overrides);
   require_memory(loaded);
+  try {
+    model::require_clear_start(loaded);
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(fmt::format("{}: {}", scene, error.what()));
+  }
   if (model::is_at_rest(loaded))
     fmt::print(stderr, "note: in the scene {} {}\n", base::printable(loaded.name), model::at_rest_remark);
   return loaded;

@@ -275,12 +275,17 @@ Placed placed_at(const MeshFile& file, const aiAnimation& animation, double tick
   });
 }
 
-/// From 0 to the end of an animation [s].
-std::vector<double> sample_times(const aiAnimation& animation, double rate, std::size_t vertices, const std::string& name) {
-  const double duration = animation.mDuration / ticks_per_second(animation), pieces = std::ceil(duration * rate - 1e-9);
+/// From its start to the end of an animation [s].
+std::vector<double> sample_times(const aiAnimation& animation, const AnimationRule& rule, std::size_t vertices,
+                                 const std::string& name) {
+  const double duration = animation.mDuration / ticks_per_second(animation);
+  if (rule.start > 0 && !(rule.start < duration))
+    throw std::invalid_argument(
+        fmt::format("{}: expected obstacles.start before its end at {:g} s, not {:g} s", name, duration, rule.start));
+  const double pieces = std::ceil((duration - rule.start) * rule.rate - 1e-9);
   require_room(pieces + 1, vertices, name);
   std::vector<double> times;
-  for (int k = 0; k < pieces; ++k) times.push_back(k / rate);
+  for (int k = 0; k < pieces; ++k) times.push_back(rule.start + k / rule.rate);
   times.push_back(duration);
   return times;
 }
@@ -308,18 +313,18 @@ KeyedMesh read_frames(const std::string& file, std::span<const FrameFile> frames
   return keyed;
 }
 
-KeyedMesh read_animation(const std::string& file, const std::string& animation, double rate) {
+KeyedMesh read_animation(const std::string& file, const AnimationRule& animation) {
   const MeshFile read(file);
-  const std::string called = fmt::format("{}: obstacles.animation = '{}'", file, animation);
-  const aiAnimation& found = find_animation(read, called, animation);
+  const std::string called = fmt::format("{}: obstacles.animation = '{}'", file, animation.name);
+  const aiAnimation& found = find_animation(read, called, animation.name);
   if (found.mNumMeshChannels + found.mNumMorphMeshChannels > 0)
     throw std::invalid_argument(called + ": expected an animation of nodes and bones, not of morph targets");
   const JoinedMesh mesh = joined(read, file);
   KeyedMesh keyed{mesh.mesh, {}};
-  for (const double t : sample_times(found, rate, mesh.mesh.vertices.size(), called)) {
+  for (const double t : sample_times(found, animation, mesh.mesh.vertices.size(), called)) {
     const std::string name = fmt::format("{} at {:g} s", called, t);
     const Placed placed = placed_at(read, found, t * ticks_per_second(found));
-    keyed.keys.push_back({t, name, vertices_of(mesh, read.vertices(placed, true, name), name)});
+    keyed.keys.push_back({t - animation.start, name, vertices_of(mesh, read.vertices(placed, true, name), name)});
   }
   keyed.mesh.vertices = keyed.keys.front().vertices;
   return keyed;

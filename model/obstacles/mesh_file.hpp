@@ -33,10 +33,16 @@ struct FrameFile {
 /// does, and unless all files have the faces of the first and leave together what is one vertex there.
 KeyedMesh read_frames(const std::string& file, std::span<const FrameFile> frames);
 
-/// The mesh of a file as an animation moves its nodes and, by linear blend skinning, its bones: sampled from t = 0 to the end
-/// of the animation at `rate` [1/s] and at the end. `animation` is its name, or its index in digits. Throws
-/// std::invalid_argument, naming the file, as read_mesh does, and unless there is such an animation, which has no morph
-/// targets, and vertices that are one at rest stay together.
-KeyedMesh read_animation(const std::string& file, const std::string& animation, double rate);
+/// An animation of a file and how it is played.
+struct AnimationRule {
+  std::string name;  ///< or its index in digits; empty: none
+  double rate = 60;  ///< at which it is sampled [1/s]
+  double start = 0;  ///< its time at t = 0 [s], at least 0
+};
+
+/// The mesh of a file as an animation moves its nodes and, by linear blend skinning, its bones: sampled at its rate from its
+/// start on and at its end. Throws std::invalid_argument, naming the file, as read_mesh does, and unless there is such an
+/// animation, which ends after its start and has no morph targets, and vertices that are one at rest stay together.
+KeyedMesh read_animation(const std::string& file, const AnimationRule& animation);
 
 }  // namespace drape::model

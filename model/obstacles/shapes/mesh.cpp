@@ -17,8 +17,7 @@ struct Mesh : ShapeRule {
   std::string file;
   double scale = 1;
   std::vector<FrameFile> frames;  ///< empty: it is not given by frames
-  std::string animation;          ///< empty: none
-  double rate = 60;               ///< at which the animation is sampled [1/s]
+  AnimationRule animation;
 
   std::unique_ptr<const Shape> make() const override { return mesh_shape(read(), scale); }
 
@@ -31,12 +30,12 @@ struct Mesh : ShapeRule {
     return polygons;
   }
 
-  bool moves() const override { return frames.size() > 1 || !animation.empty(); }
+  bool moves() const override { return frames.size() > 1 || !animation.name.empty(); }
 
  private:
   KeyedMesh read() const {
     if (!frames.empty()) return read_frames(file, frames);
-    if (!animation.empty()) return read_animation(file, animation, rate);
+    if (!animation.name.empty()) return read_animation(file, animation);
     return {read_mesh(file), {}};
   }
 };
@@ -92,23 +91,32 @@ Data frame_files_data(const ShapeRule& rule) {
   return frames.empty() ? Data() : Data(frames);
 }
 
+AnimationRule& animation_of(ShapeRule& rule) { return at<&Mesh::animation>.in(rule); }
+const AnimationRule& animation_of(const ShapeRule& rule) { return at<&Mesh::animation>.in(rule); }
+
 void read_animation_name(const Value& value, ShapeRule& rule) {
-  at<&Mesh::animation>.in(rule) = value.text();
+  animation_of(rule).name = value.text();
   if (value.text().empty()) value.fail("the name of an animation, or its index in quotes");
   if (!at<&Mesh::frames>.in(rule).empty()) value.fail("'frames' or 'animation', not both");
 }
 
 Data animation_name_data(const ShapeRule& rule) {
-  const std::string& animation = at<&Mesh::animation>.in(rule);
-  return animation.empty() ? Data() : animation;
+  const AnimationRule& animation = animation_of(rule);
+  return animation.name.empty() ? Data() : animation.name;
 }
 
-void read_rate(const Value& value, ShapeRule& rule) {
-  at<&Mesh::rate>.in(rule) = value.positive();
-  if (at<&Mesh::animation>.in(rule).empty()) value.fail("'animation' beside it");
+/// A number that says how the animation is played.
+template <double AnimationRule::*member, double (Value::*read)() const>
+void read_of_animation(const Value& value, ShapeRule& rule) {
+  animation_of(rule).*member = (value.*read)();
+  if (animation_of(rule).name.empty()) value.fail("'animation' beside it");
 }
 
-Data rate_data(const ShapeRule& rule) { return at<&Mesh::animation>.in(rule).empty() ? Data() : at<&Mesh::rate>.in(rule); }
+template <double AnimationRule::*member>
+Data of_animation_data(const ShapeRule& rule) {
+  const AnimationRule& animation = animation_of(rule);
+  return animation.name.empty() ? Data() : animation.*member;
+}
 
 // A checksum is read behind its file, what depends on another key behind that.
 constexpr Key<ShapeRule> mesh_keys[] = {
@@ -118,7 +126,10 @@ constexpr Key<ShapeRule> mesh_keys[] = {
     {"frames", "", "files with its vertices at key times: list of { time, file }", read_frame_files, frame_files_data},
     {"animation", "", "of the file, which moves it from t = 0 on: its name, or its index", read_animation_name,
      animation_name_data},
-    {"rate", "1/s", "at which the animation is sampled", read_rate, rate_data},
+    {"rate", "1/s", "at which the animation is sampled", read_of_animation<&AnimationRule::rate, &Value::positive>,
+     of_animation_data<&AnimationRule::rate>},
+    {"start", "s", "time of the animation at t = 0", read_of_animation<&AnimationRule::start, &Value::non_negative>,
+     of_animation_data<&AnimationRule::start>},
 };
 
 }  // namespace

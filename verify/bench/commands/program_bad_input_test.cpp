@@ -138,6 +138,9 @@ const std::vector<BadInput> bad_inputs = {
      {"energy-momentum", "expected elastic forces with mean forces", "plate"}},
     {"OneParticle", run_with("--set", {"grid.n=1"}), {"--set", "grid.n = 1", "at least 2 particles"}},
     {"NoParticles", run_with("--set", {"grid.n=0"}), {"--set", "grid.n = 0", "from 1"}},
+    {"BodyInTheCloth",
+     run_with("--set", {"obstacles=[{ shape = 'sphere', radius = 0.1, position = [0.5, 0.5, 0] }]"}),
+     {"hung-edge: expected ", "not to pass through obstacles[0] (sphere)", " m deep at t = 0 s"}},
     {"EndNegative", run_with("--set", {"end.time=-1"}), {"--set", "end.time = -1", "above 0"}},
 
     // Files.

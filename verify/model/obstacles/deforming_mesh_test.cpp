@@ -554,14 +554,27 @@ TEST_F(SkinnedTube, IsSkinnedLinearly) {
 }
 
 TEST_F(SkinnedTube, IsSampledAtItsRateAndAtItsEnd) {
-  const auto times = [&](double rate) {
+  const auto times = [&](double rate, double start = 0) {
     std::vector<double> all;
-    for (const model::KeyVertices& key : model::read_animation(file_, "bend", rate).keys) all.push_back(key.t);
+    for (const model::KeyVertices& key : model::read_animation(file_, {"bend", rate, start}).keys) all.push_back(key.t);
     return all;
   };
   EXPECT_THAT(times(2.5), testing::ElementsAre(0, 0.4, 0.8, 1));
+  EXPECT_THAT(times(2.5, 0.5), testing::ElementsAre(0, testing::DoubleNear(0.4, 1e-12), 0.5));
   EXPECT_THAT(times(3), testing::SizeIs(4));
   EXPECT_THAT(times(0.1), testing::ElementsAre(0, 1));
+}
+
+TEST_F(SkinnedTube, IsPlayedFromItsStart) {
+  const Obstacle tube(rule(", animation = 'bend', rate = 10, start = 0.4"));
+  const model::MovingMesh& mesh = tube.deforming()->moving();
+  std::vector<Vector3d> places = mesh.first().vertices;
+  for (int v = 0; v < std::ssize(places); ++v) EXPECT_LE((places[v] - tube_.skinned(v, 0.4)).norm(), 1e-6) << v;
+  for (const auto& [t, of_animation] : {std::pair(-1.0, 0.4), {0.0, 0.4}, {0.2, 0.6}, {0.6, 1.0}, {9.0, 1.0}}) {
+    mesh.place(t, places);
+    for (int v = 0; v < std::ssize(places); ++v)
+      EXPECT_LE((places[v] - tube_.skinned(v, of_animation)).norm(), 1e-6) << t << " " << v;
+  }
 }
 
 TEST_F(SkinnedTube, IsDrawnWhereItIs) {
@@ -580,6 +593,8 @@ TEST_F(SkinnedTube, IsWrittenAndReadAgain) {
   EXPECT_EQ(value_of(bending, "animation"), "\"bend\"");
   EXPECT_EQ(value_of(bending, "rate"), "25");
   EXPECT_EQ(value_of(rule(""), "rate"), "");
+  EXPECT_EQ(value_of(rule(", animation = 'bend', start = 0.25"), "start"), "0.25");
+  EXPECT_EQ(value_of(rule(""), "start"), "");
   const model::Scene scene =
       model::parse_scene("name = 'x'\nobstacles = [{ shape = 'mesh', file = '" + file_ + "', animation = 'bend' }]", "a.toml");
   EXPECT_EQ(to_toml(model::parse_scene(to_toml(scene), "b.toml")), to_toml(scene));
@@ -593,6 +608,10 @@ TEST_F(SkinnedTube, IsRefusedWithoutSuchAnAnimation) {
   EXPECT_EQ(refusal(", animation = '1'"), "");
   EXPECT_EQ(refusal(", animation = 'walk'"), file_ + ": obstacles.animation = 'walk': expected one of \"bend\", \"twist\"");
   EXPECT_EQ(refusal(", animation = '2'"), file_ + ": obstacles.animation = '2': expected one of \"bend\", \"twist\"");
+  for (const double start : {1, 2})
+    EXPECT_EQ(refusal(fmt::format(", animation = 'bend', start = {}", start)),
+              fmt::format("{}: obstacles.animation = 'bend': expected obstacles.start before its end at 1 s, not {} s", file_,
+                          start));
   EXPECT_THAT(refusal(", animation = 'bend', rate = 1e9"),
               AllOf(StartsWith(file_ + ": obstacles.animation = 'bend': expected at most 5e+07 positions"), EndsWith("times")));
   write_mesh(folder_ / "box.ply", box_mesh({1, 1, 1}));
@@ -605,6 +624,17 @@ TEST_F(SkinnedTube, IsRefusedWithoutSuchAnAnimation) {
         throw;
       },
       std::invalid_argument);
+}
+
+TEST_F(SkinnedTube, IsRefusedWithMorphTargets) {
+  std::string gltf = tube_.gltf(R"(, {"name": "swell", "samplers": [{"input": 4, "output": 4}],
+                 "channels": [{"sampler": 0, "target": {"node": 0, "path": "weights"}}]})");
+  const std::string indices = R"("indices": 6)";
+  gltf.replace(gltf.find(indices), indices.size(), indices + R"(, "targets": [{"POSITION": 0}])");
+  write(gltf);
+  EXPECT_EQ(refusal(", animation = 'bend'"), "");
+  EXPECT_EQ(refusal(", animation = 'swell'"),
+            file_ + ": obstacles.animation = 'swell': expected an animation of nodes and bones, not of morph targets");
 }
 
 TEST_F(SkinnedTube, IsRefusedWhereItTears) {
@@ -712,6 +742,8 @@ TEST(RefusedFrames, AreSaidInOneLine) {
             ":5: obstacles.animation = 'walk': expected 'frames' or 'animation', not both");
   EXPECT_EQ(scene_refusal("rate = 30"), ":4: obstacles.rate = 30: expected 'animation' beside it");
   EXPECT_EQ(scene_refusal("animation = 'walk'\nrate = 0"), ":5: obstacles.rate = 0: expected a number above 0");
+  EXPECT_EQ(scene_refusal("start = 1"), ":4: obstacles.start = 1: expected 'animation' beside it");
+  EXPECT_EQ(scene_refusal("animation = 'walk'\nstart = -1"), ":5: obstacles.start = -1: expected a number of at least 0");
 }
 
 TEST(FramesOfAScene, AreWrittenWithTheirChecksums) {
