@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "model/garment.hpp"
-#include "model/obstacles/posed_mesh.hpp"
+#include "model/obstacles/obstacle_at_time.hpp"
 #include "model/phases.hpp"
 #include "model/sheet/cells.hpp"
 
@@ -23,38 +23,17 @@ namespace {
 using Eigen::Vector3d;
 
 /// A part of an obstacle where it is at a time.
-class PosedPart {
- public:
-  PosedPart(const Obstacle& part, int of_rule, bool does_move, double t) : rule(of_rule), moves(does_move), part_(part) {
-    if (part.deforming() != nullptr) mesh_.emplace(*part.deforming());
-    set_time(t);
-  }
-
-  void set_time(double t) {
-    pose_ = part_.pose(t);
-    if (mesh_) mesh_->set_time(t);
-  }
-
-  /// With the normal in the frame of the scene.
-  Nearest nearest(const Vector3d& x) const {
-    const Vector3d p = pose_.to_body(x);
-    const auto [distance, normal] = mesh_ ? mesh_->nearest(p) : part_.nearest(p);
-    return {distance, pose_.rotation * normal};
-  }
-
+struct PosedPart {
+  ObstacleAtTime place;
   int rule;    ///< its index among the obstacles of the scene
   bool moves;  ///< whether the obstacle does
-
- private:
-  Obstacle part_;
-  std::optional<PosedMesh> mesh_;  ///< if it deforms
-  Pose pose_;
 };
 
 std::vector<PosedPart> posed_parts(std::span<const ObstacleRule> rules, double t) {
   std::vector<PosedPart> all;
   for (const ObstacleRule& rule : rules)
-    for (const Obstacle& part : parts_of(rule)) all.emplace_back(part, static_cast<int>(&rule - rules.data()), moves(rule), t);
+    for (const Obstacle& part : parts_of(rule))
+      all.push_back({ObstacleAtTime(part, t), static_cast<int>(&rule - rules.data()), moves(rule)});
   return all;
 }
 
@@ -67,7 +46,7 @@ struct NearPoint {
 /// What of a segment is inside of a part, found along it from one end to the other.
 class Piercing {
  public:
-  Piercing(const PosedPart& part, double finest) : part_(part), finest_(finest) {}
+  Piercing(const ObstacleAtTime& part, double finest) : part_(part), finest_(finest) {}
 
   void search(const NearPoint& a, const NearPoint& b) {
     const double length = (b.x - a.x).norm();
@@ -105,7 +84,7 @@ class Piercing {
     passes_ = passes_ || entry_->dot(nearest.normal) < opposite;
   }
 
-  const PosedPart& part_;
+  const ObstacleAtTime& part_;
   double finest_, resolution_ = 0;  ///< half the length of the pieces that are not divided [m]: the least, that of now
   std::optional<Vector3d> entry_;   ///< the normal where the segment entered, while it is inside
   double depth_ = 0;
@@ -174,33 +153,37 @@ class StartSearch {
   double allowed() const { return scene_.contact.distance; }
   double resolution() const { return allowed() / 32; }
 
-  void note(double depth, bool passes, const PosedPart& part, double t, const std::string& whose, const auto& what) {
-    if ((passes || depth > allowed()) && depth > worst_.depth) worst_ = {depth, passes, whose, what(), part.rule, t};
+  /// `whose`, `what`: called for a place that is worse than those before.
+  void note(double depth, bool passes, const PosedPart& part, double t, const auto& whose, const auto& what) {
+    if ((passes || depth > allowed()) && depth > worst_.depth) worst_ = {depth, passes, whose(), what(), part.rule, t};
   }
 
   void search_panels() {
     std::vector<bool> held(static_cast<std::size_t>(garment_.nodes()), false);
     for (const solver::Pin& pin : garment_.pins(with_open_seams(first_), x_))
       held[static_cast<std::size_t>(pin.particle)] = pin.all();
-    for (const Garment::Panel& panel : garment_.panels())
-      for (const PosedPart& part : parts_) search_panel(panel, part, held);
+    for (const Garment::Panel& panel : garment_.panels()) {
+      const std::vector<ClothSegment> segments = cloth_segments(panel.sheet.grid);
+      for (const PosedPart& part : parts_) search_panel(panel, segments, part, held);
+    }
   }
 
-  void search_panel(const Garment::Panel& panel, const PosedPart& part, const std::vector<bool>& held) {
+  void search_panel(const Garment::Panel& panel, const std::vector<ClothSegment>& segments, const PosedPart& part,
+                    const std::vector<bool>& held) {
     const Grid& grid = panel.sheet.grid;
-    const std::string whose = panel.name.empty() ? "" : fmt::format("panel '{}'", panel.name);
+    const auto whose = [&] { return panel.name.empty() ? std::string() : fmt::format("panel '{}'", panel.name); };
     const auto is_held = [&](int i) { return held[static_cast<std::size_t>(panel.node(i))]; };
     std::vector<NearPoint> points;
     for (int i = 0; i < grid.particles(); ++i) {
       const Vector3d x = x_.row(panel.node(i));
-      points.push_back({x, part.nearest(x)});
+      points.push_back({x, part.place.nearest(x)});
       if (!is_held(i))
         note(-points.back().nearest.distance, false, part, first_.begin, whose, [&] { return "particle " + shown(grid, i); });
     }
-    for (const ClothSegment& segment : cloth_segments(grid)) {
+    for (const ClothSegment& segment : segments) {
       const int i = segment.ends.begin, j = segment.ends.end;
       if (is_held(i) || is_held(j)) continue;
-      Piercing piercing(part, resolution());
+      Piercing piercing(part.place, resolution());
       piercing.search(points[static_cast<std::size_t>(i)], points[static_cast<std::size_t>(j)]);
       note(piercing.depth(), piercing.passes(), part, first_.begin, whose,
            [&] { return fmt::format("the {} from {} to {}", segment.name, shown(grid, i), shown(grid, j)); });
@@ -239,7 +222,7 @@ class StartSearch {
       const std::vector<PulledPiece> near = within_reach(pieces, part);
       for (int k = 1; k <= times && !near.empty(); ++k) {
         const double passed = static_cast<double>(k) / times, t = first_.begin + passed * (first_.end - first_.begin);
-        part.set_time(t);
+        part.place.set_time(t);
         for (const PulledPiece& piece : near) search_piece(piece, part, passed, t);
       }
     }
@@ -254,17 +237,17 @@ class StartSearch {
       double radius = 0;
       for (const int end : {0, 1})
         for (const double passed : {0.0, 1.0}) radius = std::max(radius, (piece.at(end, passed) - middle).norm());
-      if (part.nearest(middle).distance < radius) all.push_back(piece);
+      if (part.place.nearest(middle).distance < radius) all.push_back(piece);
     }
     return all;
   }
 
   void search_piece(const PulledPiece& piece, const PosedPart& part, double passed, double t) {
-    const std::string whose = fmt::format("seams[{}]", piece.seam);
+    const auto whose = [&] { return fmt::format("seams[{}]", piece.seam); };
     const Grid& grid = garment_.panel(piece.side->panel).sheet.grid;
     const auto end = [&](int k) {
       const Vector3d x = piece.at(k, passed);
-      return NearPoint{x, part.nearest(x)};
+      return NearPoint{x, part.place.nearest(x)};
     };
     const NearPoint a = end(0), b = end(1);
     const std::string_view of_side = panel_side_names[static_cast<std::size_t>(piece.side->side)];
@@ -273,7 +256,7 @@ class StartSearch {
     };
     note(-a.nearest.distance, false, part, t, whose, particle(piece.ends.begin));
     note(-b.nearest.distance, false, part, t, whose, particle(piece.ends.end));
-    Piercing piercing(part, resolution());
+    Piercing piercing(part.place, resolution());
     piercing.search(a, b);
     note(piercing.depth(), piercing.passes(), part, t, whose, [&] {
       return fmt::format("the edge from {} to {} on {} {}", shown(grid, piece.ends.begin), shown(grid, piece.ends.end),

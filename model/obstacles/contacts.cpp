@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "model/obstacles/obstacle_at_time.hpp"
+
 namespace drape::model {
 namespace {
 
@@ -111,14 +113,9 @@ void Contacts::inside(double t, const Vectors& x, std::vector<Depth>& found) {
 
 Eigen::VectorXd Contacts::distances(double t, const Vectors& x) const {
   Eigen::VectorXd nearest = Eigen::VectorXd::Constant(x.rows(), std::numeric_limits<double>::infinity());
-  for (std::size_t k = 0; k < obstacles_.size(); ++k) {
-    const Pose pose = obstacles_[k].pose(t);
-    std::optional<PosedMesh> deformed;
-    if (deforming_[k]) deformed.emplace(deforming_[k]->begin).set_time(t);
-    for (Eigen::Index i = 0; i < x.rows(); ++i) {
-      const Eigen::Vector3d p = pose.to_body(x.row(i));
-      nearest[i] = std::min(nearest[i], (deformed ? deformed->nearest(p) : obstacles_[k].nearest(p)).distance);
-    }
+  for (const Obstacle& obstacle : obstacles_) {
+    const ObstacleAtTime posed(obstacle, t);
+    for (Eigen::Index i = 0; i < x.rows(); ++i) nearest[i] = std::min(nearest[i], posed.nearest(x.row(i)).distance);
   }
   return nearest;
 }
