@@ -1,5 +1,7 @@
 #include "model/scene.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -10,6 +12,7 @@
 
 #include "model/garment.hpp"
 #include "model/obstacles/mesh_file.hpp"
+#include "model/outline_mesh.hpp"
 #include "model/sheet/edges.hpp"
 #include "solver/base/registry.hpp"
 
@@ -96,6 +99,14 @@ void move(const Start& start, solver::Vectors& x) {
   if (!start.position.isZero(0)) x.rowwise() += start.position.transpose();
 }
 
+TrimmedSurface surface_of(const Grid& grid, const Trim& trim) {
+  if (trim.outline && !trim.file.empty()) throw std::invalid_argument("expected a file or an outline, not both");
+  if (trim.outline) return TrimmedSurface(grid, outline_mesh(grid));
+  TriangleMesh pattern = read_mesh(trim.file);
+  for (Eigen::Vector3d& vertex : pattern.vertices) vertex *= trim.scale;
+  return TrimmedSurface(grid, pattern);
+}
+
 }  // namespace
 
 const std::vector<std::string>& pin_places() {
@@ -152,14 +163,27 @@ solver::State start_of(const Grid& grid, const Start& start) {
 solver::State start(const Scene& scene) { return Garment(scene).start(); }
 
 std::optional<TrimmedSurface> trimmed_surface(const Scene& scene) {
-  if (scene.trim.file.empty()) return {};
-  TriangleMesh pattern = read_mesh(scene.trim.file);
-  for (Eigen::Vector3d& vertex : pattern.vertices) vertex *= scene.trim.scale;
-  return TrimmedSurface(scene.sheet.grid, pattern);
+  if (scene.panels.empty()) {
+    if (!scene.trim.given()) return {};
+    return surface_of(scene.sheet.grid, scene.trim);
+  }
+  if (std::ranges::none_of(scene.panels, [](const PanelRule& panel) { return panel.trim.given(); })) return {};
+  TrimmedSurface all;
+  int first = 0;
+  for (const PanelRule& panel : scene.panels) {
+    try {
+      all.add(panel.trim.given() ? surface_of(panel.grid, panel.trim) : TrimmedSurface(panel.grid), first);
+    } catch (const std::invalid_argument& error) {
+      throw std::invalid_argument(fmt::format("panel '{}': {}", panel.name, error.what()));
+    }
+    first += panel.grid.particles();
+  }
+  return all;
 }
 
 Scene without_trim(Scene scene) {
   scene.trim = {};
+  for (PanelRule& panel : scene.panels) panel.trim = {};
   return scene;
 }
 

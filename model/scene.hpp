@@ -58,10 +58,13 @@ struct Start {
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< [m/s]
 };
 
-/// A triangle mesh that is drawn in the place of the grid [Etzmuß 2002, 2.7].
+/// A triangle mesh that is drawn in the place of the grid [Etzmuß 2002, 2.7]: that of a file, or one of the outline.
 struct Trim {
-  std::string file;  ///< flat, on the pattern; empty: none
-  double scale = 1;  ///< metres for a unit of the file
+  std::string file = {};  ///< flat, on the pattern; empty: none
+  double scale = 1;       ///< metres for a unit of the file
+  bool outline = false;   ///< of the grid's sides, or of its cut (outline_mesh.hpp)
+
+  bool given() const { return outline || !file.empty(); }
 };
 
 /// A panel of a garment. What its sheet has besides is the same for all.
@@ -71,6 +74,7 @@ struct PanelRule {
   Grid grid;
   Material material;
   Start start;
+  Trim trim = {};
 };
 
 enum class PanelSide { lower, right, upper, left };
@@ -146,8 +150,8 @@ solver::State start(const Scene& scene);
 /// The same of one sheet.
 solver::State start_of(const Grid& grid, const Start& start);
 
-/// The mesh that is drawn in the place of the grid, if there is one. Throws std::invalid_argument as read_mesh and
-/// TrimmedSurface do.
+/// The meshes that are drawn in the place of the grids, if there is one; grids without one are drawn as they are. They ride on
+/// the particles of all panels. Throws std::invalid_argument, naming the panel, as read_mesh and TrimmedSurface do.
 std::optional<TrimmedSurface> trimmed_surface(const Scene& scene);
 
 /// The scene without what changes no motion.

@@ -10,6 +10,7 @@
 #include <string>
 #include <unsupported/Eigen/BVH>
 
+#include "model/obstacles/surface.hpp"
 #include "model/sheet/cells.hpp"
 
 namespace drape::model {
@@ -82,7 +83,12 @@ class Halves {
 
 }  // namespace
 
-TrimmedSurface::TrimmedSurface(const Grid& grid, const TriangleMesh& pattern) : triangles_(pattern.triangles) {
+TrimmedSurface::TrimmedSurface(const Grid& grid) : faces_(sheet_polygons(grid, grid.parameters()).faces) {
+  for (int i = 0; i < grid.particles(); ++i) vertices_.push_back({{i, i, i}, {1, 0, 0}});
+}
+
+TrimmedSurface::TrimmedSurface(const Grid& grid, const TriangleMesh& pattern) {
+  for (const auto& [a, b, c] : pattern.triangles) faces_.push_back({a, b, c});
   const Halves halves(grid);
   const double flat = 1e-6 * std::max(grid.size_u, grid.size_v);
   for (std::size_t k = 0; k < pattern.vertices.size(); ++k) {
@@ -97,14 +103,25 @@ TrimmedSurface::TrimmedSurface(const Grid& grid, const TriangleMesh& pattern) : 
   }
 }
 
+void TrimmedSurface::add(const TrimmedSurface& other, int first) {
+  const int before = static_cast<int>(vertices_.size());
+  for (Vertex vertex : other.vertices_) {
+    for (int& particle : vertex.particles) particle += first;
+    vertices_.push_back(vertex);
+  }
+  for (std::vector<int> face : other.faces_) {
+    for (int& corner : face) corner += before;
+    faces_.push_back(std::move(face));
+  }
+}
+
 Polygons TrimmedSurface::at(const Vectors& x) const {
-  Polygons polygons;
+  Polygons polygons{{}, faces_};
   for (const auto& [particles, weights] : vertices_) {
     Vector3d vertex = Vector3d::Zero();
     for (int k = 0; k < 3; ++k) vertex += weights[k] * x.row(particles[k]).transpose();
     polygons.vertices.push_back(vertex);
   }
-  for (const auto& [a, b, c] : triangles_) polygons.faces.push_back({a, b, c});
   return polygons;
 }
 

@@ -10,16 +10,24 @@
 
 namespace drape::model {
 
-/// A triangle mesh that rides on a grid, whose cells are split into a lower left and an upper right half: its vertices keep
-/// their barycentric coordinates in the half in which they lie on the pattern [Etzmuß 2002, 2.7], or beside which, by up to a
-/// tenth.
+/// Meshes that ride on grids, whose cells are split into a lower left and an upper right half: their vertices keep their
+/// barycentric coordinates in the half in which they lie on the pattern [Etzmuß 2002, 2.7], or beside which, by up to a tenth.
 class TrimmedSurface {
  public:
+  /// None.
+  TrimmedSurface() = default;
+
+  /// The grid as it is.
+  explicit TrimmedSurface(const Grid& grid);
+
   /// `pattern`: flat, in the plane of the grid's pattern [m]. Throws std::invalid_argument, naming the mesh and the vertex,
   /// unless all vertices lie on the grid.
   TrimmedSurface(const Grid& grid, const TriangleMesh& pattern);
 
-  /// Where it is if the particles are at x.
+  /// Adds those of another panel. `first`: of its particles among all.
+  void add(const TrimmedSurface& other, int first);
+
+  /// Where they are if the particles are at x.
   Polygons at(const Vectors& x) const;
 
   /// A vertex: three particles and their weights, whose sum is 1.
@@ -28,9 +36,11 @@ class TrimmedSurface {
     Eigen::Vector3d weights;
   };
 
+  const std::vector<Vertex>& vertices() const { return vertices_; }
+
  private:
   std::vector<Vertex> vertices_;
-  std::vector<std::array<int, 3>> triangles_;
+  std::vector<std::vector<int>> faces_;
 };
 
 }  // namespace drape::model

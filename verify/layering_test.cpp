@@ -116,6 +116,7 @@ const std::vector<Confined> confined_libraries = {
     {{"cholmod", "suitesparse/cholmod", "Eigen/CholmodSupport"}, {"solver/linear/"}},
     {{"klu", "suitesparse/klu"}, {"solver/linear/klu_factor.cpp"}},
     {{"assimp/"}, {"model/obstacles/mesh_file.cpp"}},
+    {{"CGAL/"}, {"model/outline_mesh.cpp"}},
     {{"glpk.h"}, {"model/pattern/quad_layout.cpp"}},
     {{"unsupported/Eigen/BVH"}, {"model/trimmed_surface.cpp"}},
 };

@@ -38,8 +38,8 @@ void print_changes(const model::Scene& scene, const model::Scene& from) {
 }
 
 void convert_pattern(const std::string& file, double spacing) {
-  const model::SewnPattern sewn = model::sew(model::read_garmentcode(file), spacing);
-  fmt::print("# Seams join the ends that are nearer:\n");
+  const model::SewnPattern sewn = model::sew(model::read_pattern(file), spacing);
+  if (!sewn.remarks.empty()) fmt::print("# Seams:\n");
   for (const std::string& remark : sewn.remarks) fmt::print("#   {}\n", remark);
   fmt::print("\n");
   print_changes(sewn.scene, {});
@@ -48,10 +48,12 @@ void convert_pattern(const std::string& file, double spacing) {
 }  // namespace
 
 void add_pattern(CLI::App& app) {
-  CLI::App& command = *app.add_subcommand("pattern", "a sewing pattern of GarmentCode as a scene");
+  CLI::App& command = *app.add_subcommand("pattern", "a sewing pattern as a scene");
   const auto file = std::make_shared<std::string>();
   const auto spacing = std::make_shared<double>(usual_spacing);
-  command.add_option("FILE.json", *file, "with panels and stitches")->required()->type_name("");
+  command.add_option("FILE", *file, "of GarmentCode (.json), of curves in mm (.toml), or a garment mesh (.obj)")
+      ->required()
+      ->type_name("");
   command.add_option("--spacing", *spacing, "length of cells [m]")
       ->check(between(least_spacing, largest_spacing))
       ->type_name("L")

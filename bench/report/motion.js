@@ -17,9 +17,38 @@ function unpack(trajectory, surfaces) {
     particles: trajectory.nu * trajectory.nv,
     positions: new Float32Array(bytesOf(trajectory.positions).buffer),
     constraint: bytesOf(trajectory.constraint),
+    trim: unpackTrim(trajectory.trim),
     obstacles,
-    missing: trajectory.obstacles.missing
+    missing: [
+      ...trajectory.obstacles.missing.map((why) => `An obstacle is not drawn: ${why}`),
+      ...(trajectory.trim?.missing ? [`The grid is drawn in the place of a mesh: ${trajectory.trim.missing}`] : [])
+    ]
   };
+}
+
+/** The mesh in the place of the grid, if it can be drawn: three particles and weights of each vertex, triangles. */
+function unpackTrim(trim) {
+  if (!trim || trim.missing) return null;
+  return {
+    particles: new Uint32Array(bytesOf(trim.particles).buffer),
+    weights: new Float32Array(bytesOf(trim.weights).buffer),
+    triangles: new Uint32Array(bytesOf(trim.triangles).buffer)
+  };
+}
+
+/** Writes what particles have, three numbers each, to the vertices of the mesh that rides on them. */
+export function carry({particles, weights}, from, to) {
+  for (let i = 0; i < to.length; ++i) {
+    const vertex = 3 * Math.floor(i / 3), c = i % 3;
+    to[i] = [0, 1, 2].reduce((sum, k) => sum + weights[vertex + k] * from[3 * particles[vertex + k] + c], 0);
+  }
+}
+
+/** The particle to which a vertex of what is drawn is nearest. */
+export function particleOf({trim}, vertex) {
+  if (!trim) return vertex;
+  const weights = trim.weights.subarray(3 * vertex, 3 * vertex + 3);
+  return trim.particles[3 * vertex + weights.indexOf(Math.max(...weights))];
 }
 
 /** The frames before and after a time, and how far it is from the one to the other; after the end the last one. */
@@ -193,8 +222,11 @@ export const hasMarks = (motion, mark) => motion.constraint.includes(mark.kind);
 
 /** The sheet, or the line of a chain, with its mesh. */
 function makeCloth(motion, geometry) {
-  const chain = motion.panels.every(([nu, nv]) => nu === 1 || nv === 1);
-  if (!chain) geometry.setIndex(cellTriangles(motion));
+  const chain = !motion.trim && motion.panels.every(([nu, nv]) => nu === 1 || nv === 1);
+  if (motion.trim)
+    geometry.setIndex(new THREE.BufferAttribute(motion.trim.triangles, 1));
+  else if (!chain)
+    geometry.setIndex(cellTriangles(motion));
   const cloth = chain ?
       new THREE.Line(geometry, new THREE.LineBasicMaterial({vertexColors: THREE.VertexColors})) :
       new THREE.Mesh(
@@ -207,12 +239,19 @@ function makeCloth(motion, geometry) {
   return {chain, cloth, lines};
 }
 
-/** What three.js draws of one run. */
-function makeScene(motion) {
-  const geometry = new THREE.BufferGeometry(), count = 3 * motion.particles;
+/** Places and grey, three numbers each. */
+function makeGeometry(count) {
+  const geometry = new THREE.BufferGeometry();
   geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(count), 3));
   geometry.setAttribute("color", new THREE.BufferAttribute(new Float32Array(count).fill(0.6), 3));
-  const {chain, cloth, lines} = makeCloth(motion, geometry), bodies = motion.obstacles.map(makeObstacle);
+  return geometry;
+}
+
+/** What three.js draws of one run: `geometry` has the particles, `drawn` the vertices of the cloth. */
+function makeScene(motion) {
+  const geometry = makeGeometry(3 * motion.particles);
+  const drawn = motion.trim ? makeGeometry(motion.trim.particles.length) : geometry;
+  const {chain, cloth, lines} = makeCloth(motion, drawn), bodies = motion.obstacles.map(makeObstacle);
   const marks = constraints.filter((mark) => hasMarks(motion, mark))
                     .map((mark) => makeMarks(mark, geometry.attributes.position, motion.particles));
   const scene = new THREE.Scene(), sun = new THREE.DirectionalLight(0xffffff, 0.7);
@@ -220,7 +259,7 @@ function makeScene(motion) {
   scene.add(
       new THREE.AmbientLight(0xffffff, 0.6), sun, cloth, ...lines, ...bodies.map(({body}) => body),
       ...marks.map(({points}) => points));
-  return {scene, cloth, geometry, chain, bodies, marks};
+  return {scene, cloth, geometry, drawn, chain, bodies, marks};
 }
 
 /** A run's canvas with its name and, below it, how far it is off. */

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <exception>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -29,7 +30,8 @@ struct Readable {
 Readable read_obstacles(const results::RunRecord& run) {
   std::vector<model::Override> rest, obstacles;
   for (const results::SceneValue& row : run.scene_keys)
-    if (!row.key.starts_with("trim.")) (row.key == "obstacles" ? obstacles : rest).push_back({row.key, row.value});
+    (row.key == "obstacles" ? obstacles : rest).push_back({row.key, row.value});
+  rest = model::without_trim(rest);
   Readable read{model::scene_of(rest, run.scene), {}};
   for (const model::Override& obstacle : obstacles) {
     std::vector<model::Override> rows = rest;
@@ -114,7 +116,32 @@ Json drawn_obstacles(const Readable& read, const results::TrajectoryRecord& traj
   return drawn;
 }
 
+/// All of a recorded scene that says what its cloth looks like.
+model::Scene read_cloth(const results::RunRecord& run) {
+  std::vector<model::Override> rows;
+  for (const results::SceneValue& row : run.scene_keys)
+    if (row.key != "obstacles") rows.push_back({row.key, row.value});
+  return model::scene_of(rows, run.scene);
+}
+
 }  // namespace
+
+Json page_trim(const results::RunRecord& run) try {
+  const std::optional<model::TrimmedSurface> surface = model::trimmed_surface(read_cloth(run));
+  if (!surface) return nullptr;
+  std::vector<int> particles;
+  std::vector<float> weights;
+  for (const model::TrimmedSurface::Vertex& vertex : surface->vertices())
+    for (int k = 0; k < 3; ++k) {
+      particles.push_back(vertex.particles[k]);
+      weights.push_back(static_cast<float>(vertex.weights[k]));
+    }
+  return {{"particles", packed(particles)},
+          {"weights", packed(weights)},
+          {"triangles", packed(triangles(surface->at(run.trajectory->states.front().x)))}};
+} catch (const std::exception& error) {  // its file is gone, or the record is of a program whose scenes were others
+  return {{"missing", error.what()}};
+}
 
 Json page_obstacles(const results::RunRecord& run, Json& surfaces) {
   try {

@@ -13,4 +13,8 @@ namespace drape::bench {
 /// particle from them in each frame [m], unless one is missing.
 nlohmann::ordered_json page_obstacles(const results::RunRecord& run, nlohmann::ordered_json& surfaces);
 
+/// The meshes that a run with a trajectory has in the place of its grids, null if it has none: of each vertex three particles
+/// and their weights, and `triangles`, corners among the vertices. If they cannot be read, `missing` says why.
+nlohmann::ordered_json page_trim(const results::RunRecord& run);
+
 }  // namespace drape::bench

@@ -110,6 +110,7 @@ Json page_trajectory(const results::RunRecord& run, Json& surfaces) {
           {"times", trajectory.times},
           {"positions", packed_positions(trajectory.states)},
           {"constraint", packed_constraints(trajectory.constraint)},
+          {"trim", page_trim(run)},
           {"obstacles", page_obstacles(run, surfaces)}};
 }
 

@@ -1,8 +1,9 @@
 // Motions side by side: one camera, one time, each run coloured by its distance from the one chosen as the truth.
 
 import {commandLine, element, files, groupBy, shortNumber, unique} from "./data.js";
-import {bounds, colourAt, colourScale, constraints, constraintsAt, distances, hasMarks, makeView} from "./motion.js";
-import {markPicture, particleName, placeMarks, placeObstacle, positionsAt, rootMeanSquare, runLabel, viridis} from "./motion.js";
+import {bounds, carry, colourAt, colourScale, constraints, constraintsAt, distances, hasMarks, makeView} from "./motion.js";
+import {markPicture, particleName, particleOf, placeMarks, placeObstacle, positionsAt} from "./motion.js";
+import {rootMeanSquare, runLabel, viridis} from "./motion.js";
 import {along, axis, baseLayout, labelled, lineStyle, logTicks, style, timeAxis} from "./plots.js";
 import {comparedRuns} from "./run_figures.js";
 
@@ -14,8 +15,13 @@ function updateView(view, player) {
   view.off = distances(position.array, player.true_positions);
   view.off.forEach((off, i) => colourAt(player.scale.share(off)).toArray(color.array, 3 * i));
   position.needsUpdate = color.needsUpdate = true;
-  if (!view.chain) geometry.computeVertexNormals();
-  geometry.computeBoundingSphere();
+  if (motion.trim) {
+    carry(motion.trim, position.array, view.drawn.attributes.position.array);
+    carry(motion.trim, color.array, view.drawn.attributes.color.array);
+    view.drawn.attributes.position.needsUpdate = view.drawn.attributes.color.needsUpdate = true;
+  }
+  if (!view.chain) view.drawn.computeVertexNormals();
+  view.drawn.computeBoundingSphere();
   for (const body of view.bodies) placeObstacle(body, motion.times, player.t);
   for (const marks of view.marks) placeMarks(marks, motion, player.t);
   const ended = player.t > motion.times[motion.times.length - 1] + 1e-9 ?
@@ -79,7 +85,8 @@ function hover(player, view, event) {
   if (!hit) return void (view.canvas.title = "");
   const {array} = view.geometry.attributes.position;
   const far = (i) => hit.point.distanceToSquared(new THREE.Vector3(...array.subarray(3 * i, 3 * i + 3)));
-  const i = [hit.face.a, hit.face.b, hit.face.c].sort((p, q) => far(p) - far(q))[0];
+  const corners = [hit.face.a, hit.face.b, hit.face.c].map((vertex) => particleOf(view.motion, vertex));
+  const i = corners.sort((p, q) => far(p) - far(q))[0];
   const place = [...array.subarray(3 * i, 3 * i + 3)].map((x) => x.toFixed(4)).join(", ");
   const constrained = constraints.find(({kind}) => kind === constraintsAt(view.motion, player.t)[i]);
   view.canvas.title = view.says.textContent = `${particleName(view.motion, i)}${
@@ -135,8 +142,8 @@ function legendElement({views}) {
   const entries = constraints.filter((mark) => views.some(({motion}) => hasMarks(motion, mark)))
                       .map((mark) => entry(markPicture(mark), mark.name));
   if (views.some(({bodies}) => bodies.length)) entries.push(entry(element("span", {className: "body"}), "obstacle"));
-  const missing = unique(views.flatMap(({motion}) => motion.missing))
-                      .map((why) => element("p", {className: "bad"}, `An obstacle is not drawn: ${why}`));
+  const missing =
+      unique(views.flatMap(({motion}) => motion.missing)).map((why) => element("p", {className: "bad"}, why));
   return element("div", {}, element("p", {className: "legend"}, ...entries), ...missing);
 }
 

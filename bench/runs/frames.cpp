@@ -53,7 +53,7 @@ class Writer : public Observer {
     if (periods < due_) return;
     due_ = periods + 1;
     write(folder_ / fmt::format("sheet-{:04}.obj", frame_), t,
-          trimmed_ ? trimmed_->at(y.x) : model::garment_polygons(*cloth_->garment, y.x));
+          trimmed_ ? trimmed_->at(cloth_->garment->spread(y.x)) : model::garment_polygons(*cloth_->garment, y.x));
     for (std::size_t k = 0; k < obstacles_.size(); ++k)
       write(folder_ / fmt::format("obstacle-{}-{:04}.obj", k, frame_), t, obstacles_[k].at(t));
     ++frame_;

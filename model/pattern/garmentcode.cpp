@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -11,9 +10,7 @@
 #include <utility>
 
 #include "model/keys/scene_error.hpp"
-#include "model/pattern/sewing_pattern.hpp"
-#include "model/sheet/cut.hpp"
-#include "solver/base/input_file.hpp"
+#include "model/pattern/readers.hpp"
 #include "solver/base/printable.hpp"
 
 namespace drape::model {
@@ -22,15 +19,6 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Json = nlohmann::ordered_json;  // panels in the order of the file
-
-constexpr std::uintmax_t most_pattern_bytes = 16 << 20;
-constexpr std::size_t most_panels = 1000, most_edges = 1000;
-
-std::string pattern_text(const std::string& file) try {
-  return base::content_of(file, most_pattern_bytes);
-} catch (const base::UnreadableFile& error) {
-  throw SceneError(fmt::format("{}: {}", base::printable(file), error.what()));
-}
 
 /// A value of the file that knows where it is.
 class JsonNode {
@@ -128,38 +116,6 @@ Eigen::Matrix3d turned(const Vector3d& degrees) {
       .toRotationMatrix();
 }
 
-void reverse(PatternPanel& panel) {
-  std::ranges::reverse(panel.edges);
-  for (PatternEdge& edge : panel.edges) std::ranges::reverse(edge.curve.points);
-}
-
-std::vector<Vector2d> polygon_of(const PatternEdge& edge) {
-  constexpr int chords = 32;
-  const Curve curve({edge.curve});
-  const int parts = edge.curve.kind == CurvePiece::Kind::line ? 1 : chords;
-  std::vector<Vector2d> all;
-  for (int k = 0; k <= parts; ++k) all.push_back(curve.at(k / double(parts)));
-  return all;
-}
-
-/// Whether two chains of lines cross, beside the corners where they meet.
-bool chains_cross(const std::vector<Vector2d>& one, const std::vector<Vector2d>& other) {
-  for (std::size_t i = 0; i + 1 < one.size(); ++i)
-    for (std::size_t j = 0; j + 1 < other.size(); ++j)
-      if (lines_cross(one[i], one[i + 1], other[j], other[j + 1])) return true;
-  return false;
-}
-
-void check_crossings(const PatternPanel& panel, const JsonNode& node) {
-  std::vector<std::vector<Vector2d>> all;
-  for (const PatternEdge& edge : panel.edges) all.push_back(polygon_of(edge));
-  for (std::size_t i = 0; i < all.size(); ++i)
-    for (std::size_t j = i; j < all.size(); ++j)
-      if (chains_cross(all[i], all[j]))
-        node.fail(fmt::format("edges {} and {} cross: expected an outline that does not cross itself", panel.edges[i].number,
-                              panel.edges[j].number));
-}
-
 PatternPanel read_pattern_panel(const std::string& name, const JsonNode& node, double metres) {
   PatternPanel panel{base::shortened(base::printable(name), 100), {}, {}, {}};
   std::vector<Vector2d> vertices;
@@ -173,22 +129,13 @@ PatternPanel read_pattern_panel(const std::string& name, const JsonNode& node, d
     if (number == 0) first = from;
     if (number > 0 && from != last)
       edge.fail(fmt::format("begins at vertex {}, the one before ends at {}: expected a closed outline", from, last));
-    panel.edges.push_back({read_edge_curve(edge, vertices[from], vertices[to], metres), number});
+    panel.edges.push_back({read_edge_curve(edge, vertices[from], vertices[to], metres), std::to_string(number)});
     last = to;
   }
   if (last != first)
     node.fail(fmt::format("edge {} ends at vertex {}, edge 0 begins at {}: expected a closed outline", panel.edges.size() - 1,
                           last, first));
-  check_crossings(panel, node);
-  std::vector<Vector2d> outline;
-  for (const PatternEdge& edge : panel.edges) {
-    const std::vector<Vector2d> part = polygon_of(edge);
-    outline.insert(outline.end(), part.begin(), part.end() - 1);
-  }
-  if (const double area = polygon_area(outline); area < 0)
-    reverse(panel);
-  else if (area == 0)
-    node.fail("expected an outline with an area");
+  make_counterclockwise(panel, node.place());
   panel.rotation = upright() * turned(node.at("rotation").vector<3>()) * upright().transpose();
   panel.position = metres * upright() * node.at("translation").vector<3>();
   return panel;
@@ -199,13 +146,11 @@ EdgeOfPanel read_end(const JsonNode& node, const SewingPattern& pattern) {
   const auto found = std::ranges::find_if(pattern.panels, [&](const PatternPanel& panel) { return name.json() == panel.name; });
   if (found == pattern.panels.end()) name.fail(fmt::format("there is no panel {}", base::quoted(name.json().dump())));
   const std::size_t number = node.at("edge").index(found->edges.size());
-  const auto edge = std::ranges::find(found->edges, static_cast<int>(number), &PatternEdge::number);
+  const auto edge = std::ranges::find(found->edges, std::to_string(number), &PatternEdge::name);
   return {static_cast<std::size_t>(found - pattern.panels.begin()), static_cast<std::size_t>(edge - found->edges.begin())};
 }
 
 }  // namespace
-
-std::string SewingPattern::place(std::size_t panel) const { return fmt::format("{}: panel {}", file, panels[panel].name); }
 
 SewingPattern read_garmentcode(const std::string& file) {
   const Json json = Json::parse(pattern_text(file), nullptr, false);
@@ -227,8 +172,9 @@ SewingPattern read_garmentcode(const std::string& file) {
     const JsonNode stitch(listed.json(), fmt::format("{}: stitch {}", pattern.file, number++));
     const std::vector<JsonNode> ends = stitch.list(2, 3);  // a third says which face of the cloth is outside
     pattern.stitches.push_back({read_end(ends[0], pattern), read_end(ends[1], pattern)});
-    const auto& [one, other] = pattern.stitches.back();
-    if (one.panel == other.panel && one.edge == other.edge) stitch.fail("expected two edges, not one with itself");
+    const Stitch& last = pattern.stitches.back();
+    if (last.one.panel == last.other.panel && last.one.edge == last.other.edge)
+      stitch.fail("expected two edges, not one with itself");
   }
   return pattern;
 }

@@ -36,7 +36,7 @@ double turn_before(const PatternPanel& panel, std::size_t edge) {
 std::set<std::size_t> darts(const SewingPattern& pattern, std::size_t panel) {
   const std::size_t count = pattern.panels[panel].edges.size();
   std::set<std::size_t> all;
-  for (const auto& [one, other] : pattern.stitches)
+  for (const auto& [one, other, known] : pattern.stitches)
     if (one.panel == panel && other.panel == panel &&
         ((one.edge + 1) % count == other.edge || (other.edge + 1) % count == one.edge))
       all.insert({one.edge, other.edge});
@@ -176,7 +176,7 @@ class SewnEdges {
       first_.push_back(first);
       first += static_cast<int>(panel.edges.size());
     }
-    for (const auto& [one, other] : pattern.stitches) sets_.join(place(one), place(other));
+    for (const Stitch& stitch : pattern.stitches) sets_.join(place(stitch.one), place(stitch.other));
   }
 
   int count() const { return sets_.count(); }

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,7 +13,7 @@ namespace drape::model {
 /// An edge of a panel of a sewing pattern, between two of its corners.
 struct PatternEdge {
   CurvePiece curve;
-  int number;  ///< in its file
+  std::string name;  ///< in its file: "side"; "3" where it has numbers
 };
 
 /// A flat piece of cloth, and where it is before it is sewn.
@@ -28,8 +28,13 @@ struct EdgeOfPanel {
   std::size_t panel, edge;  ///< places in the lists
 };
 
-/// Two edges that are sewn. Which end meets which, a pattern does not say.
-using Stitch = std::array<EdgeOfPanel, 2>;
+/// Two edges that are sewn.
+struct Stitch {
+  EdgeOfPanel one, other;
+
+  /// Whether the ends meet with which both begin, counterclockwise; empty: the pattern does not say which do.
+  std::optional<bool> side_by_side = {};
+};
 
 /// Panels of any number of edges and what joins them, as programs that draft patterns have them.
 struct SewingPattern {
@@ -45,9 +50,8 @@ struct SewingPattern {
   std::string place(std::size_t panel) const;
 };
 
-/// A pattern of GarmentCode (JSON with panels and stitches) [Korosteleva, Sorkine-Hornung 2023]. Lengths become metres, and
-/// its y, which points up, becomes z. Throws SceneError, naming the panel and the edge, unless every panel is closed and does
-/// not cross itself, and stitches join edges that are there.
-SewingPattern read_garmentcode(const std::string& file);
+/// A pattern in the format that the end of the file's name tells. Lengths become metres. Throws SceneError, naming the panel
+/// and the edge, unless it can be sewn.
+SewingPattern read_pattern(const std::string& file);
 
 }  // namespace drape::model

@@ -98,8 +98,8 @@ struct Ways {
 };
 
 Ways ways_of(const SewingPattern& pattern, const Stitch& stitch) {
-  const auto [a, b] = ends_of(pattern, stitch[0]);
-  const auto [c, d] = ends_of(pattern, stitch[1]);
+  const auto [a, b] = ends_of(pattern, stitch.one);
+  const auto [c, d] = ends_of(pattern, stitch.other);
   return {(a - c).norm() + (b - d).norm(), (a - d).norm() + (b - c).norm()};
 }
 
@@ -131,17 +131,20 @@ class ShownFaces {
   std::vector<bool> turned_;  ///< against the parent
 };
 
-/// Whether edges are sewn side by side: those of panels that show the same face run in opposite directions. The ends that are
-/// nearer meet, where that is clearest first; the others follow from the faces.
+/// Whether edges are sewn side by side: those of panels that show the same face run in opposite directions. Where the pattern
+/// does not say, the ends that are nearer meet, where that is clearest first; the others follow from the faces.
 std::vector<bool> side_by_side(const SewingPattern& pattern, const std::vector<Ways>& ways) {
   std::vector<std::size_t> order(pattern.stitches.size());
   std::iota(order.begin(), order.end(), 0);
-  std::ranges::stable_sort(order, {}, [&](std::size_t k) { return -std::abs(ways[k].same - ways[k].opposite); });
+  std::ranges::stable_sort(order, {}, [&](std::size_t k) {
+    return pattern.stitches[k].side_by_side ? -HUGE_VAL : -std::abs(ways[k].same - ways[k].opposite);
+  });
   ShownFaces faces(pattern.panels.size());
   std::vector<bool> all(order.size());
   for (const std::size_t k : order) {
-    const auto& [one, other] = pattern.stitches[k];
-    all[k] = faces.differ(one.panel, other.panel, ways[k].same < ways[k].opposite);
+    const auto& [one, other, known] = pattern.stitches[k];
+    const bool differ = faces.differ(one.panel, other.panel, known.value_or(ways[k].same < ways[k].opposite));
+    all[k] = known.value_or(differ);
   }
   return all;
 }
@@ -182,7 +185,7 @@ SewnPattern sew(const SewingPattern& pattern, double spacing) {
   for (const Stitch& stitch : pattern.stitches) ways.push_back(ways_of(pattern, stitch));
   const std::vector<bool> run_side_by_side = side_by_side(pattern, ways);
   for (std::size_t k = 0; k < pattern.stitches.size(); ++k) {
-    const auto& [one, other] = pattern.stitches[k];
+    const auto& [one, other, known] = pattern.stitches[k];
     const EdgeOfGrid &first = places[one.panel][one.edge], &second = places[other.panel][other.edge];
     SeamRule seam{{pattern.panel(one).name, first.side, {first.begin, first.end}},
                   {pattern.panel(other).name, second.side, {second.begin, second.end}}};
@@ -191,8 +194,8 @@ SewnPattern sew(const SewingPattern& pattern, double spacing) {
     const double other_way = run_side_by_side[k] ? ways[k].opposite : ways[k].same;
     std::string& remark = sewn.remarks.emplace_back(
         fmt::format("{} edge {} with {} edge {}: ends {:.2f} m away, the other way round {:.2f} m", seam.one.panel,
-                    pattern.edge(one).number, seam.other.panel, pattern.edge(other).number, way, other_way));
-    if (way > other_way) remark += "; sewn so that no panel is inside out";
+                    pattern.edge(one).name, seam.other.panel, pattern.edge(other).name, way, other_way));
+    if (way > other_way) remark += known ? "; sewn as the pattern says" : "; sewn so that no panel is inside out";
     if (const double gathered = excess(scene, seam); gathered > seam.ease / 2) {
       seam.ease = std::ceil(100 * (gathered + seam.ease)) / 100;
       remark += fmt::format("; {:.0f} % are gathered", 100 * gathered);

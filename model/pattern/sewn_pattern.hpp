@@ -14,7 +14,7 @@ struct SewnPattern {
   std::vector<std::string> remarks;  ///< a line each
 };
 
-/// Panels become grids with cells of about this length [m], stitches become seams: since a pattern does not say which ends of
+/// Panels become grids with cells of about this length [m], stitches become seams: where a pattern does not say which ends of
 /// two edges meet, those that are nearer do. Throws SceneError, naming the panel, if one cannot be a grid.
 SewnPattern sew(const SewingPattern& pattern, double spacing);
 

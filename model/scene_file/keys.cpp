@@ -437,7 +437,13 @@ std::span<const SceneKey> scene_key_table() {
       {"start.rotation", "degrees", "axis times angle, about the origin, at t = 0", in_start<&Start::rotation>, check::number},
       {"start.position", "m", "of the origin of the pattern at t = 0", in_start<&Start::position>, check::number},
 
-      {"panels", "", "list of { name, grid, material, start }: cloth of several panels, each with keys of these sections, which change those of the scene",
+      {"trim.file", "", "a flat mesh of triangles on the pattern, which is drawn in the place of the grid (2.7)",
+       read_trim, trim_data},
+      {"trim.scale", "1", "metres for a unit of that file", at<&Scene::trim, &Trim::scale>, check::positive},
+      {"trim.outline", "", "whether that is a mesh of the grid's sides or its cut, which the program makes",
+       at<&Scene::trim, &Trim::outline>, check::flag},
+
+      {"panels", "", "list of { name, grid, material, start, trim }: cloth of several panels, each with keys of these sections, which change those of the scene",
        read_entries_of<&Scene::panels, read_panel>, data_of_entries<&Scene::panels>},
       {"seams", "", "list of { one, other, ease }: sides { panel, side, ends } whose particles are one; one may be longer by the part ease",
        read_entries_of<&Scene::seams, read_seam>, data_of_entries<&Scene::seams>},
@@ -446,10 +452,6 @@ std::span<const SceneKey> scene_key_table() {
 
       {"rest.shape", "", "\"flat\" or \"start\": bending is at rest in the shape at t = 0",
        at<&Scene::rest>, check::one_of<rest_shapes>},
-
-      {"trim.file", "", "a flat mesh of triangles on the pattern, which is written as frames in the place of the grid (2.7)",
-       read_trim, trim_data},
-      {"trim.scale", "1", "metres for a unit of that file", at<&Scene::trim, &Trim::scale>, check::positive},
 
       {"end.time", "s", "simulated time", at<&Scene::end>, check::positive},
   };

@@ -30,20 +30,24 @@ struct PieceKind {
   CurvePiece::Kind kind;
   std::size_t least, most;  ///< points
 };
-constexpr PieceKind piece_kinds[] = {
-    {"line", CurvePiece::Kind::line, 2, 2}, {"arc", CurvePiece::Kind::arc, 3, 3}, {"bezier", CurvePiece::Kind::bezier, 3, 6}};
+constexpr PieceKind piece_kinds[] = {{"line", CurvePiece::Kind::line, 2, 2},
+                                     {"arc", CurvePiece::Kind::arc, 3, 3},
+                                     {"bezier", CurvePiece::Kind::bezier, 3, 6},
+                                     {"polyline", CurvePiece::Kind::polyline, 2, 10000}};
 
 const PieceKind& kind_of(const CurvePiece& piece) { return *std::ranges::find(piece_kinds, piece.kind, &PieceKind::kind); }
 
-void read_points(const Value& value, CurvePiece& piece) {
-  const PieceKind& kind = kind_of(piece);
+Vector2d read_point(const Value& point) {
   constexpr double largest = 1e6;  // [m]
-  for (const Value& point : value.list()) {
-    const std::vector<Value> xy = point.list(2);
-    piece.points.emplace_back(xy[0].number(), xy[1].number());
-    if (piece.points.back().cwiseAbs().maxCoeff() > largest)
-      point.fail("coordinates in metres, of at most a thousand kilometres");
-  }
+  const std::vector<Value> xy = point.list(2);
+  Vector2d read(xy[0].number(), xy[1].number());
+  if (read.cwiseAbs().maxCoeff() > largest) point.fail("coordinates in metres, of at most a thousand kilometres");
+  return read;
+}
+
+void read_points(const Value& value, const PointReader& point, CurvePiece& piece) {
+  const PieceKind& kind = kind_of(piece);
+  for (const Value& listed : value.list()) piece.points.push_back(point(listed));
   const std::size_t count = piece.points.size();
   if (count < kind.least || count > kind.most)
     value.fail(kind.least == kind.most ? fmt::format("{} points", kind.least)
@@ -56,23 +60,11 @@ void read_points(const Value& value, CurvePiece& piece) {
   if (!(Curve({piece}).length() > 0)) value.fail("points that differ");
 }
 
-CurvePiece read_piece(const Value& value) {
-  const std::vector<KeyInfo> keys = [] {
-    std::vector<KeyInfo> all;
-    for (const PieceKind& kind : piece_kinds) all.push_back({kind.name, "m", "[x, y] of its points"});
-    all.push_back({"cells", "1", "of the grid along it"});
-    return all;
-  }();
-  require_keys(value, "piece of a curve", keys);
-  CurvePiece piece;
-  const toml::node* cells = value.table().get("cells");
-  if (cells != nullptr) piece.cells = value.child("cells", *cells).count();
-  if (value.table().size() != (cells == nullptr ? 1 : 2)) value.fail("one of line, arc and bezier in every piece");
-  for (const PieceKind& kind : piece_kinds)
-    if (const toml::node* points = value.table().get(kind.name)) {
-      piece.kind = kind.kind;
-      read_points(value.child(kind.name, *points), piece);
-    }
+/// A piece of a curve of a scene.
+CurvePiece read_scene_piece(const Value& value) {
+  static constexpr KeyInfo cells_key[] = {{"cells", "1", "of the grid along it"}};
+  CurvePiece piece = read_piece(value, read_point, cells_key);
+  if (const toml::node* cells = value.table().get("cells")) piece.cells = value.child("cells", *cells).count();
   return piece;
 }
 
@@ -160,10 +152,23 @@ void check_cut(const Grid& grid, const std::string& origin) {
 
 }  // namespace
 
+CurvePiece read_piece(const Value& value, const PointReader& point, std::span<const KeyInfo> others) {
+  std::vector<KeyInfo> keys;
+  for (const PieceKind& kind : piece_kinds) keys.push_back({kind.name, "m", "[x, y] of its points"});
+  keys.insert(keys.end(), others.begin(), others.end());
+  require_keys(value, "piece of a curve", keys);
+  const auto is_given = [&](const PieceKind& kind) { return value.table().contains(kind.name); };
+  if (std::ranges::count_if(piece_kinds, is_given) != 1) value.fail("one of line, arc, bezier and polyline in every piece");
+  const PieceKind& kind = *std::ranges::find_if(piece_kinds, is_given);
+  CurvePiece piece{kind.kind, {}};
+  read_points(value.child(kind.name, *value.table().get(kind.name)), point, piece);
+  return piece;
+}
+
 std::vector<CurvePiece> read_curve(const std::vector<Value>& entries) {
   std::vector<CurvePiece> curve;
   for (const Value& entry : entries) {
-    CurvePiece piece = read_piece(entry);
+    CurvePiece piece = read_scene_piece(entry);
     if (!curve.empty() && !same(curve.back().points.back(), piece.points.front(), Curve({piece}).length()))
       entry.fail(fmt::format("a piece that begins where the one before ends, at {}", shown(curve.back().points.back())));
     curve.push_back(std::move(piece));

@@ -1,10 +1,21 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <functional>
+#include <span>
+
 #include "model/keys/data.hpp"
+#include "model/keys/key.hpp"
 #include "model/keys/value.hpp"
 #include "model/sheet/outline.hpp"
 
 namespace drape::model {
+
+/// How a point of a curve is read.
+using PointReader = std::function<Eigen::Vector2d(const Value&)>;
+
+/// The piece of a curve in a table that may have other keys. Throws SceneError.
+CurvePiece read_piece(const Value& value, const PointReader& point, std::span<const KeyInfo> others);
 
 /// A curve in a scene file: pieces that follow each other. Throws SceneError.
 std::vector<CurvePiece> read_curve(const std::vector<Value>& entries);

@@ -15,7 +15,7 @@
 namespace drape::model {
 namespace {
 
-constexpr std::array<std::string_view, 3> sections = {"grid", "material", "start"};
+constexpr std::array<std::string_view, 4> sections = {"grid", "material", "start", "trim"};
 
 /// "grid.n" as its section and its name there.
 std::pair<std::string_view, std::string_view> split(std::string_view key) {
@@ -31,7 +31,7 @@ void require_known(const Value& value) {
     if (section.str() == "name") continue;
     const Value child = value.child(section.str(), node);
     if (std::ranges::find(sections, section.str()) == sections.end())
-      child.fail("no such key; a panel has name, and keys of the sections grid, material and start");
+      child.fail("no such key; a panel has name, and keys of the sections grid, material, start and trim");
     std::vector<KeyInfo> keys;
     for (const SceneKey& key : scene_key_table())
       if (const auto [of, name] = split(key.name); of == section.str()) keys.push_back({name, key.unit, key.description});
@@ -122,6 +122,7 @@ Scene scene_of(const PanelRule& panel, const Scene& scene) {
   own.sheet.grid = panel.grid;
   own.sheet.material = panel.material;
   own.start = panel.start;
+  own.trim = panel.trim;
   return own;
 }
 
@@ -138,7 +139,7 @@ PanelRule read_panel(const Value& value, const Scene& scene) {
   if (name.empty()) value.fail("a name");
   if (std::ranges::find(scene.panels, name, &PanelRule::name) != scene.panels.end())
     value.fail(fmt::format("names that differ, '{}' is there twice", name));
-  return {name, own.fabric, own.sheet.grid, own.sheet.material, own.start};
+  return {name, own.fabric, own.sheet.grid, own.sheet.material, own.start, own.trim};
 }
 
 Entries entries_of(const PanelRule& panel, const Scene& scene) {

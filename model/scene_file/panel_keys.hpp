@@ -6,7 +6,8 @@
 
 namespace drape::model {
 
-/// Reads an entry of `panels`: its name, and keys of the sections grid, material and start, which change those of the scene.
+/// Reads an entry of `panels`: its name, and keys of the sections grid, material, start and trim, which change those of the
+/// scene.
 /// Throws SceneError.
 PanelRule read_panel(const Value& value, const Scene& scene);
 Entries entries_of(const PanelRule& panel, const Scene& scene);

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <sstream>
 #include <utility>
 #include <variant>
 
@@ -181,8 +182,6 @@ void check_panels(const Scene& scene, const std::string& origin) {
     particles += panel.grid.particles();
   }
   if (particles > most) throw SceneError(fmt::format("{}: panels: expected at most ten million particles", origin));
-  if (!scene.trim.file.empty() && !scene.panels.empty())
-    throw SceneError(fmt::format("{}: trim.file: expected a scene without panels", origin));
   if (scene.panels.empty() && !scene.seams.empty())
     throw SceneError(fmt::format("{}: seams: expected panels, which they join", origin));
   try {
@@ -201,7 +200,7 @@ void check_together(const Scene& scene, const std::string& origin) {
   try {
     trimmed_surface(scene);
   } catch (const std::invalid_argument& error) {
-    fail(fmt::format("trim.file: {}", error.what()));
+    fail(fmt::format("trim: {}", error.what()));
   }
   constexpr double most_compared = 1e8;  // a second
   if (static_cast<double>(scene.pins.size()) * garment.particles() > most_compared)
@@ -302,6 +301,21 @@ std::vector<KeyValue> key_values(const Scene& scene) {
       for (const Data& entry : *list) values.push_back({row.key, row.unit, row.description, entry});
   }
   return values;
+}
+
+std::vector<Override> without_trim(std::span<const Override> rows) {
+  std::vector<Override> rest;
+  for (const Override& row : rows) {
+    if (row.key.starts_with("trim.")) continue;
+    rest.push_back(row);
+    if (row.key != "panels") continue;
+    toml::table panel = *parse_value(row).get_as<toml::table>("value");
+    panel.erase("trim");
+    std::ostringstream text;
+    text << toml::toml_formatter{panel, toml::format_flags::none};
+    rest.back().value = text.str();
+  }
+  return rest;
 }
 
 Scene scene_of(std::span<const Override> rows, std::string_view origin) {

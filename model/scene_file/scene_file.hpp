@@ -59,6 +59,9 @@ std::vector<KeyValue> key_values(const Scene& scene);
 /// Those of an obstacle except its shape.
 std::vector<KeyValue> key_values(const ObstacleRule& rule);
 
+/// Rows of a scene without what only draws it, and whose files may be gone.
+std::vector<Override> without_trim(std::span<const Override> rows);
+
 /// The scene with such rows, their values as TOML. `origin` names it in messages. Throws SceneError.
 Scene scene_of(std::span<const Override> rows, std::string_view origin);
 

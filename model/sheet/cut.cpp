@@ -17,8 +17,11 @@ std::vector<Vector2d> closed_polygon(const std::vector<CurvePiece>& curve) {
   std::vector<Vector2d> polygon;
   for (const CurvePiece& piece : curve) {
     const Curve whole({piece});
-    const int parts = piece.kind == CurvePiece::Kind::line ? 1 : chords;
-    for (int k = 0; k < parts; ++k) polygon.push_back(whole.at(k / double(parts)));
+    if (piece.kind == CurvePiece::Kind::polyline)
+      polygon.insert(polygon.end(), piece.points.begin(), piece.points.end() - 1);
+    else
+      for (int k = 0, parts = piece.kind == CurvePiece::Kind::line ? 1 : chords; k < parts; ++k)
+        polygon.push_back(whole.at(k / double(parts)));
   }
   if (polygon_area(polygon) < 0) std::ranges::reverse(polygon);
   return polygon;

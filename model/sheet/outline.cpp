@@ -56,6 +56,43 @@ double bezier_length(const std::vector<Vector2d>& p, double from, double to) {
 
 constexpr int measured_parts = 64;  ///< of a Bézier curve, whose lengths are computed
 
+/// The lengths up to equidistant parameters.
+std::vector<double> bezier_lengths(const std::vector<Vector2d>& p) {
+  std::vector<double> passed{0};
+  for (int k = 0; k < measured_parts; ++k)
+    passed.push_back(passed.back() + bezier_length(p, k / double(measured_parts), (k + 1) / double(measured_parts)));
+  return passed;
+}
+
+/// The parameter at a length. `passed`: as above.
+double bezier_parameter(const std::vector<Vector2d>& p, const std::vector<double>& passed, double length) {
+  const auto above = std::ranges::upper_bound(passed, length);
+  const auto k = static_cast<int>(std::distance(passed.begin(), above)) - 1;
+  const double first = k / double(measured_parts);
+  const double left = length - passed[k];
+  double t = first + left / (passed[k + 1] - passed[k]) / measured_parts;
+  double step = 1;
+  for (int newton = 0; newton < 20 && std::abs(step) > 1e-15; ++newton) {  // where the curve has a cusp it takes many
+    const double speed = bezier_speed(p, t);
+    if (!(speed > 0)) break;
+    step = std::clamp(t - (bezier_length(p, first, t) - left) / speed, first, (k + 1) / double(measured_parts)) - t;
+    t += step;
+  }
+  return t;
+}
+
+/// The lengths up to the points.
+std::vector<double> polyline_lengths(const std::vector<Vector2d>& p) {
+  std::vector<double> passed{0};
+  for (std::size_t k = 0; k + 1 < p.size(); ++k) passed.push_back(passed.back() + (p[k + 1] - p[k]).norm());
+  return passed;
+}
+
+/// The line of a polyline on which a length below that of the whole ends.
+std::size_t line_at(const std::vector<double>& passed, double length) {
+  return static_cast<std::size_t>(std::ranges::upper_bound(passed, length) - passed.begin()) - 1;
+}
+
 /// Particles on a side.
 struct Side {
   std::vector<double> places;  ///< as parts of its length
@@ -90,10 +127,11 @@ Curve::Curve(const std::vector<CurvePiece>& pieces) {
         break;
       }
       case CurvePiece::Kind::bezier:
-        passed.push_back(0);
-        for (int k = 0; k < measured_parts; ++k)
-          passed.push_back(passed.back() +
-                           bezier_length(piece.points, k / double(measured_parts), (k + 1) / double(measured_parts)));
+        passed = bezier_lengths(piece.points);
+        end += passed.back();
+        break;
+      case CurvePiece::Kind::polyline:
+        passed = polyline_lengths(piece.points);
         end += passed.back();
         break;
     }
@@ -110,28 +148,56 @@ Vector2d Curve::at(double part) const {
   const double within = std::clamp(wanted - begin, 0.0, whole);
   if (within == 0) return p.front();
   if (within == whole) return p.back();
-  double t = within / whole;
+  const double t = within / whole;
   switch (found->piece.kind) {
     case CurvePiece::Kind::line: return p[0] + t * (p[1] - p[0]);
     case CurvePiece::Kind::arc: {
       const Circle circle(p);
       return circle.centre + Eigen::Rotation2Dd(t * circle.sweep) * (p[0] - circle.centre);
     }
+    case CurvePiece::Kind::polyline: {
+      const std::size_t k = line_at(found->passed, within);
+      return p[k] + (within - found->passed[k]) / (found->passed[k + 1] - found->passed[k]) * (p[k + 1] - p[k]);
+    }
     case CurvePiece::Kind::bezier: break;
   }
-  const auto above = std::ranges::upper_bound(found->passed, within);
-  const auto k = static_cast<int>(std::distance(found->passed.begin(), above)) - 1;
-  const double first = k / double(measured_parts);
-  const double left = within - found->passed[k];
-  t = first + left / (found->passed[k + 1] - found->passed[k]) / measured_parts;
-  double step = 1;
-  for (int newton = 0; newton < 20 && std::abs(step) > 1e-15; ++newton) {  // where the curve has a cusp it takes many
-    const double speed = bezier_speed(p, t);
-    if (!(speed > 0)) break;
-    step = std::clamp(t - (bezier_length(p, first, t) - left) / speed, first, (k + 1) / double(measured_parts)) - t;
-    t += step;
+  return bezier_point(p, bezier_parameter(p, found->passed, within));
+}
+
+std::array<CurvePiece, 2> divided(const CurvePiece& piece, double part) {
+  const std::vector<Vector2d>& p = piece.points;
+  const Curve whole({piece});
+  const Vector2d middle = whole.at(part);
+  CurvePiece first{piece.kind, {p.front()}}, second{piece.kind, {}};
+  switch (piece.kind) {
+    case CurvePiece::Kind::line: break;
+    case CurvePiece::Kind::arc:
+      first.points.push_back(whole.at(part / 2));
+      second.points.push_back(whole.at((1 + part) / 2));
+      break;
+    case CurvePiece::Kind::bezier: {  // the triangle of de Casteljau has the control points of both on its sides
+      const std::vector<double> passed = bezier_lengths(p);
+      const double t = bezier_parameter(p, passed, part * passed.back());
+      std::vector<Vector2d> left = p;
+      for (std::size_t count = p.size() - 1; count > 0; --count) {
+        for (std::size_t k = 0; k < count; ++k) left[k] += t * (left[k + 1] - left[k]);
+        if (count > 1) first.points.push_back(left[0]);
+        if (count < p.size() - 1) second.points.insert(second.points.begin(), left[count]);
+      }
+      break;
+    }
+    case CurvePiece::Kind::polyline: {
+      const std::vector<double> passed = polyline_lengths(p);
+      const auto k = static_cast<std::ptrdiff_t>(line_at(passed, part * passed.back()));
+      first.points.insert(first.points.end(), p.begin() + 1, p.begin() + k + 1);
+      second.points.assign(p.begin() + k + 1, p.end() - 1);
+      break;
+    }
   }
-  return bezier_point(p, t);
+  first.points.push_back(middle);
+  second.points.insert(second.points.begin(), middle);
+  second.points.push_back(p.back());
+  return {first, second};
 }
 
 Outline parallelogram(const Vector2d& u, const Vector2d& v) {

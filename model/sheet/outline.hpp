@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -11,9 +12,10 @@ namespace drape::model {
 /// A piece of a curve in the plane of the pattern.
 struct CurvePiece {
   enum class Kind {
-    line,    ///< from the first point to the second
-    arc,     ///< of the circle through three points, from the first to the last
-    bezier,  ///< with these control points
+    line,      ///< from the first point to the second
+    arc,       ///< of the circle through three points, from the first to the last
+    bezier,    ///< with these control points
+    polyline,  ///< straight from each point to the next
   } kind = Kind::line;
   std::vector<Eigen::Vector2d> points;  ///< [m]
   int cells = 0;  ///< of a grid along a piece of its side, with equal lengths; 0: the side says where its particles are
@@ -38,11 +40,15 @@ class Curve {
  private:
   struct Measured {
     CurvePiece piece;
-    double end;                  ///< length up to its end [m]
-    std::vector<double> passed;  ///< length within it up to equidistant parameters; empty if its speed is constant
+    double end;  ///< length up to its end [m]
+    std::vector<double>
+        passed;  ///< length within it up to equidistant parameters, up to points; empty if its speed is constant
   };
   std::vector<Measured> pieces_;
 };
+
+/// The two parts of a piece on both sides of the point at a part of its length, between 0 and 1. They count no cells.
+std::array<CurvePiece, 2> divided(const CurvePiece& piece, double part);
 
 /// The four sides of a panel in the plane of its pattern: lower and upper along u, left and right along v; each from the lower
 /// left to the upper right. Empty: a rectangle.

@@ -5,8 +5,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
 #include <random>
+#include <utility>
 
+#include "model/garment.hpp"
+#include "model/outline_mesh.hpp"
 #include "model/scene_file/scene_file.hpp"
 #include "verify/support/mesh_files.hpp"
 #include "verify/support/model_fixtures.hpp"
@@ -136,10 +140,118 @@ TEST(TrimmedSurface, ComesFromTheFileOfAScene) {
   EXPECT_EQ(to_toml(model::parse_scene(to_toml(scene), "b.toml")), to_toml(scene));
   EXPECT_FALSE(model::trimmed_surface(model::parse_scene("name = 'x'", origin)));
   EXPECT_EQ(message([&] { model::parse_scene(lines, origin); }),
-            origin + ": trim.file: " + file.string() +
+            origin + ": trim: " + file.string() +
                 ": vertex 2 at [50, 0, 0]: expected vertices on the grid, in metres times trim.scale");
   EXPECT_THAT(message([&] { model::parse_scene("name = 'x'\ntrim.file = 'no.obj'", origin); }),
               testing::HasSubstr(":2: trim.file = 'no.obj': expected the file of a mesh, "));
+}
+
+/// Panels without a mesh are drawn as they are; the particles are those of all panels.
+TEST(TrimmedSurface, RidesOnEveryPanel) {
+  const TemporaryFolder folder;
+  write_mesh(folder.path() / "part.obj",
+             {.name = "", .vertices = {{0, 0, 0}, {0.25, 0, 0}, {0, 0.25, 0}}, .triangles = {{0, 1, 2}}});
+  const std::string origin = folder.path() / "a.toml", panels = R"(
+name = "two"
+[grid]
+n = [3, 3]
+size = 0.5
+[[panels]]
+name = "front"
+trim.file = "part.obj"
+start.position = [0, 0, 1]
+[[panels]]
+name = "back"
+start.position = [0, 0, 2]
+)";
+  const Scene scene = model::parse_scene(panels, origin);
+  EXPECT_TRUE(scene.trim.file.empty());
+  const auto surface = model::trimmed_surface(scene);
+  ASSERT_TRUE(surface);
+  const model::Garment garment(scene);
+  const model::Polygons polygons = surface->at(garment.spread(garment.start().x));
+  ASSERT_EQ(polygons.vertices.size(), 3u + 9);
+  EXPECT_LE((polygons.vertices[1] - Vector3d(0.25, 0, 1)).norm(), rounding);
+  EXPECT_LE((polygons.vertices[3 + 4] - Vector3d(0.25, 0.25, 2)).norm(), rounding);
+  ASSERT_EQ(polygons.faces.size(), 1u + 4);
+  EXPECT_THAT(polygons.faces[0], testing::ElementsAre(0, 1, 2));
+  EXPECT_THAT(polygons.faces[1], testing::ElementsAre(3, 4, 7, 6));
+  EXPECT_EQ(to_toml(model::parse_scene(to_toml(scene), "b.toml")), to_toml(scene));
+  EXPECT_FALSE(model::trimmed_surface(model::without_trim(scene)));
+  EXPECT_EQ(message([&] { model::parse_scene(panels + "trim.scale = 9\ntrim.file = 'part.obj'\n", origin); }),
+            origin + ": trim: panel 'back': " + (folder.path() / "part.obj").string() +
+                ": vertex 2 at [2.25, 0, 0]: expected vertices on the grid, in metres times trim.scale");
+  EXPECT_EQ(message([&] { model::parse_scene(panels + "trim.outline = true\ntrim.file = 'part.obj'\n", origin); }),
+            origin + ": trim: panel 'back': expected a file or an outline, not both");
+}
+
+/// The area of its triangles, which all go round counterclockwise [m²].
+double area(const TriangleMesh& mesh) {
+  double sum = 0;
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const double own = (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]).z() / 2;
+    EXPECT_GT(own, 0);
+    sum += own;
+  }
+  return sum;
+}
+
+/// Edges that belong to one triangle.
+std::map<std::pair<int, int>, int> border(const TriangleMesh& mesh) {
+  std::map<std::pair<int, int>, int> uses;
+  for (const std::array<int, 3>& triangle : mesh.triangles)
+    for (int k = 0; k < 3; ++k) ++uses[std::minmax(triangle[k], triangle[(k + 1) % 3])];
+  std::erase_if(uses, [](const auto& edge) { return edge.second != 1; });
+  return uses;
+}
+
+TEST(OutlineMesh, FillsRectanglesAndFourSides) {
+  EXPECT_NEAR(area(model::outline_mesh(five_by_four())), five_by_four().size_u * five_by_four().size_v, rounding);
+  const Grid skirt = model::load_scene("skirt").sheet.grid;
+  const TriangleMesh mesh = model::outline_mesh(skirt);
+  EXPECT_NEAR(area(mesh), M_PI / 2 * (0.6 * 0.6 - 0.12 * 0.12), 2e-4);
+  EXPECT_LE(area(mesh), M_PI / 2 * (0.6 * 0.6 - 0.12 * 0.12));
+  const double cells = (skirt.nu - 1) * (skirt.nv - 1);
+  EXPECT_GT(static_cast<double>(mesh.triangles.size()), cells);
+  EXPECT_LT(static_cast<double>(mesh.triangles.size()), 5 * cells);
+  int on_hem = 0;
+  for (const auto& [ends, uses] : border(mesh)) {
+    const Vector3d& end = mesh.vertices[ends.first];
+    on_hem += std::abs(end.norm() - 0.6) < rounding;
+  }
+  EXPECT_GE(on_hem, 2 * (skirt.nu - 1));
+  EXPECT_NO_THROW(TrimmedSurface(skirt, mesh));
+}
+
+/// Cells on a cut are drawn whole, and the mesh ends on the circle.
+TEST(OutlineMesh, KeepsTheCurveOfACut) {
+  const Grid grid = model::load_scene("cusick").sheet.grid;
+  const TriangleMesh mesh = model::outline_mesh(grid);
+  EXPECT_NEAR(area(mesh), M_PI * 0.15 * 0.15, 2e-4);
+  const Vector3d centre(0.15, 0.15, 0);
+  for (const auto& [ends, uses] : border(mesh)) {
+    const double r = (mesh.vertices[ends.first] - centre).norm();
+    EXPECT_LE(r, 0.15 + rounding);
+    EXPECT_GE(r, 0.15 - 1e-4);
+  }
+  EXPECT_NO_THROW(TrimmedSurface(grid, mesh));
+}
+
+/// Sewn borders have as many cells, so that meshes on both sides of a seam meet there.
+TEST(OutlineMesh, HasTheParticlesOfTheBorder) {
+  const Scene scene = model::load_scene("t_shirt", std::vector<model::Override>{{"trim.outline", "true"}});
+  for (const model::PanelRule& panel : scene.panels) {
+    EXPECT_TRUE(panel.trim.outline);
+    const TriangleMesh mesh = model::outline_mesh(panel.grid);
+    const Vectors pattern = panel.grid.parameters();
+    for (int b = 0; b < panel.grid.nv; ++b)
+      for (int a = 0; a < panel.grid.nu; ++a) {
+        if (a > 0 && b > 0 && a + 1 < panel.grid.nu && b + 1 < panel.grid.nv) continue;
+        const Vector3d particle = pattern.row(panel.grid.index(a, b));
+        const auto distance = [&](const Vector3d& vertex) { return (vertex - particle).norm(); };
+        EXPECT_LE(distance(std::ranges::min(mesh.vertices, {}, distance)), 1e-9) << panel.name << " " << a << " " << b;
+      }
+  }
 }
 
 }  // namespace

@@ -88,6 +88,32 @@ TEST(ProgramPattern, MakesASceneThatRuns) {
   EXPECT_THAT(rows, AllOf(SizeIs(1), Each(Contains(Row::value_type("outcome", "success")))));
 }
 
+/// The scenes that were made from patterns are sewn and let go, and no particle is inside of the body.
+TEST(ProgramPattern, KeptScenesRunALittle) {
+  const BenchIntegrators program;
+  for (const char* scene : {"circle_skirt", "t_shirt"}) {
+    const auto rows = parse_csv(program.output({"run", "--scene", scene, "--method", "imex-euler", "--step", "0.01", "--until",
+                                                "0.6", "--no-reference", "--repeat", "1", "--format", "csv"}));
+    ASSERT_THAT(rows, SizeIs(1));
+    EXPECT_EQ(rows[0].at("outcome"), "success") << scene;
+    EXPECT_GT(std::stod(rows[0].at("clearance")), 0.01) << scene;
+  }
+}
+
+/// Curves in mm, and a garment mesh.
+TEST(ProgramPattern, TakesAllKindsOfPatterns) {
+  const BenchIntegrators program;
+  program.write("square.toml",
+                "[[panels]]\nname = \"a\"\noutline = [{ line = [[0, 0], [400, 0]] }, { line = [[400, 0], [400, 400]] }, "
+                "{ line = [[400, 400], [0, 400]] }, { line = [[0, 400], [0, 0]] }]\n");
+  program.write("square.obj",
+                "v 0 0 0\nv 0.4 0 0\nv 0.4 0 0.4\nv 0 0 0.4\nvt 0 0\nvt 0.4 0\nvt 0.4 0.4\nvt 0 0.4\nf 1/1 2/2 3/3 4/4\n");
+  for (const char* file : {"square.toml", "square.obj"})
+    EXPECT_THAT(program.output({"pattern", file, "--spacing", "0.1"}),
+                AllOf(HasSubstr("name = \"square\""), HasSubstr("grid.n = [5, 5]"), Not(HasSubstr("# Seams"))))
+        << file;
+}
+
 // --- Names ---------------------------------------------------------------------------------------------------------------
 
 TEST(ProgramList, HasTheNamesThatOtherProgramsRelyOn) {

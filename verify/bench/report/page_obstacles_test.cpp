@@ -5,12 +5,15 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <string>
 #include <vector>
 
 #include "bench/report/base64.hpp"
 #include "bench/report/obstacles.hpp"
+#include "model/garment.hpp"
 #include "model/scene_file/scene_file.hpp"
 #include "verify/support/mesh_files.hpp"
 #include "verify/support/temporary_folder.hpp"
@@ -60,6 +63,48 @@ TEST(PageObstacles, HaveTheVerticesOfEachFrameWhereTheyDeform) {
     EXPECT_FLOAT_EQ(std::abs(places[k]), static_cast<float>(k % 3 == 0 ? half_width[k / 24] : 0.5)) << k;
   const double gap = std::sqrt(3.5 * 3.5 + 4.5 * 4.5 + 4.5 * 4.5);
   EXPECT_NEAR(page.at("clearance")[2].get<double>(), gap, 1e-12) << "from where it is then";
+}
+
+/// Of each vertex three particles and their weights; why not, if the file is gone.
+TEST(PageTrim, HasTheMeshInThePlaceOfTheGrid) {
+  const base::TemporaryFolder folder;
+  const std::string file = folder / "part.obj";
+  write_mesh(file, {.name = "", .vertices = {{0.25, 0, 0}, {1, 0, 0}, {1, 1, 0}}, .triangles = {{0, 1, 2}}});
+  const auto recorded = [](const std::string& lines) {
+    const model::Scene scene = model::parse_scene("name = 'x'\ngrid.n = 2\n" + lines, "a.toml");
+    results::RunRecord run;
+    run.scene = "x";
+    for (const model::KeyValue& row : model::key_values(scene))
+      if (const auto* table = std::get_if<model::Entries>(&row.value))
+        run.scene_keys.push_back({row.key, model::to_toml(*table), row.unit});
+      else
+        run.scene_keys.push_back({row.key, model::to_toml(row.value), row.unit});
+    const int particles = model::Garment(scene).particles();
+    const solver::State y{solver::Vectors::Zero(particles, 3), solver::Vectors::Zero(particles, 3)};
+    run.trajectory = {.nu = 2, .nv = 2, .panels = {}, .times = {0}, .states = {y}, .stretch = {}, .constraint = {}};
+    return run;
+  };
+  EXPECT_TRUE(bench::page_trim(recorded("")).is_null());
+  for (const bool panels : {false, true}) {
+    const std::string line = fmt::format("trim.file = '{}'\n", file);
+    const results::RunRecord run = recorded(
+        (panels ? "[[panels]]\nname = 'a'\n[[panels]]\nname = 'b'\n" : "") + line +
+        (panels ? "[[obstacles]]\nshape = 'sphere'\nradius = 1\n" : "obstacles = [{ shape = 'sphere', radius = 1 }]\n"));
+    const Json page = bench::page_trim(run);
+    ASSERT_FALSE(page.contains("missing")) << page.at("missing");
+    const std::vector<float> weights = numbers(page.at("weights"));
+    ASSERT_EQ(weights.size(), panels ? 3U * (4 + 3) : 3U * 3);
+    EXPECT_EQ(std::accumulate(weights.begin(), weights.end(), 0.0), panels ? 7 : 3);
+    const float first = weights[panels ? 12 : 0];
+    EXPECT_FLOAT_EQ(first, 0.75);
+    std::filesystem::rename(file, file + ".gone");
+    EXPECT_THAT(bench::page_trim(run).at("missing").get<std::string>(), testing::HasSubstr("part.obj"));
+    Json surfaces = Json::array();
+    const Json obstacles = bench::page_obstacles(run, surfaces);
+    EXPECT_THAT(obstacles.at("missing"), testing::IsEmpty());
+    EXPECT_EQ(obstacles.at("drawn").size(), 1U);
+    std::filesystem::rename(file + ".gone", file);
+  }
 }
 
 }  // namespace

@@ -100,6 +100,21 @@ TEST(Frames, ShowWhatTheSheetIsTrimmedTo) {
   EXPECT_LT(later.vertices[0][2], -1e-4);  // it falls
 }
 
+/// Panels keep their outlines, sewn or not.
+TEST(Frames, OfGarmentsShowWhatTheyAreTrimmedTo) {
+  const BenchIntegrators program;
+  program.output({"run", "--scene", "sewn_dress", "--set", "trim.outline=true", "--until", "0.42", "--no-reference", "--repeat",
+                  "1", "--method", "imex-euler", "--step", "0.02", "--frames", "a", "--every", "0.42"});
+  const Obj start = mesh(program, "a/sewn_dress-imex-euler-0.02/sheet-0000.obj");
+  const Obj sewn = mesh(program, "a/sewn_dress-imex-euler-0.02/sheet-0001.obj");
+  EXPECT_EQ(sewn.vertices.size(), start.vertices.size());
+  EXPECT_EQ(sewn.faces, start.faces);
+  EXPECT_THAT(start.faces, testing::Each(testing::SizeIs(3)));
+  const auto at = [](const Obj& obj, std::size_t k) { return obj.vertices.at(k); };
+  EXPECT_LE((at(start, 0) - Vector3d(-0.45, -0.3, 0.45)).norm(), 1e-12) << "the left end of the hem of the front";
+  EXPECT_NEAR(at(sewn, 0).y(), 0, 0.01) << "its side is sewn";
+}
+
 TEST(Frames, ShowChainsAsLines) {
   const BenchIntegrators program;
   program.output({"run", "--scene", "chain", "--set", "grid.n=[4, 1]", "--until", "0.01", "--no-reference", "--repeat", "1",

@@ -49,7 +49,7 @@ SewingPattern read(const std::string& text) {
   const TemporaryFolder folder;
   const auto file = folder.path() / "shirt.json";
   std::ofstream(file) << text;
-  return model::read_garmentcode(file.string());
+  return model::read_pattern(file.string());
 }
 
 /// A panel of one square with this edge in the place of the lower one.

@@ -38,6 +38,36 @@ TEST(Curve, GoesAlongLinesAndArcsByTheirLengths) {
   expect_near(most_of_a_circle.at(1.0 / 3), {0, 1});
 }
 
+TEST(Curve, GoesAlongPolylinesByTheirLengths) {
+  const Curve bent({{polyline, {{0, 0}, {3, 0}, {3, 4}, {4, 4}}}});
+  EXPECT_EQ(bent.length(), 8);
+  expect_near(bent.at(0.25), {2, 0});
+  expect_near(bent.at(0.375), {3, 0});
+  expect_near(bent.at(0.625), {3, 2});
+  expect_near(bent.at(1), {4, 4});
+}
+
+/// Both parts are the whole curve again.
+TEST(Curve, CanBeDividedAnywhere) {
+  const double c = std::numbers::sqrt2;
+  for (const model::CurvePiece& piece : {model::CurvePiece{line, {{1, 2}, {4, 6}}},
+                                         {arc, {{2, 0}, {c, c}, {0, 2}}},
+                                         {bezier, {{0, 0}, {0.75, 0}, {1.5, 2.25}}},
+                                         {bezier, {{0, 0}, {1, 2}, {2, -1}, {3, 1}}},
+                                         {polyline, {{0, 0}, {3, 0}, {3, 4}, {4, 4}}}})
+    for (const double part : {0.2, 0.6, 0.95}) {
+      const auto [first, second] = model::divided(piece, part);
+      const Curve whole({piece}), one({first}), other({second});
+      EXPECT_EQ(first.kind, piece.kind);
+      EXPECT_NEAR(one.length(), part * whole.length(), 1e-11);
+      EXPECT_NEAR(other.length(), (1 - part) * whole.length(), 1e-11);
+      for (const double along : {0.0, 0.3, 0.8, 1.0}) {
+        expect_near(one.at(along), whole.at(part * along), 1e-11);
+        expect_near(other.at(along), whole.at(part + (1 - part) * along), 1e-11);
+      }
+    }
+}
+
 /// The parabola y = x² has the length (2x √(1 + 4x²) + asinh 2x)/4 from its vertex.
 TEST(Curve, GoesAlongBezierCurvesByTheirLengths) {
   const auto length = [](double x) { return (2 * x * std::sqrt(1 + 4 * x * x) + std::asinh(2 * x)) / 4; };
