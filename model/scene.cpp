@@ -101,7 +101,8 @@ void move(const Start& start, solver::Vectors& x) {
 
 TrimmedSurface surface_of(const Grid& grid, const Trim& trim) {
   if (trim.outline && !trim.file.empty()) throw std::invalid_argument("expected a file or an outline, not both");
-  if (trim.outline) return TrimmedSurface(grid, outline_mesh(grid));
+  constexpr double beyond_corners = 2;  // of pieces between particles: lines of the grid cut them off
+  if (trim.outline) return TrimmedSurface(grid, outline_mesh(grid), beyond_corners);
   TriangleMesh pattern = read_mesh(trim.file);
   for (Eigen::Vector3d& vertex : pattern.vertices) vertex *= trim.scale;
   return TrimmedSurface(grid, pattern);

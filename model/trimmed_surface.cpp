@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <stdexcept>
 #include <string>
@@ -21,20 +22,18 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using RectangleTree = Eigen::KdBVH<double, 2, int>;
 
-/// How far a vertex may lie outside of a half, in barycentric coordinates: curved sides lie beyond the edges along them.
-constexpr double outside = 0.1;
-
 /// The halves of the cells of a grid, on its pattern.
 class Halves {
  public:
-  explicit Halves(const Grid& grid) : pattern_(grid.parameters()) {
+  /// `reach`: how far outside of them places are found, in barycentric coordinates.
+  Halves(const Grid& grid, double reach) : pattern_(grid.parameters()) {
     std::vector<Rectangle> boxes;
     for (const Cell& cell : cells(grid))
       for (const int side : {0, 1}) {
         const std::array<int, 3> corners{cell.corner[side][side], cell.corner[1][0], cell.corner[0][1]};
         Rectangle box;
         for (const int corner : corners) box.extend(place(corner));
-        const Vector2d margin = outside * box.sizes();
+        const Vector2d margin = reach * box.sizes();
         boxes.emplace_back(box.min() - margin, box.max() + margin);
         corners_.push_back(corners);
       }
@@ -43,7 +42,7 @@ class Halves {
     hierarchy_ = RectangleTree(order.begin(), order.end(), boxes.begin(), boxes.end());
   }
 
-  /// The half in which a place lies deepest; weights below −`outside` if there is none.
+  /// The half in which a place lies deepest; weights of −infinity if none is near.
   TrimmedSurface::Vertex find(const Vector2d& p) const {
     Search search{*this, p};
     Eigen::BVIntersect(hierarchy_, search);
@@ -54,7 +53,7 @@ class Halves {
   struct Search {
     const Halves& halves;
     const Vector2d& p;
-    TrimmedSurface::Vertex found{{0, 0, 0}, Vector3d::Constant(-1)};
+    TrimmedSurface::Vertex found{{0, 0, 0}, Vector3d::Constant(-HUGE_VAL)};
 
     // NOLINTBEGIN(readability-identifier-naming): names for Eigen
     bool intersectVolume(const Rectangle& box) const { return box.contains(p); }
@@ -87,9 +86,9 @@ TrimmedSurface::TrimmedSurface(const Grid& grid) : faces_(sheet_polygons(grid, g
   for (int i = 0; i < grid.particles(); ++i) vertices_.push_back({{i, i, i}, {1, 0, 0}});
 }
 
-TrimmedSurface::TrimmedSurface(const Grid& grid, const TriangleMesh& pattern) {
+TrimmedSurface::TrimmedSurface(const Grid& grid, const TriangleMesh& pattern, double reach) {
   for (const auto& [a, b, c] : pattern.triangles) faces_.push_back({a, b, c});
-  const Halves halves(grid);
+  const Halves halves(grid, reach);
   const double flat = 1e-6 * std::max(grid.size_u, grid.size_v);
   for (std::size_t k = 0; k < pattern.vertices.size(); ++k) {
     const Vector3d& vertex = pattern.vertices[k];
@@ -99,7 +98,7 @@ TrimmedSurface::TrimmedSurface(const Grid& grid, const TriangleMesh& pattern) {
     };
     if (!(std::abs(vertex.z()) <= flat)) refuse("a flat mesh, with z = 0");
     vertices_.push_back(halves.find(vertex.head<2>()));
-    if (!(vertices_.back().weights.minCoeff() >= -outside)) refuse("vertices on the grid, in metres times trim.scale");
+    if (!(vertices_.back().weights.minCoeff() >= -reach)) refuse("vertices on the grid, in metres times trim.scale");
   }
 }
 

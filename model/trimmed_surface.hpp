@@ -11,7 +11,7 @@
 namespace drape::model {
 
 /// Meshes that ride on grids, whose cells are split into a lower left and an upper right half: their vertices keep their
-/// barycentric coordinates in the half in which they lie on the pattern [Etzmuß 2002, 2.7], or beside which, by up to a tenth.
+/// barycentric coordinates in the half in which they lie on the pattern [Etzmuß 2002, 2.7], or beside which.
 class TrimmedSurface {
  public:
   /// None.
@@ -20,9 +20,10 @@ class TrimmedSurface {
   /// The grid as it is.
   explicit TrimmedSurface(const Grid& grid);
 
-  /// `pattern`: flat, in the plane of the grid's pattern [m]. Throws std::invalid_argument, naming the mesh and the vertex,
-  /// unless all vertices lie on the grid.
-  TrimmedSurface(const Grid& grid, const TriangleMesh& pattern);
+  /// `pattern`: flat, in the plane of the grid's pattern [m]. `reach`: how far a vertex may lie beside the half nearest to it,
+  /// in barycentric coordinates. Throws std::invalid_argument, naming the mesh and the vertex, unless all vertices lie on the
+  /// grid.
+  TrimmedSurface(const Grid& grid, const TriangleMesh& pattern, double reach = 0.1);
 
   /// Adds those of another panel. `first`: of its particles among all.
   void add(const TrimmedSurface& other, int first);

@@ -42,7 +42,7 @@ scene.json    all of it, in SI units: particles, masses, coefficients, forces, p
               of the frames, the equations by their numbers in the thesis, and what to expect at every frame (energies,
               centre of mass, lowest point, largest stretch), each with what it is uncertain by
 scene.toml    the same scene as bench_integrators reads it
-start.obj     the mesh at t = 0; its vertices are the particles, in their order{2}
+start.obj     the mesh at t = 0; its vertices are the particles, in their order{2}{6}
 reference.h5  the motion itself, as {3} have it: /time (F) [s],
               /positions (F x N x 3) [m], /velocities [m/s], /uncertainty (F) [m]: root mean square over the particles
 
@@ -63,7 +63,8 @@ same machine, its cost is compared as well.
           ? ""
           : "\nobstacle-k.obj  obstacle k of scene.json, where it is at t = 0; obstacle-k-n.obj at that of frame n, "
             "counted from 0,\n              where parts of it move or it deforms",
-      truth.families, truth.scene.end, times[1]);
+      truth.families, truth.scene.end, times[1],
+      truth.scene.trim.given() ? "\ntrimmed.obj   the mesh that is drawn in its place, at t = 0" : "");
 }
 
 }  // namespace
@@ -76,6 +77,8 @@ std::map<std::string, std::string> exported(const TrueMotion& truth, std::span<c
       {"start.obj", obj(0, model::sheet_polygons(scene.sheet.grid, truth.motion.states.front().x))},
       {"reference.h5", reference_file(truth, times)},
       {"README.txt", readme(truth, times)}};
+  if (const auto trimmed = model::trimmed_surface(scene))
+    files["trimmed.obj"] = obj(0, trimmed->at(truth.motion.states.front().x));
   for (std::size_t k = 0; k < scene.obstacles.size(); ++k) {
     const model::PosedObstacle obstacle(scene.obstacles[k], 4 * model::size(scene));
     files[fmt::format("obstacle-{}.obj", k)] = obj(0, obstacle.at(0));

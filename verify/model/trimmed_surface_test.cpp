@@ -223,6 +223,20 @@ TEST(OutlineMesh, FillsRectanglesAndFourSides) {
   EXPECT_NO_THROW(TrimmedSurface(skirt, mesh));
 }
 
+/// Where pieces of a side meet between particles, lines of the grid cut the corner off; the mesh does not.
+TEST(OutlineMesh, KeepsCornersBetweenParticles) {
+  const Scene scene = model::load_scene("sewn_dress", std::vector<model::Override>{{"trim.outline", "true"}});
+  const auto surface = model::trimmed_surface(scene);
+  ASSERT_TRUE(surface);
+  const Grid& front = scene.panels.front().grid;
+  Vectors pattern(2 * front.particles(), 3);
+  pattern << front.parameters(), front.parameters();
+  const std::vector<Vector3d> vertices = surface->at(pattern).vertices;
+  const auto distance = [](const Vector3d& vertex) { return (vertex - Vector3d(0.085, 1.04, 0)).norm(); };
+  EXPECT_LE(distance(std::ranges::min(vertices, {}, distance)), 1e-12);
+  EXPECT_GT(distance(pattern.row(front.index(20, front.nv - 1))), 1e-3);
+}
+
 /// Cells on a cut are drawn whole, and the mesh ends on the circle.
 TEST(OutlineMesh, KeepsTheCurveOfACut) {
   const Grid grid = model::load_scene("cusick").sheet.grid;

@@ -65,7 +65,7 @@ TEST(PageObstacles, HaveTheVerticesOfEachFrameWhereTheyDeform) {
   EXPECT_NEAR(page.at("clearance")[2].get<double>(), gap, 1e-12) << "from where it is then";
 }
 
-/// Of each vertex three particles and their weights; why not, if the file is gone.
+/// Three particles and weights of each vertex; why not, if the file is gone.
 TEST(PageTrim, HasTheMeshInThePlaceOfTheGrid) {
   const base::TemporaryFolder folder;
   const std::string file = folder / "part.obj";

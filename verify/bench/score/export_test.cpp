@@ -62,6 +62,16 @@ void expect_observables(const json& scene, const model::Cloth& cloth, const hdf5
   }
 }
 
+TEST(Export, HasTheMeshThatIsDrawn) {
+  const BenchIntegrators program;
+  program.output(Words{"export"} + soft + Words{"--set", "trim.outline=true", "--out", "a"});
+  const auto files = program.files();
+  EXPECT_THAT(files.at("a/README.txt"), HasSubstr("\ntrimmed.obj "));
+  EXPECT_THAT(files.at("a/trimmed.obj"), HasSubstr("\nv "));
+  EXPECT_NE(files.at("a/trimmed.obj"), files.at("a/start.obj"));
+  EXPECT_THAT(files.at("a/scene.toml"), HasSubstr("trim.outline = false"));
+}
+
 TEST(Export, HoldsAllThatAnotherSimulatorNeeds) {
   const BenchIntegrators program;
   program.output(Words{"export"} + soft + Words{"--out", "a/b"});

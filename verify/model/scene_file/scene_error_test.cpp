@@ -129,7 +129,7 @@ const std::vector<BadScene> bad_scenes = {
     {"too_many_particles", "[grid]\nn = 4000", "a.toml:3: grid.n = 4000: expected at most ten million particles"},
 
     {"curved_piece_of_no_kind", "grid.lower = [{spline = [[0, 0], [1, 0]]}]", "a.toml:2: grid.lower.spline = "},
-    {"curved_piece_of_two_kinds", "grid.lower = [{line = [[0, 0], [1, 0]], arc = [[0, 0], [1, 0], [0, 1]]}]", "a.toml:2: grid.lower = { arc = [ [ 0, 0 ], [ 1, 0 ], [ 0, 1 ] ], line = [ [ 0, 0 ], [ 1, 0 ] ] }: expected one of line, arc and bezier"},
+    {"curved_piece_of_two_kinds", "grid.lower = [{line = [[0, 0], [1, 0]], arc = [[0, 0], [1, 0], [0, 1]]}]", "a.toml:2: grid.lower = { arc = [ [ 0, 0 ], [ 1, 0 ], [ 0, 1 ] ], line = [ [ 0, 0 ], [ 1, 0 ] ] }: expected one of line, arc, bezier and polyline"},
     {"line_of_three_points", "grid.upper = [{line = [[0, 0], [1, 0], [2, 0]]}]", "a.toml:2: grid.upper.line = [ [ 0, 0 ], [ 1, 0 ], [ 2, 0 ] ]: expected 2 points"},
     {"bezier_of_two_points", "grid.left = [{bezier = [[0, 0], [1, 0]]}]", "a.toml:2: grid.left.bezier = [ [ 0, 0 ], [ 1, 0 ] ]: expected 3 to 6 points"},
     {"straight_arc", "grid.right = [{arc = [[0, 0], [1, 1], [2, 2]]}]", "a.toml:2: grid.right.arc = [ [ 0, 0 ], [ 1, 1 ], [ 2, 2 ] ]: expected three points that are not on one line"},
@@ -148,7 +148,7 @@ const std::vector<BadScene> bad_scenes = {
      "a.toml: grid.lower: expected a grading of 1 beside cells of pieces"},
     {"cells_of_a_cut", "grid.cut = [{arc = [[1, 0], [0, 1], [-1, 0]], cells = 2}, {line = [[-1, 0], [1, 0]]}]", "a.toml: grid.cut: expected no cells"},
     {"no_cells", "grid.lower = [{line = [[0, 0], [1, 0]], cells = 0}]", "a.toml:2: grid.lower.cells = 0: expected a whole number"},
-    {"cells_alone", "grid.lower = [{cells = 2}]", "a.toml:2: grid.lower = { cells = 2 }: expected one of line, arc and bezier in every piece"},
+    {"cells_alone", "grid.lower = [{cells = 2}]", "a.toml:2: grid.lower = { cells = 2 }: expected one of line, arc, bezier and polyline in every piece"},
     {"clockwise_outline", "grid = {lower = [{line = [[0, 1], [1, 1]]}], right = [{line = [[1, 1], [1, 0]]}], upper = [{line = [[0, 0], [1, 0]]}], left = [{line = [[0, 1], [0, 0]]}]}",
      "a.toml: grid: its lines cross or touch at the cell [0, 0], near [0, 1]: expected lower, right, upper and left counterclockwise"},
     {"folded_outline", "grid = {n = 9, lower = [{arc = [[0, 0], [0.5, 1.5], [1, 0]]}], right = [{line = [[1, 0], [1, 1]]}], upper = [{line = [[0, 1], [1, 1]]}], left = [{line = [[0, 0], [0, 1]]}]}",
