@@ -245,6 +245,7 @@ constexpr const char* look = R"(
   };
   const isGrey = (r, g, b) => r > 60 && Math.abs(g / r - 130 / 118) < 0.03 && Math.abs(b / g - 142 / 130) < 0.03;
   const isWhite = (r, g, b) => Math.min(r, g, b) > 225;
+  const isPurple = (r, g, b) => r > 25 && g < 0.2 * r && Math.abs(b / r - 84 / 68) < 0.25;
   const isOrange = (r, g, b) => Math.hypot(r - 213, g - 94, b) < 30;
   const drawn = (pixels) => pixels.filter((value, k) => k % 4 === 3 && value > 0).length / (pixels.length / 4);
   const seen = {
@@ -263,7 +264,7 @@ constexpr const char* look = R"(
     const after = picture(canvas);
     const body = coloured(before[k], canvas.width, isGrey), later = coloured(after, canvas.width, isGrey);
     seen.views.push({title: canvas.closest("figure").querySelector("h3").textContent, drawn: drawn(before[k]), changed: after.some((value, i) => value !== before[k][i]),
-                     body: body.share, risen: body.row - later.row, pins: coloured(after, canvas.width, isWhite).share, contacts: coloured(after, canvas.width, isOrange).share});
+                     body: body.share, cloth: coloured(after, canvas.width, isPurple).share, risen: body.row - later.row, pins: coloured(after, canvas.width, isWhite).share, contacts: coloured(after, canvas.width, isOrange).share});
   });
   seen.legends = all("#motion figure").map((figure) => figure.querySelector(".legend")?.parentElement.innerText ?? "");
   const svg = await report.svgOf(report.plots[0]), png = await report.pngOf(svg), image = new Image();
@@ -331,6 +332,7 @@ void expect_obstacles_and_marks(const json& seen) {
     expect("pins", !boxed, 2e-5);
     expect("contacts", boxed, 2e-5);
     expect("body", boxed, 0.01);
+    if (boxed) expect("cloth", true, 0.02);  // has the colour of the one run, as a mesh or as a grid
     expect("risen", boxed, 0.02);
   }
   const std::vector<std::string> legends = seen.at("legends");
@@ -391,7 +393,7 @@ TEST(Report, ShowsAllThereIs) {  // one test, since a browser takes seconds to s
   record(program, "hung-corners", {"--set", "grid.n=6", "--method", "bdf2,sbdf2", "--step", "0.02,0.01", "--out", "runs.h5"});
   const Words once{"--method", "bdf2", "--step", "0.01", "--no-reference", "--repeat", "1", "--out"};
   program.write("box.toml", scene_on_box("on box", rising_box, ""));
-  record(program, "box.toml", once + Words{"box.h5"});
+  record(program, "box.toml", once + Words{"box.h5", "--set", "trim.outline=true"});
   program.write("gone.toml", scene_on_box("box and more", rising_mesh(program.folder()),
                                           "[[obstacles]]\nshape = \"mesh\"\nfile = \"gone.obj\"\nposition = [3, 0, 0]\n"));
   write_mesh(program.folder() / "gone.obj", box_mesh({0.1, 0.1, 0.1}));

@@ -110,9 +110,10 @@ TEST(Frames, OfGarmentsShowWhatTheyAreTrimmedTo) {
   EXPECT_EQ(sewn.vertices.size(), start.vertices.size());
   EXPECT_EQ(sewn.faces, start.faces);
   EXPECT_THAT(start.faces, testing::Each(testing::SizeIs(3)));
-  const auto at = [](const Obj& obj, std::size_t k) { return obj.vertices.at(k); };
-  EXPECT_LE((at(start, 0) - Vector3d(-0.45, -0.3, 0.45)).norm(), 1e-12) << "the left end of the hem of the front";
-  EXPECT_NEAR(at(sewn, 0).y(), 0, 0.01) << "its side is sewn";
+  const auto distance = [](const Vector3d& vertex) { return (vertex - Vector3d(-0.45, -0.3, 0.45)).norm(); };
+  const auto hem = std::ranges::min_element(start.vertices, {}, distance);  // the left end of that of the front
+  EXPECT_LE(distance(*hem), 1e-12);
+  EXPECT_NEAR(sewn.vertices.at(static_cast<std::size_t>(hem - start.vertices.begin())).y(), 0, 0.01) << "its side is sewn";
 }
 
 TEST(Frames, ShowChainsAsLines) {
