@@ -221,7 +221,7 @@ void ContactResponse::impose(const Stage& stage, State& y) const {
   }
 }
 
-bool ContactResponse::update(const Stage& stage, const State& y, const Vectors& r, double noise, bool settled) {
+bool ContactResponse::update(const Stage& stage, const State& y, const Vectors& r, double noise, Changes changes) {
   bool changed = false;
   for (Touched& p : touched_) {
     const Eigen::Vector3d reaction = -r.row(p.particle).transpose(), v = y.v.row(p.particle);
@@ -233,12 +233,20 @@ bool ContactResponse::update(const Stage& stage, const State& y, const Vectors& 
       p.holding = p.tangent() * reaction / stage.gamma;
       const Eigen::Vector3d av = stage.av.row(p.particle);
       p.force = (ode_.mass[p.particle] * (v - av) - reaction) / stage.gamma;
-      differs = !settled && (release(p, lambda, noise) || rub(p, v));
+      differs = changes != Changes::captures && (release(p, lambda, noise) || (p.rubs && rub(p, v)));
     }
     if (!differs) differs = capture(p, x1);
     if (differs) configure(p);
     changed |= differs;
     changes_ += differs;
+  }
+  if (!changed && changes == Changes::all) {
+    for (Touched& p : touched_) {
+      if (p.status == Status::free || p.rubs || !rub(p, y.v.row(p.particle))) continue;
+      configure(p);
+      changed = true;
+      ++changes_;
+    }
   }
   if (changed) rebuild_filter();
   return changed;

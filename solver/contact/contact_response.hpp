@@ -15,7 +15,8 @@ namespace drape::solver {
 /// found together with the solution: at the end of the step <x, n> ≥ least, multipliers push, and one of the two is at its
 /// limit. A constrained particle sticks while its tangential multiplier stays below η times the normal one; else it slides, and
 /// η times the normal one acts against its motion. Friction lags: it is computed from multipliers and velocities of the step
-/// before, except for new contacts and for particles that it would reverse, which stick.
+/// before, except for new contacts and for particles that it would reverse, which stick. These are decided once the set of
+/// constrained particles has been found, since multipliers of another set may be many times the right ones.
 ///
 /// Constrained directions follow x0 + (t − t0) v in every method, so that one with history ends on the border as Euler does.
 /// After the step they move with the obstacle, and where they are new the history is adapted, since motion is not smooth at
@@ -41,10 +42,16 @@ class ContactResponse {
   /// Sets the constrained components of v, and those of x at the time of the stage.
   void impose(const Stage& stage, State& y) const;
 
-  /// Adapts the constraints to a stage's solution y. r: the whole residual M (av − v) + γ f without friction; `noise`:
-  /// round-off in r. True if constraints changed, so that they must be imposed again. `settled`: only adds constraints, so that
-  /// changes come to an end.
-  bool update(const Stage& stage, const State& y, const Vectors& r, double noise, bool settled);
+  /// What may change in an update.
+  enum class Changes {
+    constraints,  ///< no friction: y was solved to a tolerance that tells which constraints hold and not how hard they push
+    all,
+    captures  ///< only new constraints, so that changes come to an end
+  };
+
+  /// Adapts the constraints to a stage's solution y, and friction once no constraint changes. r: the whole residual
+  /// M (av − v) + γ f without friction; `noise`: round-off in r. True if something changed, so that it must be imposed again.
+  bool update(const Stage& stage, const State& y, const Vectors& r, double noise, Changes changes);
 
   /// Adds γ times friction to a residual.
   void add_friction(double gamma, Vectors& r) const;

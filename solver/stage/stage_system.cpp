@@ -165,8 +165,9 @@ void StageSystem::evaluate(const Stage& stage, const Vectors* f_explicit, State&
   flat(r_) = stage.inertia * momentum_ * (flat(stage.av) - flat(y.v)) + stage.gamma * flat(r_);
 }
 
-bool StageSystem::adapt_contacts(const Stage& stage, const Vectors* f_explicit, State& y, double noise, bool settled) {
-  const bool changed = contacts_->update(stage, y, r_, noise, settled);
+bool StageSystem::adapt_contacts(const Stage& stage, const Vectors* f_explicit, State& y, double noise,
+                                 ContactResponse::Changes changes) {
+  const bool changed = contacts_->update(stage, y, r_, noise, changes);
   if (changed) evaluate(stage, f_explicit, y);
   return changed;
 }

@@ -45,9 +45,9 @@ class StageSystem {
   /// springs are explicit.
   void evaluate(const Stage& stage, const Vectors* f_explicit, State& y);
 
-  /// Adapts the contacts to y and r; true if they changed, with y and r evaluated again. `noise`, `settled`: as
+  /// Adapts the contacts to y and r; true if they changed, with y and r evaluated again. `noise`, `changes`: as
   /// in ContactResponse::update.
-  bool adapt_contacts(const Stage& stage, const Vectors* f_explicit, State& y, double noise, bool settled);
+  bool adapt_contacts(const Stage& stage, const Vectors* f_explicit, State& y, double noise, ContactResponse::Changes changes);
 
   /// Adds friction to r and removes the directions of pins and constraints.
   void filter_residual(double gamma);
