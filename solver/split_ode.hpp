@@ -96,6 +96,8 @@ struct SplitOde {
 
   std::shared_ptr<Counters> work = std::make_shared<Counters>();
 
+  double* response_ms = nullptr;  ///< if given, the wall time of the response to contacts is added there, detection apart
+
   int particles() const { return static_cast<int>(mass.size()); }
 };
 

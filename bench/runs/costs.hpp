@@ -10,12 +10,13 @@ namespace drape::bench {
 struct Costs {
   double forces = 0;     ///< forces, their parts and derivatives
   double detection = 0;  ///< of contacts
-  double rest = 0;       ///< linear systems, response to contacts, the method's own work
+  double response = 0;   ///< to contacts: which constraints hold, friction; the systems with them are of `rest`
+  double rest = 0;       ///< linear systems, the method's own work, compiling of phases after the first
 
-  double total() const { return forces + detection + rest; }
+  double total() const { return forces + detection + response + rest; }
 };
 
-/// The costs of the first steps of a run of a scene with one phase, without compiling it.
+/// The costs of the first steps of a run, without compiling the scene.
 Costs costs(const RunSpec& spec, std::size_t most_steps);
 
 }  // namespace drape::bench

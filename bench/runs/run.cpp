@@ -29,13 +29,14 @@ std::string memory_message(const Limits& limits) {
 class ObservedRun {
  public:
   ObservedRun(const RunSpec& spec, const model::Cloth& cloth, std::span<Observer* const> observers, const Limits& limits,
-              Meter& meter)
+              Meter& meter, const EquationHook& hook)
       : spec_(spec),
         phases_(model::phases(spec.scene)),
         observers_(observers),
         most_steps_(limits.steps),
         counts_(limits.within_steps()),
         meter_(meter),
+        hook_(hook),
         cloth_(&cloth) {}
 
   solver::RunResult integrate() {
@@ -65,7 +66,9 @@ class ObservedRun {
 
   void begin_phase() {
     integrator_.reset();
-    if (counts_) meter_.watch(watched_.emplace(cloth_->ode));
+    if (counts_ || hook_) watched_.emplace(cloth_->ode);
+    if (counts_) meter_.watch(*watched_);
+    if (hook_) hook_(*watched_);
     integrator_.emplace(watched_ ? *watched_ : cloth_->ode, *spec_.method, spec_.options, cloth_->start, cloth_->begin);
     for (Observer* observer : observers_) observer->begin(phase(), *cloth_, integrator_->state());
     begun_ = true;
@@ -122,6 +125,7 @@ class ObservedRun {
   std::size_t most_steps_;
   bool counts_;
   Meter& meter_;
+  const EquationHook& hook_;
   const model::Cloth* cloth_;
   std::list<model::Cloth> later_;  ///< of phases after the first; observers keep references
   std::optional<solver::SplitOde> watched_;
@@ -134,11 +138,11 @@ class ObservedRun {
 
 /// `memory` is given back before the state at the end is copied.
 RunEnd run_within(const RunSpec& spec, const model::Cloth& cloth, std::span<Observer* const> observers, const Limits& limits,
-                  std::optional<MemoryLimit>& memory) {
+                  std::optional<MemoryLimit>& memory, const EquationHook& hook) {
   const std::clock_t begin = std::clock();
   RunEnd end;
   Meter meter(limits);
-  ObservedRun observed(spec, cloth, observers, limits, meter);
+  ObservedRun observed(spec, cloth, observers, limits, meter, hook);
   const auto stop = [&](solver::Outcome outcome, std::string message, double last_good_time) {
     end.result = {outcome, std::move(message), last_good_time, observed.steps(), 0};
   };
@@ -167,9 +171,10 @@ RunEnd run_within(const RunSpec& spec, const model::Cloth& cloth, std::span<Obse
 
 }  // namespace
 
-RunEnd run(const RunSpec& spec, const model::Cloth& cloth, std::span<Observer* const> observers, const Limits& limits) {
+RunEnd run(const RunSpec& spec, const model::Cloth& cloth, std::span<Observer* const> observers, const Limits& limits,
+           const EquationHook& hook) {
   std::optional<MemoryLimit> memory(std::in_place, limits.megabytes);
-  return run_within(spec, cloth, observers, limits, memory);
+  return run_within(spec, cloth, observers, limits, memory, hook);
 }
 
 RunEnd run(const RunSpec& spec, std::optional<model::Cloth>& cloth, std::span<Observer* const> observers,
@@ -181,7 +186,7 @@ RunEnd run(const RunSpec& spec, std::optional<model::Cloth>& cloth, std::span<Ob
     memory.reset();
     return {.result = {.outcome = solver::Outcome::out_of_memory, .message = memory_message(limits)}};
   }
-  return run_within(spec, *cloth, observers, limits, memory);
+  return run_within(spec, *cloth, observers, limits, memory, {});
 }
 
 }  // namespace drape::bench

@@ -68,7 +68,7 @@ std::span<const Study> studies() {
        .description = "Cusick's drape test of measured fabrics on three meshes: drape coefficients beside published ones",
        .answer = drape_study},
       {.name = "garments",
-       .description = "the dress, standing and walking: time of its parts a simulated second, largest steps, distances",
+       .description = "garments on mannequins: time of their parts a simulated second, largest steps, distances",
        .answer = garments},
       {.name = "scaling",
        .description =

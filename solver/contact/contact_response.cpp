@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "solver/base/decompositions.hpp"
+#include "solver/base/stopwatch.hpp"
 
 namespace drape::solver {
 namespace {
@@ -64,6 +65,7 @@ void ContactResponse::remember() {
 
 /// Finds the particles with contacts, and their first constraints.
 void ContactResponse::touch_all(double t0, double h, const State& y0) {
+  const base::Stopwatch stopwatch(ode_.response_ms);
   t0_ = t0;
   h_ = h;
   y0_ = &y0;
@@ -208,6 +210,7 @@ void ContactResponse::rebuild_filter() {
 }
 
 void ContactResponse::impose(const Stage& stage, State& y) const {
+  const base::Stopwatch stopwatch(ode_.response_ms);
   for (const Touched& p : touched_) {
     if (p.status == Status::free) continue;
     const Eigen::Matrix3d constrained = p.constrained();
@@ -222,6 +225,7 @@ void ContactResponse::impose(const Stage& stage, State& y) const {
 }
 
 bool ContactResponse::update(const Stage& stage, const State& y, const Vectors& r, double noise, Changes changes) {
+  const base::Stopwatch stopwatch(ode_.response_ms);
   bool changed = false;
   for (Touched& p : touched_) {
     const Eigen::Vector3d reaction = -r.row(p.particle).transpose(), v = y.v.row(p.particle);
@@ -294,6 +298,7 @@ bool ContactResponse::rub(Touched& p, const Eigen::Vector3d& v) {
 }
 
 void ContactResponse::add_friction(double gamma, Vectors& r) const {
+  const base::Stopwatch stopwatch(ode_.response_ms);
   for (const Touched& p : touched_) r.row(p.particle) += gamma * p.friction;
 }
 
@@ -318,6 +323,7 @@ double ContactResponse::stopped_energy() const {
 }
 
 bool ContactResponse::finish(State& y1, State& y0) {
+  const base::Stopwatch stopwatch(ode_.response_ms);
   bool changed = false;
   for (Touched& p : touched_) {
     if (p.status == Status::free) continue;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/base/stopwatch.hpp"
 #include "solver/filter.hpp"
 
 namespace drape::solver {
@@ -64,6 +65,7 @@ void ImpactResponse::take_turns(double Side::*given, double noise, Vectors& rows
 }
 
 void ImpactResponse::push_out(double s, Vectors& x) {
+  const base::Stopwatch stopwatch(ode_.response_ms);
   const auto depth = [&](const Side& side) {
     const double border = side.start + s / h_ * (side.contact.least - side.start);
     return border - x.row(side.contact.particle).dot(side.contact.normal);
@@ -74,6 +76,7 @@ void ImpactResponse::push_out(double s, Vectors& x) {
 }
 
 void ImpactResponse::stop(double tau, bool begins, Vectors& v, Vectors& a) {
+  const base::Stopwatch stopwatch(ode_.response_ms);
   const double lasts = begins ? 0 : tau / 2;
   const double pull = largest(a), noise = round_off * (largest(v) + tau * pull);
   const auto approach = [&](const Side& side) {
