@@ -153,6 +153,9 @@ class StartSearch {
   double allowed() const { return scene_.contact.distance; }
   double resolution() const { return allowed() / 32; }
 
+  /// How long seams are pulled [s]; the first part of the scene may end where a pin turns.
+  double duration() const { return std::min(first_.seams_meet, scene_.end) - first_.begin; }
+
   /// `whose`, `what`: called for a place that is worse than those before.
   void note(double depth, bool passes, const PosedPart& part, double t, const auto& whose, const auto& what) {
     if ((passes || depth > allowed()) && depth > worst_.depth) worst_ = {depth, passes, whose(), what(), part.rule, t};
@@ -205,7 +208,7 @@ class StartSearch {
             piece.begin[end] = x_.row(node);
             const auto velocity = velocities.find(node);  // the tip of a dart has none
             piece.way[end].setZero();
-            if (velocity != velocities.end()) piece.way[end] = (first_.end - first_.begin) * velocity->second;
+            if (velocity != velocities.end()) piece.way[end] = duration() * velocity->second;
           }
         }
       }
@@ -221,7 +224,7 @@ class StartSearch {
     for (PosedPart& part : parts_) {
       const std::vector<PulledPiece> near = within_reach(pieces, part);
       for (int k = 1; k <= times && !near.empty(); ++k) {
-        const double passed = static_cast<double>(k) / times, t = first_.begin + passed * (first_.end - first_.begin);
+        const double passed = static_cast<double>(k) / times, t = first_.begin + passed * duration();
         part.place.set_time(t);
         for (const PulledPiece& piece : near) search_piece(piece, part, passed, t);
       }

@@ -202,7 +202,7 @@ std::map<int, Eigen::Vector3d> Garment::pulled(const Scene& phase, const Vectors
     if (nodes.size() < 2) continue;
     Eigen::Vector3d place = Eigen::Vector3d::Zero();
     for (const int node : nodes) place += x.row(node).transpose() / static_cast<double>(nodes.size());
-    for (const int node : nodes) velocities[node] = (place - x.row(node).transpose()) / (phase.end - phase.begin);
+    for (const int node : nodes) velocities[node] = (place - x.row(node).transpose()) / (phase.seams_meet - phase.begin);
   }
   return velocities;
 }

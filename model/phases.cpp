@@ -55,6 +55,7 @@ std::vector<Scene> phases(const Scene& scene) {
     phase.sheet.gravity = rule.gravity.value_or(scene.sheet.gravity);
     phase.pins = rule.pins.value_or(scene.pins);
     phase.seam_state = rule.seams;
+    phase.seams_meet = rule.until;
     const double end = std::min(rule.until, scene.end);
     add(phase, begin, end, all);
     begin = end;

@@ -94,7 +94,7 @@ struct SeamRule {
 
 enum class SeamState {
   sewn,    ///< their particles are one
-  pulled,  ///< they are moved uniformly until they meet, at the end of the phase
+  pulled,  ///< they are moved uniformly until they meet, at the time to which the phase lasts
   open,    ///< they do nothing
 };
 
@@ -126,6 +126,7 @@ struct Scene {
   // What phases have besides (model/phases.hpp):
   double begin = 0;  ///< [s]
   SeamState seam_state = SeamState::sewn;
+  double seams_meet = 0;  ///< when pulled ones do [s], not before the end
 };
 
 /// The names that `PinRule::where` knows.

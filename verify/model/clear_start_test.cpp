@@ -200,6 +200,13 @@ TEST(ClearStart, IsFollowedByWaysOfSeamsOutside) {
       "deep at t = 0.2 s");
   EXPECT_THAT(refusal(with(pulled, ball(0.009, 0.4, -0.1, 0.202))), HasSubstr("the edge from [4, 2] to [4, 3]"));
   EXPECT_EQ(refusal(with(front_and_back, ball(0.05, 0.4, -0.1, 0.2))), "") << "no seams";
+  const std::string turning =
+      pulled +
+      "pins = [{where = 'left edge', panel = 'front', path = [{time = 0, position = [0, 0, 0]}, {time = 0.1, position = "
+      "[0, 0, 0.01]}]}]\n";
+  EXPECT_EQ(refusal(with(turning, ball(0.05, 0.4, -0.1, 0.2))), begin + "inside obstacles[0] (sphere), not 0.05 m at t = 0.2 s")
+      << "after a pin has turned";
+  EXPECT_EQ(refusal(with("end.time = 0.1\n" + pulled, ball(0.05, 0.4, -0.1, 0.2))), "") << "the scene ends before";
 }
 
 TEST(ClearStart, IsFollowedByWaysOfSeamsOutsideOfWhatMoves) {
