@@ -24,12 +24,18 @@ double stiffness(const SparseMatrix& A) {
   return stiffness;
 }
 
+/// A linear solver, and the name of the reason to take it.
+struct Choice {
+  std::string_view solver, reason;
+};
+
 /// The fastest of the linear solvers over about a hundred solves with one matrix.
-const LinearSolver& fastest(const SparseMatrix& A) {
-  if (A.rows() <= LinearChoice::most_factored) return linear_solver("cholesky");
-  if (stiffness(A) < LinearChoice::soft) return linear_solver("mic0");
-  if (five_point(A)) return linear_solver("multigrid");
-  return linear_solver(A.rows() <= LinearChoice::most_factored_without_grid ? "cholesky" : "mic0");
+Choice fastest(const SparseMatrix& A) {
+  if (A.rows() <= LinearChoice::most_factored) return {"cholesky", "small"};
+  if (stiffness(A) < LinearChoice::soft) return {"mic0", "soft"};
+  if (five_point(A)) return {"multigrid", "grid"};
+  if (A.rows() <= LinearChoice::most_factored_without_grid) return {"cholesky", "no-grid"};
+  return {"mic0", "large"};
 }
 
 /// Chooses again for every matrix.
@@ -38,12 +44,12 @@ class Automatic : public Preconditioner {
   void analyse(const SparseMatrix&) override { solver_ = nullptr; }
 
   Outcome factor(const SparseMatrix& A) override {
-    const LinearSolver& best = fastest(A);
-    if (solver_ == nullptr || chosen_ != &best) {
-      chosen_ = &best;
-      solver_ = best.make();
+    const Choice best = fastest(A);
+    if (solver_ == nullptr || chosen_.solver != best.solver) {
+      solver_ = linear_solver(best.solver).make();
       solver_->analyse(A);
     }
+    chosen_ = best;
     return solver_->factor(A);
   }
 
@@ -51,9 +57,10 @@ class Automatic : public Preconditioner {
   bool exact() const override { return solver_->exact(); }
   std::int64_t bytes() const override { return solver_->bytes(); }
   std::string_view name() const override { return solver_->name(); }
+  std::string_view reason() const override { return chosen_.reason; }
 
  private:
-  const LinearSolver* chosen_ = nullptr;
+  Choice chosen_;
   std::unique_ptr<Preconditioner> solver_;
 };
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string_view>
+
 namespace drape::solver {
 
 /// Sizes in particles up to which `auto` chooses direct solvers, as measured (`study scaling` shows some of it).
@@ -18,6 +20,19 @@ struct LinearChoice {
 
   /// Numerical stiffness below which two or three iterations suffice, however large the sheet is.
   static constexpr double soft = 1;
+};
+
+/// Why `auto` takes a linear solver; the counters "linear_choice/..." have it.
+struct LinearReason {
+  std::string_view name, description;
+};
+
+constexpr LinearReason linear_reasons[] = {
+    {"small", "cholesky, since there are few particles"},
+    {"soft", "mic0, since two or three iterations suffice"},
+    {"grid", "multigrid, since the matrix is the five-point star of a grid, with whatever coefficients"},
+    {"no-grid", "cholesky, since the matrix is not that of one grid, as where panels are sewn"},
+    {"large", "mic0, since the matrix is not that of one grid and too large for a factor"},
 };
 
 }  // namespace drape::solver

@@ -16,10 +16,9 @@ void ConjugateGradients::analyse(const SparseMatrix& A) {
 }
 
 Outcome ConjugateGradients::factor(const SparseMatrix& A) {
-  ++work_.factorisations;
   const Outcome outcome = preconditioner_->factor(A);
+  work_.count_factorisation(*preconditioner_);
   star_ = preconditioner_->exact() ? std::nullopt : five_point(A);  // an exact factor needs no products
-  ++work_.factorisations_of(preconditioner_->name());
   return outcome;
 }
 

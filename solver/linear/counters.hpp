@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "solver/counters.hpp"
+#include "solver/linear/choose.hpp"
 #include "solver/linear/preconditioner.hpp"
 
 namespace drape::solver {
@@ -23,17 +24,31 @@ struct LinearCounters {
         entries(work.counter("matrix_entries", "entries of A")),
         bytes(work.counter("linear_bytes", "bytes that the linear algebra moved, every array counted once a pass")) {
     for (const LinearSolver& solver : linear_solvers())
-      kinds.emplace_back(solver.name, &work.counter("linear_solver/" + std::string(solver.name),
-                                                    "factorisations for: " + std::string(solver.description)));
+      kinds_.emplace_back(solver.name, &work.counter("linear_solver/" + std::string(solver.name),
+                                                     "factorisations for: " + std::string(solver.description)));
+    for (const LinearReason& reason : linear_reasons)
+      reasons_.emplace_back(reason.name, &work.counter("linear_choice/" + std::string(reason.name),
+                                                       "factorisations by `auto`: " + std::string(reason.description)));
   }
 
-  std::int64_t& factorisations_of(std::string_view solver) const {
-    return *std::ranges::find(kinds, solver, &std::pair<std::string_view, std::int64_t*>::first)->second;
+  /// Counts a factorisation under its solver, and the reason if there was a choice.
+  void count_factorisation(const Preconditioner& by) const {
+    ++factorisations;
+    ++*count_of(kinds_, by.name());
+    if (!by.reason().empty()) ++*count_of(reasons_, by.reason());
   }
 
   std::int64_t &updates, &cg_iterations, &products, &jacobian_products, &preconditioner, &builds, &factorisations, &entries,
       &bytes;
-  std::vector<std::pair<std::string_view, std::int64_t*>> kinds;  ///< which linear solver it was in the end
+
+ private:
+  using Counts = std::vector<std::pair<std::string_view, std::int64_t*>>;
+
+  static std::int64_t* count_of(const Counts& counts, std::string_view name) {
+    return std::ranges::find(counts, name, &Counts::value_type::first)->second;
+  }
+
+  Counts kinds_, reasons_;  ///< which linear solver it was in the end, and why
 };
 
 }  // namespace drape::solver

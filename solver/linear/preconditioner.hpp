@@ -30,6 +30,9 @@ class Preconditioner {
   /// Name of the linear solver that was factored last; another one than `auto` and `multigrid` where these delegate.
   virtual std::string_view name() const = 0;
 
+  /// Name of the reason for that (`linear_reasons`); "" of one that has no choice.
+  virtual std::string_view reason() const { return ""; }
+
   /// Bytes that one application moves at least.
   virtual std::int64_t bytes() const = 0;
 };

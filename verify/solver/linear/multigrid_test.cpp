@@ -1,5 +1,6 @@
 // Multigrid and the five-point stars it works on: found where they are, symmetric, and as fast on fine grids as on coarse ones.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <random>
@@ -194,23 +195,29 @@ TEST(ThreadsOfLargeGrids, AreOneUnlessAskedForAndForSmallGrids) {
 
 // --- The choice --------------------------------------------------------------------------------------------------------------
 
-/// What `auto` takes for a matrix.
+/// What `auto` takes for a matrix, and why.
 std::string chosen(const SparseMatrix& A) {
   const auto automatic = solver::make_automatic();
   automatic->analyse(A);
   EXPECT_EQ(automatic->factor(A), Outcome::success);
-  return std::string(automatic->name());
+  return fmt::format("{}: {}", automatic->name(), automatic->reason());
+}
+
+/// The same with a spring to a particle far away.
+SparseMatrix sewn(SparseMatrix A) {
+  const int far = static_cast<int>(A.rows()) - 600;
+  for (const auto& [i, j] : {std::pair{200, far}, {far, 200}}) A.coeffRef(i, j) = -1;
+  A.makeCompressed();
+  return A;
 }
 
 TEST(AutomaticChoice, GoesBySizeStiffnessAndPattern) {
-  EXPECT_EQ(chosen(sheet(20, 20)), "cholesky");
+  EXPECT_EQ(chosen(sheet(20, 20)), "cholesky: small");
   const SparseMatrix large = pinned_sheet(160, 160, 1e3, line(160));
-  EXPECT_EQ(chosen(large), "multigrid");
-  EXPECT_EQ(chosen(diagonal(1e6 * Eigen::VectorXd::Ones(160 * 160)) + large), "mic0");
-  SparseMatrix no_grid = large;
-  for (const auto& [i, j] : {std::pair{200, 25000}, {25000, 200}}) no_grid.coeffRef(i, j) = -1;
-  no_grid.makeCompressed();
-  EXPECT_EQ(chosen(no_grid), "cholesky");
+  EXPECT_EQ(chosen(large), "multigrid: grid");
+  EXPECT_EQ(chosen(diagonal(1e6 * Eigen::VectorXd::Ones(160 * 160)) + large), "mic0: soft");
+  EXPECT_EQ(chosen(sewn(large)), "cholesky: no-grid");
+  EXPECT_EQ(chosen(sewn(pinned_sheet(460, 460, 1e3, {}))), "mic0: large");
 }
 
 TEST(AutomaticChoice, IsCountedAndMadeAnewForNewValues) {
@@ -222,6 +229,9 @@ TEST(AutomaticChoice, IsCountedAndMadeAnewForNewValues) {
   EXPECT_EQ(work.count("linear_solver/multigrid"), 1);
   EXPECT_EQ(work.count("linear_solver/mic0"), 2);
   EXPECT_EQ(work.count("linear_solver/auto"), 0);
+  EXPECT_EQ(work.count("linear_choice/grid"), 1);
+  EXPECT_EQ(work.count("linear_choice/soft"), 2);
+  EXPECT_EQ(work.count("linear_choice/small"), 0);
 }
 
 }  // namespace
