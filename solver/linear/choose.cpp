@@ -24,6 +24,18 @@ double stiffness(const SparseMatrix& A) {
   return stiffness;
 }
 
+/// Whether couplings along a direction of the grid differ by more than on a uniform one, where those on borders are half of the
+/// others, and than multigrid takes without more iterations.
+bool varies(const FivePoint& A) {
+  constexpr double most = 4;
+  double least_u = INFINITY, largest_u = 0, least_v = INFINITY, largest_v = 0;
+  for (const FivePoint::Node& node : A.nodes) {
+    if (node.right > 0) least_u = std::min(least_u, node.right), largest_u = std::max(largest_u, node.right);
+    if (node.up > 0) least_v = std::min(least_v, node.up), largest_v = std::max(largest_v, node.up);
+  }
+  return largest_u > most * least_u || largest_v > most * least_v;
+}
+
 /// A linear solver, and the name of the reason to take it.
 struct Choice {
   std::string_view solver, reason;
@@ -33,8 +45,12 @@ struct Choice {
 Choice fastest(const SparseMatrix& A) {
   if (A.rows() <= LinearChoice::most_factored) return {"cholesky", "small"};
   if (stiffness(A) < LinearChoice::soft) return {"mic0", "soft"};
-  if (five_point(A)) return {"multigrid", "grid"};
-  if (A.rows() <= LinearChoice::most_factored_without_grid) return {"cholesky", "no-grid"};
+  const bool factored = A.rows() <= LinearChoice::most_factored_without_grid;
+  if (const auto star = five_point(A)) {
+    if (factored && varies(*star)) return {"cholesky", "varying"};
+    return {"multigrid", "grid"};
+  }
+  if (factored) return {"cholesky", "no-grid"};
   return {"mic0", "large"};
 }
 
