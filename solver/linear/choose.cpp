@@ -27,7 +27,7 @@ double stiffness(const SparseMatrix& A) {
 /// Whether couplings along a direction of the grid differ by more than on a uniform one, where those on borders are half of the
 /// others, and than multigrid takes without more iterations.
 bool varies(const FivePoint& A) {
-  constexpr double most = 4;
+  constexpr double most = 8;
   double least_u = INFINITY, largest_u = 0, least_v = INFINITY, largest_v = 0;
   for (const FivePoint::Node& node : A.nodes) {
     if (node.right > 0) least_u = std::min(least_u, node.right), largest_u = std::max(largest_u, node.right);
