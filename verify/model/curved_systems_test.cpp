@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "model/cloth.hpp"
 #include "model/scene_file/scene_file.hpp"
 #include "solver/linear/conjugate_gradients.hpp"
 #include "solver/linear/stage_matrix.hpp"
