@@ -26,11 +26,21 @@ struct Readable {
   std::vector<std::string> missing;  ///< why not, of each of the others
 };
 
+/// The keys of a recorded scene.
+struct SceneRows {
+  std::vector<model::Override> rest, obstacles;
+};
+
+SceneRows scene_rows(const results::RunRecord& run) {
+  SceneRows rows;
+  for (const results::SceneValue& row : run.scene_keys)
+    (row.key == "obstacles" ? rows.obstacles : rows.rest).push_back({row.key, row.value});
+  return rows;
+}
+
 /// Obstacles are read one by one, as if each were the only one of its scene.
 Readable read_obstacles(const results::RunRecord& run) {
-  std::vector<model::Override> rest, obstacles;
-  for (const results::SceneValue& row : run.scene_keys)
-    (row.key == "obstacles" ? obstacles : rest).push_back({row.key, row.value});
+  auto [rest, obstacles] = scene_rows(run);
   rest = model::without_trim(rest);
   Readable read{model::scene_of(rest, run.scene), {}};
   for (const model::Override& obstacle : obstacles) {
@@ -117,12 +127,7 @@ Json drawn_obstacles(const Readable& read, const results::TrajectoryRecord& traj
 }
 
 /// All of a recorded scene that says what its cloth looks like.
-model::Scene read_cloth(const results::RunRecord& run) {
-  std::vector<model::Override> rows;
-  for (const results::SceneValue& row : run.scene_keys)
-    if (row.key != "obstacles") rows.push_back({row.key, row.value});
-  return model::scene_of(rows, run.scene);
-}
+model::Scene read_cloth(const results::RunRecord& run) { return model::scene_of(scene_rows(run).rest, run.scene); }
 
 }  // namespace
 

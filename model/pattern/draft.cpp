@@ -285,16 +285,8 @@ void add_parts(const DraftPanel& panel, const Stretch& stretch, const std::vecto
 }
 
 toml::table draft_table(const std::string& file) {
-  constexpr int most_levels = 16;
-  const std::string text = pattern_text(file), origin = base::printable(file);
-  if (const int line = line_nested_deeper(text, most_levels))
-    throw SceneError(
-        fmt::format("{}:{}: expected a pattern, which is not nested deeper than {} levels", origin, line, most_levels));
-  try {
-    return toml::parse(text);
-  } catch (const toml::parse_error& error) {
-    throw SceneError(fmt::format("{}:{}: {}", origin, error.source().begin.line, error.description()));
-  }
+  return parse_toml(pattern_text(file), base::printable(file),
+                    fmt::format("expected a pattern, which is not nested deeper than {} levels", most_toml_levels));
 }
 
 /// The panels of a file, and where they stand there.

@@ -144,6 +144,7 @@ struct BorderLine {
 /// Faces that hang together on the pattern.
 struct Island {
   std::vector<const MeshFace*> faces;
+  std::map<int, int> vertex_of = {};    ///< in space, of each place
   std::vector<BorderLine> border = {};  ///< one after the other
 };
 
@@ -191,7 +192,7 @@ void find_border(const GarmentMesh& mesh, Island& island) {
   const int line = island.faces.front()->line;
   const bool mirrored = is_mirrored(mesh, island);
   std::map<VertexPair, int> uses;
-  std::map<int, int> vertex_of;
+  std::map<int, int>& vertex_of = island.vertex_of;
   for (const MeshFace* face : island.faces)
     for (int side = 0; side < 3; ++side) {
       vertex_of[face->places[side]] = face->vertices[side];
@@ -284,16 +285,13 @@ void divide_borders(const GarmentMesh& mesh, std::vector<Island>& islands) {
 
 /// Rotation and position of the panel that come nearest to its places in space: least squares without strain [Kabsch 1976].
 void fit_to_space(const GarmentMesh& mesh, const Island& island, PatternPanel& panel) {
-  std::map<int, int> vertex_of;
-  for (const MeshFace* face : island.faces)
-    for (int side = 0; side < 3; ++side) vertex_of[face->places[side]] = face->vertices[side];
   Vector3d middle = Vector3d::Zero(), drawn_middle = Vector3d::Zero();
   const auto upright = [&](int place) -> Vector3d { return {mesh.places[place].x(), 0, mesh.places[place].y()}; };
-  for (const auto& [at, vertex] : vertex_of) middle += mesh.vertices[vertex], drawn_middle += upright(at);
-  const auto count = static_cast<double>(vertex_of.size());
+  for (const auto& [at, vertex] : island.vertex_of) middle += mesh.vertices[vertex], drawn_middle += upright(at);
+  const auto count = static_cast<double>(island.vertex_of.size());
   middle /= count, drawn_middle /= count;
   Eigen::Matrix3d products = Eigen::Matrix3d::Zero();
-  for (const auto& [at, vertex] : vertex_of)
+  for (const auto& [at, vertex] : island.vertex_of)
     products += (mesh.vertices[vertex] - middle) * (upright(at) - drawn_middle).transpose();
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(products, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Eigen::Matrix3d u = svd.matrixU();

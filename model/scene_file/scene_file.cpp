@@ -28,19 +28,13 @@ using Origins = std::map<std::string, std::string>;
 
 /// Limits of files, so that no file takes long or much memory to be refused.
 constexpr std::uintmax_t most_scene_bytes = 4 << 20;
-constexpr int most_levels = 16;
 
 toml::table parse(std::string_view text, std::string_view origin) {
-  if (const int line = line_nested_deeper(text, most_levels))
-    throw SceneError(
-        fmt::format("{}:{}: nested deeper than {} levels: expected a scene, whose keys have two parts and whose "
-                    "lists have at most five levels",
-                    origin, line, most_levels));
-  try {
-    return toml::parse(text);
-  } catch (const toml::parse_error& error) {
-    throw SceneError(fmt::format("{}:{}: {}", origin, error.source().begin.line, error.description()));
-  }
+  return parse_toml(
+      text, origin,
+      fmt::format("nested deeper than {} levels: expected a scene, whose keys have two parts and whose lists have at "
+                  "most five levels",
+                  most_toml_levels));
 }
 
 /// Puts the entries of a table into another one, tables into tables; anything else replaces what is there.
@@ -79,8 +73,8 @@ void complete(toml::table& root, const std::string& file) {
 
 /// The value of an override: TOML if it is TOML, else a bare word.
 toml::table parse_value(const Override& change) {
-  if (line_nested_deeper(change.value, most_levels) > 0)
-    throw SceneError(fmt::format("--set {}: nested deeper than {} levels", change.key, most_levels));
+  if (line_nested_deeper(change.value, most_toml_levels) > 0)
+    throw SceneError(fmt::format("--set {}: nested deeper than {} levels", change.key, most_toml_levels));
   try {
     return toml::parse("value = " + change.value);
   } catch (const toml::parse_error&) {

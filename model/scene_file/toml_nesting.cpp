@@ -1,7 +1,11 @@
 #include "model/scene_file/toml_nesting.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstddef>
+
+#include "model/keys/scene_error.hpp"
 
 namespace drape::model {
 namespace {
@@ -51,6 +55,16 @@ int line_nested_deeper(std::string_view toml, int most) {
     k = next;
   }
   return 0;
+}
+
+toml::table parse_toml(std::string_view text, std::string_view origin, std::string_view nested_deeper) {
+  if (const int line = line_nested_deeper(text, most_toml_levels))
+    throw SceneError(fmt::format("{}:{}: {}", origin, line, nested_deeper));
+  try {
+    return toml::parse(text);
+  } catch (const toml::parse_error& error) {
+    throw SceneError(fmt::format("{}:{}: {}", origin, error.source().begin.line, error.description()));
+  }
 }
 
 }  // namespace drape::model

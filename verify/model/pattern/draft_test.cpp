@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
-#include <fstream>
 #include <numbers>
 #include <string>
 
@@ -11,7 +10,7 @@
 #include "model/keys/scene_error.hpp"
 #include "model/pattern/sewn_pattern.hpp"
 #include "model/scene_file/scene_file.hpp"
-#include "verify/support/temporary_folder.hpp"
+#include "verify/support/pattern_files.hpp"
 
 namespace drape::verify::draft_test {
 namespace {
@@ -25,12 +24,7 @@ using testing::HasSubstr;
 
 constexpr double rounding = 1e-12;
 
-SewingPattern read(const std::string& text) {
-  const TemporaryFolder folder;
-  const auto file = folder.path() / "skirt.toml";
-  std::ofstream(file) << text;
-  return model::read_pattern(file.string());
-}
+SewingPattern read(const std::string& text) { return pattern_of("skirt.toml", text); }
 
 /// A square of 400 mm, whose right side may be other edges.
 std::string panel(const std::string& name, const std::string& right, const std::string& more = "") {
@@ -171,14 +165,7 @@ TEST(Draft, IsSewnAsItSays) {
 }
 
 TEST(Draft, WhatIsWrongIsSaidInOneLine) {
-  const auto message = [](const std::string& text) -> std::string {
-    try {
-      model::sew(read(text), 0.1);
-    } catch (const model::SceneError& error) {
-      return error.what();
-    }
-    return "no error";
-  };
+  const auto message = [](const std::string& text) { return pattern_error("skirt.toml", text); };
   const std::string good = panel("front", straight), front = "panel = 'front', edge = 'right'";
   EXPECT_EQ(message(good), "no error");
   EXPECT_THAT(message("name = 3"), HasSubstr("skirt.toml:1: pattern = "));

@@ -4,15 +4,13 @@
 #include <gmock/gmock.h>
 
 #include <Eigen/Geometry>
-#include <fstream>
 #include <numbers>
 #include <string>
 #include <vector>
 
 #include "model/garment.hpp"
-#include "model/keys/scene_error.hpp"
 #include "model/pattern/sewn_pattern.hpp"
-#include "verify/support/temporary_folder.hpp"
+#include "verify/support/pattern_files.hpp"
 
 namespace drape::verify::garment_mesh_test {
 namespace {
@@ -24,12 +22,7 @@ using model::SewingPattern;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-SewingPattern read(const std::string& text) {
-  const TemporaryFolder folder;
-  const auto file = folder.path() / "tube.obj";
-  std::ofstream(file) << text;
-  return model::read_pattern(file.string());
-}
+SewingPattern read(const std::string& text) { return pattern_of("tube.obj", text); }
 
 /// A mesh of rectangles, each with its own vertices on the pattern.
 class Drawing {
@@ -203,14 +196,7 @@ f 2/2 3/3 4/4
 }
 
 TEST(GarmentMesh, WhatIsWrongIsSaidInOneLine) {
-  const auto message = [](const std::string& text) -> std::string {
-    try {
-      model::sew(read(text), 0.1);
-    } catch (const model::SceneError& error) {
-      return error.what();
-    }
-    return "no error";
-  };
+  const auto message = [](const std::string& text) { return pattern_error("tube.obj", text); };
   const std::string corners = "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvt 0.5 0\n";
   EXPECT_EQ(message(corners + "f 1/1 2/2 3/3 4/4\n"), "no error");
   EXPECT_EQ(message(corners + "f -4/-5 -3/-4 -2/-3 -1/-2\n"), "no error");

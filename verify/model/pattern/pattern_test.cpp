@@ -3,15 +3,13 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
-#include <fstream>
 #include <numbers>
 #include <string>
 
 #include "model/garment.hpp"
-#include "model/keys/scene_error.hpp"
 #include "model/pattern/sewn_pattern.hpp"
 #include "model/scene_file/scene_file.hpp"
-#include "verify/support/temporary_folder.hpp"
+#include "verify/support/pattern_files.hpp"
 
 namespace drape::verify::pattern_test {
 namespace {
@@ -45,12 +43,7 @@ std::string json(const std::string& panels, const std::string& stitches = "") {
                      panels, stitches);
 }
 
-SewingPattern read(const std::string& text) {
-  const TemporaryFolder folder;
-  const auto file = folder.path() / "shirt.json";
-  std::ofstream(file) << text;
-  return model::read_pattern(file.string());
-}
+SewingPattern read(const std::string& text) { return pattern_of("shirt.json", text); }
 
 /// A panel of one square with this edge in the place of the lower one.
 Curve lower_edge(const std::string& curvature) {
@@ -176,14 +169,7 @@ TEST(Pattern, DartsAreNoCorners) {
 }
 
 TEST(Pattern, WhatIsWrongIsSaidInOneLine) {
-  const auto message = [](const std::string& text) -> std::string {
-    try {
-      model::sew(read(text), 0.1);
-    } catch (const model::SceneError& error) {
-      return error.what();
-    }
-    return "no error";
-  };
+  const auto message = [](const std::string& text) { return pattern_error("shirt.json", text); };
   const auto of_edges = [&](const std::string& edges) { return message(json("\"a\": " + panel(square, edges))); };
   const std::string good = "\"a\": " + panel(square, around), begin = R"({"endpoints": [0, 1]}, )";
   EXPECT_EQ(message(json(good)), "no error");
