@@ -18,7 +18,11 @@ constexpr int cached_particles = 20'000;
 /// Distance of coordinates where there is no column, so that no edge has the length 0.
 constexpr double far = 1e100;
 
-/// Places arrays one after the other, such that the same columns of all lie in different sets of a cache.
+/// Distance of arrays one after the other, such that the same columns of all lie in different sets of a cache. Loops look at
+/// the columns before and behind as well.
+std::ptrdiff_t row_stride(int length) { return ((length / column_block + 2) | 1) * column_block; }
+
+/// Places arrays one after the other.
 class Allocator {
  public:
   Allocator(double* memory, std::ptrdiff_t stride) : next_(memory + column_block), stride_(stride) {}
@@ -36,9 +40,9 @@ Columns ahead(Columns columns, int end) {
   return {columns.begin == 0 ? 0 : columns.begin + column_block, std::min(columns.end + column_block, end)};
 }
 
-/// Prefetches the next block into the cache.
-void fetch(const double* data) {
-  for (int i = 0; i < 3 * short_block; i += column_block) __builtin_prefetch(data + i);
+/// Prefetches `count` numbers into the cache.
+void fetch(const double* data, int count) {
+  for (int i = 0; i < count; i += column_block) __builtin_prefetch(data + i);
 }
 
 /// The law of the edges in one direction, of rest length l; 1: each has its own.
@@ -52,26 +56,24 @@ Vec scaled(double s, const Eigen::Vector3d& a) { return {s * a[0], s * a[1], s *
 
 }  // namespace
 
-GridShape::GridShape(const Grid& grid, int length) {
-  for (Eigen::ArrayXXd* all : {&weft_width, &weft_per_length, &warp_width, &warp_per_length, &particle_area, &cell_area,
-                               &cosine[0][0], &cosine[0][1], &cosine[1][0], &cosine[1][1]})
-    all->setZero(length + 1, grid.nv);  // loops look at the next column as well
+GridShape::GridShape(const Grid& grid, int length) : rows_(Eigen::ArrayXXd::Zero(row_stride(length), shape_rows * grid.nv)) {
+  const auto at = [&](int i, int line, ShapeRow row) -> double& { return rows_(i % grid.nu, shape_rows * line + row); };
   for (const Edge& edge : edges(grid)) {
-    const int a = edge.i % grid.nu, line = edge.j / grid.nu;
-    (edge.weft ? weft_width : warp_width)(a, line) = edge.width;
-    (edge.weft ? weft_per_length : warp_per_length)(a, line) = 1 / edge.length;
+    const int line = edge.j / grid.nu;
+    at(edge.i, line, edge.weft ? weft_width : warp_width) = edge.width;
+    at(edge.i, line, edge.weft ? weft_per_length : warp_per_length) = 1 / edge.length;
   }
   const Eigen::VectorXd areas = grid.cell_areas();
-  for (int i = 0; i < grid.particles(); ++i) particle_area(i % grid.nu, i / grid.nu) = areas[i];
+  for (int i = 0; i < grid.particles(); ++i) at(i, i / grid.nu, particle_area) = areas[i];
   const Metric metric(grid);
   for (const Cell& cell : cells(grid)) {
-    const int a = cell.corner[0][0] % grid.nu, line = cell.corner[0][1] / grid.nu;
-    cell_area(a, line) = metric.area(cell);
-    for (const int right : {0, 1})
-      for (const int upper : {0, 1}) {
-        const EdgeEnds p = upper == 1 ? cell.upper() : cell.lower(), q = right == 1 ? cell.right() : cell.left();
-        cosine[right][upper](a, line) = metric.product(p, q) / (metric.length(p) * metric.length(q));
-      }
+    const int i = cell.corner[0][0], line = cell.corner[0][1] / grid.nu;
+    const auto cosine = [&](EdgeEnds p, EdgeEnds q) { return metric.product(p, q) / (metric.length(p) * metric.length(q)); };
+    at(i, line, cell_area) = metric.area(cell);
+    at(i, line, cos_lower_left) = cosine(cell.lower(), cell.left());
+    at(i, line, cos_lower_right) = cosine(cell.lower(), cell.right());
+    at(i, line, cos_upper_left) = cosine(cell.upper(), cell.left());
+    at(i, line, cos_upper_right) = cosine(cell.upper(), cell.right());
   }
 }
 
@@ -92,8 +94,7 @@ FusedForces::FusedForces(const Grid& grid, const GridLaw& law)
   }
   weft_width_.head(grid.nu - 1) = 1;
   for (int a = 0; a < grid.nu; ++a) warp_width_[a] = grid.cell_width_u(a);
-  const std::ptrdiff_t stride =
-      ((length_ / column_block + 2) | 1) * column_block;  // loops look at the columns before and behind as well
+  const std::ptrdiff_t stride = row_stride(length_);
   memory_.setZero(50 * stride);
   Allocator allocate(memory_.data(), stride);
   double distance = 0;
@@ -112,13 +113,13 @@ void FusedForces::read(int b, Columns columns, const Vectors& from, const Field&
 
 Edges FusedForces::weft_of(int b, const Line& line) const {
   Edges edges = line.weft;
-  if (shape_) edges.per_length = shape_->weft_per_length.col(b).data();
+  if (shape_) edges.per_length = shape_->line(b)[weft_per_length];
   return edges;
 }
 
 Edges FusedForces::warp_of(int b, const Line& line) const {
   Edges edges = line.warp;
-  if (shape_) edges.per_length = shape_->warp_per_length.col(b).data();
+  if (shape_) edges.per_length = shape_->line(b)[warp_per_length];
   return edges;
 }
 
@@ -126,7 +127,7 @@ void FusedForces::pull_weft(int b, Columns columns, const Line& line) const {
   const Ends x{line.x, line.x.next()}, v{line.v, line.v.next()};
   const Edges weft = weft_of(b, line);
   if (shape_)
-    pull_edges(weft_, x, v, shape_->weft_width.col(b).data(), columns, weft);
+    pull_edges(weft_, x, v, shape_->line(b)[weft_width], columns, weft);
   else
     pull_edges(weft_ * grid_.cell_width_v(b), x, v, weft_width_.data(), columns, weft);
   if (law_.cell.contracts()) strain_edges(law_.cell, grid_.spacing_u(), v, columns, weft);
@@ -136,7 +137,7 @@ void FusedForces::pull_warp(int b, Columns columns, const Line& before, const Li
   const Ends x{before.x, line.x}, v{before.v, line.v};
   const Columns warp = ahead(columns, length_);
   const Edges edges = warp_of(b, line);
-  pull_edges(warp_, x, v, shape_ ? shape_->warp_width.col(b).data() : warp_width_.data(), warp, edges);
+  pull_edges(warp_, x, v, shape_ ? shape_->line(b)[warp_width] : warp_width_.data(), warp, edges);
   if (law_.cell.contracts()) strain_edges(law_.cell, grid_.spacing_v(), v, warp, edges);
 }
 
@@ -154,19 +155,14 @@ void FusedForces::pull_cells(int b, Columns columns, const Line& before, const L
                   .right_stress = left.stress + 1,
                   .pull_right = line.pull_right,
                   .exists = weft_width_.data()};
-  CellShapes shapes;
-  if (shape_) {
-    const auto cosines = [&](int right, int upper) { return shape_->cosine[right][upper].col(b).data(); };
-    shapes = {shape_->cell_area.col(b).data(), cosines(0, 0), cosines(1, 0), cosines(0, 1), cosines(1, 1)};
-    cells.shapes = &shapes;
-  }
+  if (shape_) cells.shape = shape_->line(b);
   shear_cells(law_.cell, columns, cells);
   if (law_.cell.contracts()) contract_cells(grid_.spacing_u(), grid_.spacing_v(), columns, cells);
 }
 
 void FusedForces::write(int b, Columns columns, const Line& line, const Line& next, Vectors& f) const {
   const Vec load = scaled(shape_ ? 1 : grid_.cell_width_v(b), law_.load);
-  gather(load, shape_ ? shape_->particle_area.col(b).data() : warp_width_.data(), {line.weft.pull.before(), line.weft.pull},
+  gather(load, shape_ ? shape_->line(b)[particle_area] : warp_width_.data(), {line.weft.pull.before(), line.weft.pull},
          {line.warp.pull, next.warp.pull}, {line.pull_right.before(), next.pull_right.before()}, ahead(columns, grid_.nu),
          f.data() + 3 * static_cast<std::ptrdiff_t>(grid_.index(0, b)));
 }
@@ -193,12 +189,14 @@ void FusedForces::operator()(const Vectors& x, const Vectors& v, Vectors& f) {
       if (b < grid_.nv && velocities) read(b, columns, v, line.v);
       if (b > 1) write(b - 2, columns, line, before, f);
       if (b >= grid_.nv) continue;
-      if (fetches_) fetch(x.data() + next);
+      if (fetches_) fetch(x.data() + next, 3 * short_block);
+      if (fetches_ && shape_)
+        for (int row = 0; row < shape_rows; ++row) fetch(shape_->line(b)[ShapeRow(row)] + columns.end, short_block);
       pull_weft(b, columns, line);
       if (b == 0) continue;
-      if (fetches_ && velocities) fetch(v.data() + next);
+      if (fetches_ && velocities) fetch(v.data() + next, 3 * short_block);
       pull_warp(b, columns, before, line);
-      if (fetches_ && b > 1) fetch(f.data() + next - 6 * static_cast<std::ptrdiff_t>(grid_.nu));
+      if (fetches_ && b > 1) fetch(f.data() + next - 6 * static_cast<std::ptrdiff_t>(grid_.nu), 3 * short_block);
       if (law_.cell.acts()) pull_cells(b, columns, before, line);
     }
   }

@@ -8,15 +8,17 @@
 
 namespace drape::model {
 
-/// The edges, cells and particles of a grid that is not uniform: one column of the arrays for each line, widths and areas 0
-/// where there is none.
-struct GridShape {
+/// The edges, cells and particles of a grid that is not uniform; widths and areas are 0 where there is none. The rows of a line
+/// are one after the other, such that the same columns of all lie in different sets of a cache.
+class GridShape {
+ public:
+  /// Loops run over `length` columns.
   GridShape(const Grid& grid, int length);
 
-  Eigen::ArrayXXd weft_width, weft_per_length;           ///< [m], [1/m]
-  Eigen::ArrayXXd warp_width, warp_per_length;           ///< of the edges from the line before
-  Eigen::ArrayXXd particle_area, cell_area;              ///< [m²], of the cells between the line before and this one
-  std::array<std::array<Eigen::ArrayXXd, 2>, 2> cosine;  ///< of quadrants, [0 left, 1 right][0 lower, 1 upper]
+  Rows line(int b) const { return {&rows_(0, shape_rows * b), rows_.rows()}; }
+
+ private:
+  Eigen::ArrayXXd rows_;  ///< one column for each row of each line
 };
 
 /// Evaluates a law in one pass over memory, line by line: reads x and v once and writes f once.

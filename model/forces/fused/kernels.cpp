@@ -52,9 +52,11 @@ void strain(CellLaw law, double l, Ends v, Columns columns, Edges edges) {
   }
 }
 
-template <bool viscous, bool own_shapes>
+template <bool viscous, bool own_shape>
 void shear(CellLaw law, Columns columns, const CellEdges& cells) {
-  const CellShapes shapes = own_shapes ? *cells.shapes : CellShapes{};
+  const double *area = cells.shape[cell_area], *lower_left = cells.shape[cos_lower_left];
+  const double *lower_right = cells.shape[cos_lower_right], *upper_left = cells.shape[cos_upper_left];
+  const double* upper_right = cells.shape[cos_upper_right];
   const double* const exists = cells.exists;
   const double *lower_length = cells.lower.per_length, *upper_length = cells.upper.per_length;
   const double* left_length = cells.left.per_length;
@@ -67,11 +69,11 @@ void shear(CellLaw law, Columns columns, const CellEdges& cells) {
     // Each quadrant has s = 1/(l_p l_q), and e times s.
     double s_ac = 1, s_ad = 1, s_bc = 1, s_bd = 1;
     double e_ac = dot(a, c), e_ad = dot(a, d), e_bc = dot(b, c), e_bd = dot(b, d);
-    if constexpr (own_shapes) {
+    if constexpr (own_shape) {
       s_ac = lower_length[k] * left_length[k], s_ad = lower_length[k] * left_length[k + 1];
       s_bc = upper_length[k] * left_length[k], s_bd = upper_length[k] * left_length[k + 1];
-      e_ac = s_ac * e_ac - shapes.lower_left[k], e_ad = s_ad * e_ad - shapes.lower_right[k];
-      e_bc = s_bc * e_bc - shapes.upper_left[k], e_bd = s_bd * e_bd - shapes.upper_right[k];
+      e_ac = s_ac * e_ac - lower_left[k], e_ad = s_ad * e_ad - lower_right[k];
+      e_bc = s_bc * e_bc - upper_left[k], e_bd = s_bd * e_bd - upper_right[k];
     }
     double ac = law.shear * e_ac, ad = law.shear * e_ad, bc = law.shear * e_bc, bd = law.shear * e_bd;
     if constexpr (viscous) {
@@ -81,7 +83,7 @@ void shear(CellLaw law, Columns columns, const CellEdges& cells) {
       bc += s_bc * law.shear_rate * (dot(vb, c) + dot(b, vc));
       bd += s_bd * law.shear_rate * (dot(vb, d) + dot(b, vd));
     }
-    const double weight = own_shapes ? shapes.area[k] : exists[k];
+    const double weight = own_shape ? area[k] : exists[k];
     ac *= weight * s_ac, ad *= weight * s_ad, bc *= weight * s_bc, bd *= weight * s_bd;
     add(pull_lower, k, ac * c + ad * d);
     add(pull_upper, k, bc * c + bd * d);
@@ -90,17 +92,17 @@ void shear(CellLaw law, Columns columns, const CellEdges& cells) {
   }
 }
 
-template <bool own_shapes>
+template <bool own_shape>
 void contract(double lu, double lv, Columns columns, CellEdges cells) {
   const double* const exists = cells.exists;
-  const double* const area = own_shapes ? cells.shapes->area : nullptr;
+  const double* const area = cells.shape[cell_area];
   const double *lower_length = cells.lower.per_length, *upper_length = cells.upper.per_length;
   const double* left_length = cells.left.per_length;
 #pragma GCC ivdep
   for (int k = columns.begin; k < columns.end; ++k) {
-    const double weight = own_shapes ? area[k] : exists[k];
+    const double weight = own_shape ? area[k] : exists[k];
     double lower = lv, upper = lv, left = lu, right = lu;  // the area over the edge's length
-    if constexpr (own_shapes) {
+    if constexpr (own_shape) {
       lower = lower_length[k], upper = upper_length[k];
       left = left_length[k], right = left_length[k + 1];
     }
@@ -140,12 +142,12 @@ void strain_edges(const CellLaw& law, double l, const Ends& v, Columns columns, 
 
 void shear_cells(const CellLaw& law, Columns columns, const CellEdges& cells) {
   with(law.shear_rate != 0, [&](auto viscous) {
-    with(cells.shapes != nullptr, [&](auto own_shapes) { shear<viscous, own_shapes>(law, columns, cells); });
+    with(cells.shape.data != nullptr, [&](auto own_shape) { shear<viscous, own_shape>(law, columns, cells); });
   });
 }
 
 void contract_cells(double lu, double lv, Columns columns, const CellEdges& cells) {
-  with(cells.shapes != nullptr, [&](auto own_shapes) { contract<own_shapes>(lu, lv, columns, cells); });
+  with(cells.shape.data != nullptr, [&](auto own_shape) { contract<own_shape>(lu, lv, columns, cells); });
 }
 
 void gather(const Vec& load, const double* width, const Ends& weft_pulls, const Ends& warp_pulls, const Ends& left_cells,

@@ -39,17 +39,36 @@ struct Ends {
   Field begin, end;
 };
 
+/// What the edges, cells and particles of a grid that is not uniform have at rest. A column has the weft edge towards the next
+/// one, the warp edge from the line before, and the cell between both lines and the next column. cos: <p, q>/(l_p l_q) of the
+/// lower or upper edge p and the left or right edge q.
+enum ShapeRow {
+  weft_width,       ///< [m]
+  weft_per_length,  ///< [1/m]
+  warp_width,       ///< [m]
+  warp_per_length,  ///< [1/m]
+  particle_area,    ///< [m²]
+  cell_area,        ///< [m²]
+  cos_lower_left,
+  cos_lower_right,
+  cos_upper_left,
+  cos_upper_right,
+  shape_rows  ///< their number
+};
+
+/// The rows of a line.
+struct Rows {
+  const double* data = nullptr;
+  std::ptrdiff_t stride = 0;
+
+  const double* operator[](ShapeRow row) const { return data + row * stride; }
+};
+
 /// Edges and their pulls. For contraction also their inverse lengths and the stresses that they cause in the edges across.
 struct Edges {
   Field along, pull;
   double *inverse, *stress;
   const double* per_length = nullptr;  ///< 1/l at rest [1/m]; null: the same for all, and in their law
-};
-
-/// Cells of a grid that is not uniform: areas [m²], and <p, q>/(l_p l_q) at rest of the quadrants between the lower or upper
-/// and the left or right edge.
-struct CellShapes {
-  const double *area, *lower_left, *lower_right, *upper_left, *upper_right;
 };
 
 /// The edges of cells: lower and upper along u, left and right along v; and the
@@ -62,8 +81,8 @@ struct CellEdges {
   const double *right_inverse, *right_stress;
   Field pull_right;
 
-  const double* exists;                ///< 1 where there is a cell, else 0
-  const CellShapes* shapes = nullptr;  ///< null if the grid is uniform
+  const double* exists;  ///< 1 where there is a cell, else 0
+  Rows shape;            ///< none if the grid is uniform
 };
 
 /// Splits the coordinates x y z x y z ... of columns into the three arrays of a field.
