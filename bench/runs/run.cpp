@@ -80,8 +80,8 @@ class ObservedRun {
     auto [cloth, lost] = model::compile_next(phase(), *cloth_, integrator_->state());
     cloth_ = &later_.emplace_back(std::move(cloth));
     begin_phase();
-    constexpr double round_off = 1e-12;
-    if (!(lost > round_off)) return "";
+    constexpr double negligible = 1e-12;  // [J]
+    if (!(lost > negligible)) return "";
     return fmt::format("{}sewing at {:g} s lost {:.3g} J", std::exchange(has_lost_, true) ? "; " : "", cloth_->begin, lost);
   }
 

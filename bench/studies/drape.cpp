@@ -88,11 +88,11 @@ double coefficient_of(const std::vector<double>& shadow) {
 
 /// How often the shadow, on average over five degrees to both sides, comes to lie beyond its mean.
 int folds_of(const std::vector<double>& shadow) {
-  constexpr int side = directions / 72;
+  constexpr int reach = directions / 72;
   const auto smooth = [&](int k) {
     double sum = 0;
-    for (int j = -side; j <= side; ++j) sum += shadow[(k + j + directions) % directions];
-    return sum / (2 * side + 1);
+    for (int j = -reach; j <= reach; ++j) sum += shadow[(k + j + directions) % directions];
+    return sum / (2 * reach + 1);
   };
   double mean = 0;
   for (int k = 0; k < directions; ++k) mean += smooth(k) / directions;

@@ -24,10 +24,10 @@ Eigen::VectorXd power_of_z(int n) { return Eigen::VectorXd::Unit(n + 1, n); }
 
 /// z^k δ(z) of BDF(k) with δ(z) = Σ (1 − 1/z)^j/j, j = 1 … k, and then δ² + s δ + W = 0.
 Eigen::VectorXd bdf_polynomial(int k, const Mode& mode) {
-  const Eigen::Vector2d difference(-1, 1);
+  const Eigen::Vector2d backward(-1, 1);
   Eigen::VectorXd D = Eigen::VectorXd::Zero(k + 1), power = Eigen::VectorXd::Ones(1);
   for (int j = 1; j <= k; ++j) {
-    power = product(power, difference);
+    power = product(power, backward);
     D += product(power, power_of_z(k - j)) / j;
   }
   return product(D, D) + mode.s * product(D, power_of_z(k)) + mode.W * power_of_z(2 * k);

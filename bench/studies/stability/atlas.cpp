@@ -110,10 +110,10 @@ struct Atlas {
 
 class Predictions {
  public:
-  std::optional<Expected> of(const Row& row, const Sheet& sheet, double stiffness, double ratio) {
-    const auto key = std::tuple(row.method, stiffness, ratio);
+  std::optional<Expected> of(const Row& row, const Sheet& sheet, double nu, double ratio) {
+    const auto key = std::tuple(row.method, nu, ratio);
     auto known = known_.find(key);
-    if (known == known_.end()) known = known_.emplace(key, reference::predict(*row.method, stiffness, ratio)).first;
+    if (known == known_.end()) known = known_.emplace(key, reference::predict(*row.method, nu, ratio)).first;
     if (!known->second) return std::nullopt;
     const reference::LinearPrediction& linear = *known->second;
     const double growth = std::pow(linear.radius, std::round(horizon / sheet.step));

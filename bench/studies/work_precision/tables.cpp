@@ -116,31 +116,31 @@ constexpr ColumnOf<TimeRatio> time_ratio_columns[] = {
 // --- Winners -------------------------------------------------------------------------------------------------------------
 
 /// The quickest of a contender beside our best; no ratio unless there are both.
-struct Beside {
+struct Rival {
   Winner winner;
   std::optional<TimeRatio> ratio = {};
   bool tied = false;
 };
 
-Beside beside(const Winner& winner, const Winner& best) {
+Rival beside(const Winner& winner, const Winner& best) {
   const auto ratio = ratio_of(winner, best);
   return {winner, ratio, ratio && tie(winner, best)};
 }
 
-results::Quartiles times_of(const Beside& one) { return results::quartiles(one.winner.run->measured.times); }
+results::Quartiles times_of(const Rival& one) { return results::quartiles(one.winner.run->measured.times); }
 
-constexpr ColumnOf<Beside> winner_columns[] = {
-    {"{}", "", "", "the quickest", Role::note, [](const Beside& one) -> Datum { return one.winner.name(); }},
-    {"{}_ms", "{}", "ms", "its median CPU time", Role::time, [](const Beside& one) -> Datum { return times_of(one).median; }},
+constexpr ColumnOf<Rival> winner_columns[] = {
+    {"{}", "", "", "the quickest", Role::note, [](const Rival& one) -> Datum { return one.winner.name(); }},
+    {"{}_ms", "{}", "ms", "its median CPU time", Role::time, [](const Rival& one) -> Datum { return times_of(one).median; }},
     {"{}_lower", "", "ms", "lower quartile of its times", Role::time,
-     [](const Beside& one) -> Datum { return times_of(one).lower; }},
+     [](const Rival& one) -> Datum { return times_of(one).lower; }},
     {"{}_upper", "", "ms", "upper quartile of its times", Role::time,
-     [](const Beside& one) -> Datum { return times_of(one).upper; }},
+     [](const Rival& one) -> Datum { return times_of(one).upper; }},
 };
 
-constexpr ColumnOf<Beside> tie_columns[] = {
+constexpr ColumnOf<Rival> tie_columns[] = {
     {"{}_tie", "", "", "whether the gap is below the noise", Role::note,
-     [](const Beside& one) { return one.tied ? Datum("tie") : Datum(); }},
+     [](const Rival& one) { return one.tied ? Datum("tie") : Datum(); }},
 };
 
 /// A contender of the table of winners.
@@ -164,8 +164,8 @@ std::vector<WinnerGroup> winner_groups(const DefaultChoice& usual) {
 
 struct WinnersRow {
   Level level;
-  Beside ours;
-  std::vector<Beside> others;  ///< one for each group
+  Rival ours;
+  std::vector<Rival> others;  ///< one for each group
 };
 
 constexpr ColumnOf<WinnersRow> best_columns[] = {
@@ -185,7 +185,7 @@ std::vector<WinnersRow> winners_rows(const std::vector<SceneRuns>& scenes, const
 }
 
 /// Null where nothing reaches the error.
-const Beside* if_won(const Beside& one) { return one.winner ? &one : nullptr; }
+const Rival* if_won(const Rival& one) { return one.winner ? &one : nullptr; }
 
 // --- One choice of each side ---------------------------------------------------------------------------------------------
 

@@ -82,7 +82,7 @@ struct CellEdges {
   Field pull_right;
 
   const double* exists;  ///< 1 where there is a cell, else 0
-  Rows shape;            ///< none if the grid is uniform
+  Rows shape = {};       ///< none if the grid is uniform
 };
 
 /// Splits the coordinates x y z x y z ... of columns into the three arrays of a field.

@@ -323,16 +323,6 @@ TEST_F(ProgramStudies, TheFieldHasAllMethodsAndWinnersWithMargins) {
   EXPECT_GT(rows(table("field-transfer")), 0U);
 }
 
-TEST_F(ProgramStudies, TheLedgerIsDecidedByNumbers) {
-  DRAPE_SLOW();
-  const auto all = tables("claims");
-  ASSERT_THAT(all, SizeIs(2));
-  EXPECT_THAT(verdicts(all[0]), SizeIs(rows(all[0])));
-  EXPECT_THAT(verdicts(all[0]), Contains("met: confirmed").Times(testing::Ge(5)));
-  EXPECT_THAT(verdicts(all[0]), Contains("missed: refuted")) << "some are";
-  EXPECT_THAT(verdicts(all[0]), Contains(StartsWith("only if")).Times(testing::Ge(5)));
-}
-
 TEST_F(ProgramStudies, ErrorsAreNearTheirTolerances) {
   DRAPE_SLOW();
   const auto all = tables("tolerance");
