@@ -26,20 +26,21 @@ struct NamedPlace {
   Place contains;
 };
 
-constexpr auto left = [](const Grid&, int a, int) { return a == 0; };
-constexpr auto right = [](const Grid& grid, int a, int) { return a == grid.nu - 1; };
-constexpr auto lower = [](const Grid&, int, int b) { return b == 0; };
-constexpr auto upper = [](const Grid& grid, int, int b) { return b == grid.nv - 1; };
+constexpr auto on_left = [](const Grid&, int a, int) { return a == 0; };
+constexpr auto on_right = [](const Grid& grid, int a, int) { return a == grid.nu - 1; };
+constexpr auto on_lower = [](const Grid&, int, int b) { return b == 0; };
+constexpr auto on_upper = [](const Grid& grid, int, int b) { return b == grid.nv - 1; };
+constexpr auto on_a_side = [](const Grid& grid, int a, int b) { return on_left(grid, a, b) || on_right(grid, a, b); };
+constexpr auto on_an_end = [](const Grid& grid, int a, int b) { return on_lower(grid, a, b) || on_upper(grid, a, b); };
 
 constexpr NamedPlace places[] = {
-    {"left edge", left},
-    {"right edge", right},
-    {"lower edge", lower},
-    {"upper edge", upper},
-    {"border", [](const Grid& g, int a, int b) { return left(g, a, b) || right(g, a, b) || lower(g, a, b) || upper(g, a, b); }},
-    {"corners",
-     [](const Grid& g, int a, int b) { return (left(g, a, b) || right(g, a, b)) && (lower(g, a, b) || upper(g, a, b)); }},
-    {"upper corners", [](const Grid& g, int a, int b) { return (left(g, a, b) || right(g, a, b)) && upper(g, a, b); }},
+    {"left edge", on_left},
+    {"right edge", on_right},
+    {"lower edge", on_lower},
+    {"upper edge", on_upper},
+    {"border", [](const Grid& g, int a, int b) { return on_a_side(g, a, b) || on_an_end(g, a, b); }},
+    {"corners", [](const Grid& g, int a, int b) { return on_a_side(g, a, b) && on_an_end(g, a, b); }},
+    {"upper corners", [](const Grid& g, int a, int b) { return on_a_side(g, a, b) && on_upper(g, a, b); }},
     {"all", [](const Grid&, int, int) { return true; }},
 };
 
