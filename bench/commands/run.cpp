@@ -209,10 +209,11 @@ void add_run(CLI::App& app, const std::string& command_line) {
   add_thread_option(command, *a);
   add_frame_options(command, *a);
   add_output_options(command, a->output);
-  command.footer(fmt::format("{}\n{}\n{}\n{}\n{}", paragraph("Scenes", scene_choices()), paragraph("Methods", method_choices()),
-                             paragraph("Stage solvers", stage_solver_choices()),
-                             paragraph("Linear solvers", linear_solver_choices()),
-                             paragraph("Keys of scenes", scene_key_choices())));
+  command.footer([] {  // only if help is asked for: descriptions of scenes are in their files, and checking these takes a while
+    return fmt::format("{}\n{}\n{}\n{}\n{}", paragraph("Scenes", scene_choices()), paragraph("Methods", method_choices()),
+                       paragraph("Stage solvers", stage_solver_choices()), paragraph("Linear solvers", linear_solver_choices()),
+                       paragraph("Keys of scenes", scene_key_choices()));
+  });
   command.callback([=] { run(*a); });
 }
 
