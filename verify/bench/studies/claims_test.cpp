@@ -164,9 +164,10 @@ TEST(Ledger, OfItsStudyIsDecidedByNumbersThatCouldHaveRefutedItAndFindsWhatTheLi
   ASSERT_THAT(tables, testing::SizeIs(2));
 
   std::map<std::string_view, std::string> verdicts;
-  ASSERT_EQ(rows(tables[0]), bench::all_claims().size());
-  for (std::size_t row = 0; row < rows(tables[0]); ++row) {
-    const Claim& claim = *bench::all_claims()[row];
+  const std::vector<const Claim*> claims = bench::all_claims();
+  ASSERT_EQ(rows(tables[0]), claims.size());
+  for (std::size_t row = 0; row < claims.size(); ++row) {
+    const Claim& claim = *claims[row];
     const std::vector<ClaimCase> cases = recorded(tables[1], claim);
     expect_refutable(claim, cases);
     verdicts[claim.id] = text_in(find_column(tables[0], "verdict"), row);
