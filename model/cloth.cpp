@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "model/garment_forces.hpp"
 #include "model/obstacles/reaction.hpp"
@@ -13,7 +14,7 @@ namespace {
 
 int count_fixed(const std::vector<solver::Pin>& pins) {
   int count = 0;
-  for (const solver::Pin& pin : pins) count += pin.fixed[0] + pin.fixed[1] + pin.fixed[2];
+  for (const solver::Pin& pin : pins) count += static_cast<int>(std::lround(pin.held.trace()));
   return count;
 }
 
@@ -43,16 +44,12 @@ std::shared_ptr<Reaction> respond(const ContactRule& rule, const std::shared_ptr
   return reaction;
 }
 
+bool moves(const solver::Pin& pin) { return !pin.prescribed().isZero(0); }
+
 /// Where pins move: there the whole force.
 void keep_moved(const std::vector<solver::Pin>& pins, const Vectors& whole, Vectors& f) {
   for (const solver::Pin& pin : pins)
-    for (int c = 0; c < 3; ++c)
-      if (pin.fixed[c] && pin.velocity[c] != 0) f(pin.particle, c) -= whole(pin.particle, c);
-}
-
-bool moves(const solver::Pin& pin) {
-  return (pin.fixed[0] && pin.velocity[0] != 0) || (pin.fixed[1] && pin.velocity[1] != 0) ||
-         (pin.fixed[2] && pin.velocity[2] != 0);
+    if (moves(pin)) f.row(pin.particle) -= whole.row(pin.particle) * pin.held;
 }
 
 /// Cloth::given.

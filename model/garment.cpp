@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <ranges>
 #include <set>
 #include <stdexcept>
 #include <utility>
@@ -167,23 +168,49 @@ solver::State Garment::gathered(const solver::State& of_particles) const {
   return y;
 }
 
-std::vector<solver::Pin> Garment::pins(const Scene& phase, const Vectors& x) const {
-  std::map<int, solver::Pin> merged;
-  for (const PinRule& rule : phase.pins) {
-    const Panel& of = panel(rule.panel);
-    for (const int particle : pinned_particles(of.sheet.grid, rule)) {
-      const int i = of.node(particle);
-      solver::Pin& pin = merged.try_emplace(i, solver::Pin{i, {false, false, false}}).first->second;
-      for (int c = 0; c < 3; ++c) {
-        if (!rule.directions[c]) continue;
-        pin.fixed[c] = true;
-        pin.velocity[c] = rule.velocity[c];
-      }
-    }
+namespace {
+
+/// The directions in which the rules of a node prescribe its velocity, orthonormal, and the velocities along them [m/s].
+class HeldDirections {
+ public:
+  /// Holds the direction d as well, unless the others hold it already.
+  void hold(const Eigen::Vector3d& d, double velocity) {
+    constexpr double parallel = 1e-6;
+    const Eigen::Vector3d rest = d - pin_.held * d;
+    const double length = rest.norm();
+    if (length <= parallel) return;
+    const Eigen::Vector3d n = rest / length;
+    pin_.velocity += (velocity - pin_.velocity.dot(d)) / length * n;
+    pin_.held += n * n.transpose();
+    if (++count_ == 3) pin_.held.setIdentity();
   }
+
+  solver::Pin pin(int node) const { return {node, pin_.held, pin_.velocity}; }
+
+ private:
+  solver::Pin pin_{0, Eigen::Matrix3d::Zero(), Eigen::Vector3d::Zero()};
+  int count_ = 0;
+};
+
+void hold(const PinRule& rule, HeldDirections& node) {
+  for (int c = 0; c < 3; ++c)
+    if (rule.directions[c] && !rule.oblique()) node.hold(Eigen::Vector3d::Unit(c), rule.velocity[c]);
+  if (rule.oblique()) node.hold(rule.direction.stableNormalized(), rule.velocity.dot(rule.direction.stableNormalized()));
+}
+
+}  // namespace
+
+std::vector<solver::Pin> Garment::pins(const Scene& phase, const Vectors& x) const {
+  std::map<int, HeldDirections> held;
+  for (const PinRule& rule : phase.pins | std::views::reverse) {  // what holds first wins
+    const Panel& of = panel(rule.panel);
+    for (const int particle : pinned_particles(of.sheet.grid, rule)) hold(rule, held[of.node(particle)]);
+  }
+  std::map<int, solver::Pin> merged;
+  for (const auto& [node, directions] : held) merged[node] = directions.pin(node);
   if (phase.seam_state == SeamState::pulled)
-    for (const auto& [node, velocity] : pulled(phase, x)) merged[node] = {node, {true, true, true}, velocity};
-  for (const int i : outside()) merged[i] = {i, {true, true, true}};
+    for (const auto& [node, velocity] : pulled(phase, x)) merged[node] = {.particle = node, .velocity = velocity};
+  for (const int i : outside()) merged[i] = {.particle = i};
   std::vector<solver::Pin> all;
   for (const auto& [particle, pin] : merged) all.push_back(pin);
   return all;

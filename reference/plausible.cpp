@@ -47,13 +47,13 @@ void require_uncertainty(const Reference& reference, bool contact) {
 }
 
 void require_pins(const Reference& reference, const SplitOde& ode, const State& y0, double t0, double size) {
-  const Coordinates coordinates(ode);
   const State start = prescribed_start(ode, y0);
   for (std::size_t k = 0; k < reference.error.size(); ++k)
-    for (const int i : coordinates.pinned) {
-      const double place = start.x.data()[i] + start.v.data()[i] * (reference.trajectory.times[k] - t0);
-      if (!(std::abs(reference.trajectory.states[k].x.data()[i] - place) <= 1e-6 * size))
-        throw DamagedFile("its pinned particles are not where the scene has them");
+    for (const solver::Pin& pin : ode.pins) {
+      const int i = pin.particle;
+      const Eigen::RowVector3d place = start.x.row(i) + start.v.row(i) * (reference.trajectory.times[k] - t0);
+      const Eigen::RowVector3d off = (reference.trajectory.states[k].x.row(i) - place) * pin.held;
+      if (!(off.norm() <= 1e-6 * size)) throw DamagedFile("its pinned particles are not where the scene has them");
     }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <vector>
 
 #include "solver/split_ode.hpp"
@@ -15,7 +16,7 @@ class Filter {
     Eigen::Matrix3d free;  ///< orthogonal projector
   };
 
-  /// The pins whose particles still have free coordinates: the others have no entries in the filtered matrices.
+  /// The pins whose particles still have free directions: the others have no entries in the filtered matrices.
   static Filter partial(const std::vector<Pin>& pins);
 
   void clear() { blocks_.clear(); }
@@ -31,7 +32,30 @@ class Filter {
   std::vector<Block> blocks_;
 };
 
-/// For each particle the projector on the coordinates that its pin leaves free; empty if there are no pins.
+/// The free directions of particles that are pinned along others than axes. Other pins set coordinates to zero, in matrices and
+/// in vectors; these take more.
+class ObliquePins {
+ public:
+  explicit ObliquePins(const std::vector<Pin>& pins);
+
+  bool empty() const { return free_.empty(); }
+
+  /// What particle i has of a vector in its free directions.
+  Eigen::Vector3d filtered(int i, const Eigen::Vector3d& a) const;
+
+  /// The same of a block of a matrix: row particle i, column particle j.
+  Eigen::Matrix3d filtered(int i, int j, const Eigen::Matrix3d& block) const;
+
+  void operator()(Vectors& r) const;
+
+  /// The projector on free directions, 3N × 3N.
+  SparseMatrix matrix(int particles) const;
+
+ private:
+  std::map<int, Eigen::Matrix3d> free_;
+};
+
+/// For each particle the projector on the directions that its pin leaves free; empty if there are no pins.
 std::vector<Eigen::Matrix3d> allowed_directions(const SplitOde& ode);
 
 }  // namespace drape::solver

@@ -9,15 +9,23 @@ double stored_energy(const SplitOde& ode, double t, const State& y) {
 }
 
 void prescribe(const std::vector<Pin>& pins, Vectors& v) {
-  for (const Pin& pin : pins)
-    for (int c = 0; c < 3; ++c)
-      if (pin.fixed[c]) v(pin.particle, c) = pin.velocity[c];
+  for (const Pin& pin : pins) {
+    auto own = v.row(pin.particle);
+    if (pin.all())
+      own = pin.velocity.transpose();
+    else
+      own = (own * pin.free() + pin.prescribed().transpose()).eval();
+  }
 }
 
 void filter(const std::vector<Pin>& pins, Vectors& r) {
-  for (const Pin& pin : pins)
-    for (int c = 0; c < 3; ++c)
-      if (pin.fixed[c]) r(pin.particle, c) = 0;
+  for (const Pin& pin : pins) {
+    auto own = r.row(pin.particle);
+    if (pin.all())
+      own.setZero();
+    else
+      own *= pin.free();
+  }
 }
 
 Vectors reactions(const SplitOde& ode, double t, const State& y) {

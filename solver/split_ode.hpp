@@ -12,13 +12,24 @@
 
 namespace drape::solver {
 
-/// A particle some of whose coordinates move with a prescribed velocity instead of obeying the equation of motion.
+/// The orthogonal projector on some of the axes.
+inline Eigen::Matrix3d axes(bool x, bool y, bool z) { return Eigen::Vector3d(x, y, z).asDiagonal(); }
+
+/// A particle that moves in some directions with a prescribed velocity instead of obeying the equation of motion.
 struct Pin {
   int particle = 0;
-  std::array<bool, 3> fixed{true, true, true};
-  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< [m/s], used in the fixed directions
+  Eigen::Matrix3d held = Eigen::Matrix3d::Identity();  ///< orthogonal projector on these directions
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< [m/s], used in these directions
 
-  bool all() const { return fixed[0] && fixed[1] && fixed[2]; }
+  bool all() const { return held == Eigen::Matrix3d::Identity(); }
+  /// Whether the coordinate c is prescribed by itself.
+  bool fixed(int c) const { return held.col(c) == Eigen::Vector3d::Unit(c); }
+  /// Whether directions are held that are not those of axes.
+  bool oblique() const { return held != axes(fixed(0), fixed(1), fixed(2)); }
+  /// Orthogonal projector on the directions that are not held.
+  Eigen::Matrix3d free() const { return Eigen::Matrix3d::Identity() - held; }
+  /// Velocity in the held directions [m/s].
+  Eigen::Vector3d prescribed() const { return held * velocity; }
 };
 
 /// A half-space that a particle must not leave in the next step: at its end <x, n> ≥ `least`.
@@ -110,11 +121,11 @@ double stored_energy(const SplitOde& ode, double t, const State& y);
 /// Sets the prescribed velocities in v.
 void prescribe(const std::vector<Pin>& pins, Vectors& v);
 
-/// Sets the pinned coordinates of a residual, force or acceleration to zero.
+/// Removes what a residual, force or acceleration has in the directions of the pins.
 void filter(const std::vector<Pin>& pins, Vectors& r);
 
 /// Forces of the pins on their particles [N], N × 3: M dv/dt - f, where dv/dt = 0 since prescribed velocities are constant;
-/// 0 in the free coordinates.
+/// 0 in the free directions.
 Vectors reactions(const SplitOde& ode, double t, const State& y);
 
 }  // namespace drape::solver

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "bench/score/observables.hpp"
+#include "bench/score/true_motion.hpp"
 #include "model/scene.hpp"
 #include "model/sheet/edges.hpp"
 #include "results/file/hdf5.hpp"
@@ -153,8 +154,7 @@ std::vector<Eigen::Index> match(const Vectors& vertices, const Vectors& particle
 
 ExternalMotion read_external_motion(const std::vector<std::string>& files, std::optional<double> frame_time,
                                     const model::Scene& scene) {
-  if (!scene.panels.empty())
-    throw std::invalid_argument(fmt::format("{}: expected a scene of one sheet, not of panels", scene.name));
+  require_describable(scene);
   check_choice(files, frame_time);
   const results::Motion motion = read(files, frame_time);
   ExternalMotion external{title(files), 0, motion.times, {}, motion.velocities.empty()};

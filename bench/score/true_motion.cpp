@@ -47,10 +47,16 @@ void require_known(const model::Scene& scene, const reference::Reference& refere
 
 }  // namespace
 
-TrueMotion true_motion(const model::Scene& scene, std::span<const double> times, double agreement,
-                       const ReferenceWatch& watch) {
+void require_describable(const model::Scene& scene) {
   if (!scene.panels.empty())
     throw std::invalid_argument(fmt::format("{}: expected a scene of one sheet, not of panels", scene.name));
+  if (std::ranges::any_of(scene.pins, &model::PinRule::oblique))
+    throw std::invalid_argument(fmt::format("{}: expected pins along axes ('directions'), not 'direction'", scene.name));
+}
+
+TrueMotion true_motion(const model::Scene& scene, std::span<const double> times, double agreement,
+                       const ReferenceWatch& watch) {
+  require_describable(scene);
   TrueMotion truth{scene, model::compile(scene), {}, 0, {}, {}, {}};
   References references(agreement, watch, 1e-10);  // nothing here tells the errors that will be judged by it
   reference::Reference reference = references(scene, truth.cloth, all_times(times, scene.end));

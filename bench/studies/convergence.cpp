@@ -162,9 +162,9 @@ model::Scene scene_of(const Experiment& experiment, int n) {
 /// Pins one coordinate of all particles.
 void hold_still(std::vector<solver::Pin>& pins, int particles, int coordinate) {
   std::vector<solver::Pin> all(static_cast<std::size_t>(particles));
-  for (int i = 0; i < particles; ++i) all[i] = {.particle = i, .fixed = {false, false, false}};
+  for (int i = 0; i < particles; ++i) all[i] = {.particle = i, .held = Eigen::Matrix3d::Zero()};
   for (const solver::Pin& pin : pins) all[pin.particle] = pin;
-  for (solver::Pin& pin : all) pin.fixed[coordinate] = true;
+  for (solver::Pin& pin : all) pin.held(coordinate, coordinate) = 1;
   pins = std::move(all);
 }
 

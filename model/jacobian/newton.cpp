@@ -21,9 +21,9 @@ Blocks distinct(Blocks blocks, const Blocks& more) {
 }  // namespace
 
 NewtonMatrix::NewtonMatrix(Curvature curvature, const Eigen::VectorXd& mass, const std::vector<solver::Pin>& pins)
-    : curvature_(curvature), mass_(solver::thrice(mass)), pinned_(mass_.size(), false) {
+    : curvature_(curvature), mass_(solver::thrice(mass)), pinned_(mass_.size(), false), oblique_(pins) {
   for (const solver::Pin& pin : pins)
-    for (int a = 0; a < 3; ++a) pinned_[3 * pin.particle + a] = pin.fixed[a];
+    for (int a = 0; a < 3; ++a) pinned_[3 * pin.particle + a] = pin.fixed(a);
 }
 
 void NewtonMatrix::analyse(const VisitBlocks& visit) {
@@ -50,7 +50,11 @@ void NewtonMatrix::assemble(const VisitBlocks& visit, double gamma, SparseMatrix
   std::fill_n(values, J.nonZeros(), 0.0);
   for (int i = 0; i < mass_.size(); ++i) values[diagonal_[i]] = mass_[i];
   BlockSlots::Adder add_dx(dx_, values, -gamma * gamma), add_dv(dv_, values, -gamma);
-  visit({curvature_, std::ref(add_dx), std::ref(add_dv)});
+  if (oblique_.empty()) return visit({curvature_, std::ref(add_dx), std::ref(add_dv)});
+  const auto add_filtered = [this](BlockSlots::Adder& add) {
+    return [this, &add](int i, int j, const Eigen::Matrix3d& block) { add(i, j, oblique_.filtered(i, j, block)); };
+  };
+  visit({curvature_, add_filtered(add_dx), add_filtered(add_dv)});
 }
 
 }  // namespace drape::model

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "model/jacobian/slots.hpp"
+#include "solver/filter.hpp"
 #include "solver/split_ode.hpp"
 
 namespace drape::model {
@@ -8,7 +9,7 @@ namespace drape::model {
 /// Assembles J ≈ M − γ² ∂f/∂x − γ ∂f/∂v from the terms' convex blocks straight into its sparse pattern, which is found once.
 class NewtonMatrix {
  public:
-  /// `mass`: N. Pinned coordinates have only their mass.
+  /// `mass`: N. Pinned directions have only their mass.
   NewtonMatrix(Curvature curvature, const Eigen::VectorXd& mass, const std::vector<solver::Pin>& pins);
 
   /// Sets the upper triangle of J, 3N × 3N. J must be empty or the result of the last call.
@@ -21,6 +22,7 @@ class NewtonMatrix {
   Curvature curvature_;
   Eigen::VectorXd mass_;      ///< 3N
   std::vector<char> pinned_;  ///< 3N
+  solver::ObliquePins oblique_;
   SparseMatrix pattern_;
   BlockSlots dx_, dv_;
   std::vector<int> diagonal_;

@@ -447,7 +447,7 @@ std::span<const SceneKey> scene_key_table() {
        read_entries_of<&Scene::panels, read_panel>, data_of_entries<&Scene::panels>},
       {"seams", "", "list of { one, other, ease }: sides { panel, side, ends } whose particles are one; one may be longer by the part ease",
        read_entries_of<&Scene::seams, read_seam>, data_of_entries<&Scene::seams>},
-      {"pins", "", "list of { panel, where | particles | circle, directions, velocity | path }: prescribed motion", read_entries_of<&Scene::pins, read_pin>, data_of_entries<&Scene::pins>},
+      {"pins", "", "list of { panel, where | particles | circle, directions | direction, velocity | path }: prescribed motion", read_entries_of<&Scene::pins, read_pin>, data_of_entries<&Scene::pins>},
       {"phases", "", "list of { until, gravity, seams, pins }: times in which these are other than after the last", read_entries_of<&Scene::phases, read_phase>, data_of_entries<&Scene::phases>},
 
       {"rest.shape", "", "\"flat\" or \"start\": bending is at rest in the shape at t = 0",

@@ -75,10 +75,21 @@ void read_directions(const Value& value, PinOfScene& rule) {
 }
 
 Data directions_data(const PinOfScene& rule) {
+  if (rule.pin.oblique()) return {};
   std::string text;
   for (int c = 0; c < 3; ++c)
     if (rule.pin.directions[c]) text += static_cast<char>('x' + c);
   return text;
+}
+
+void read_direction(const Value& value, PinOfScene& rule) {
+  rule.pin.direction = value.vector(&Value::number);
+  if (!rule.pin.oblique()) value.fail("[x, y, z], not all of them 0");
+}
+
+Data direction_data(const PinOfScene& rule) {
+  const Eigen::Vector3d& d = rule.pin.direction;
+  return rule.pin.oblique() ? Data(List{d[0], d[1], d[2]}) : Data();
 }
 
 constexpr Key<PathPoint> path_keys[] = {
@@ -108,6 +119,7 @@ constexpr Key<PinOfScene> pin_keys[] = {
     {"particles", "", "[a, b] along u and v", read_particles, particles_data},
     {"circle", "m", "[x, y, radius] on the pattern: all particles inside", read_circle, circle_data},
     {"directions", "", "letters of x, y and z", read_directions, directions_data},
+    {"direction", "", "instead of these a single one, [x, y, z] of any length", read_direction, direction_data},
     {"velocity", "m/s", "[x, y, z]", at<&PinOfScene::pin, &PinRule::velocity>, check::number},
     {"path", "", "instead of a velocity, points { time, position } between which it moves uniformly", read_path, path_data},
 };
@@ -117,6 +129,8 @@ constexpr Key<PinOfScene> pin_keys[] = {
 PinRule read_pin(const Value& value, const Scene& scene) {
   PinOfScene rule{scene};
   if (!scene.panels.empty() && !value.table().contains("panel")) value.fail("'panel' in every pin of a scene with panels");
+  if (value.table().contains("direction") && value.table().contains("directions"))
+    value.fail("'direction' or 'directions' in a pin, not both");
   read_table<PinOfScene>(value, "pin", pin_keys, rule);
   if (!rule.pin.where.empty() + !rule.pin.particles.empty() + (rule.pin.circle[2] > 0) != 1)
     value.fail("one of 'where', 'particles' and 'circle' in every pin");

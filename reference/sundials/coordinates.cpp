@@ -7,12 +7,12 @@
 namespace drape::reference {
 
 Coordinates::Coordinates(const solver::SplitOde& ode) : unknown(3 * ode.mass.size(), -1), place(3 * ode.mass.size(), -1) {
-  solver::Vectors moves = solver::Vectors::Ones(ode.particles(), 3);
-  solver::filter(ode.pins, moves);
-  for (int i = 0; i < moves.size(); ++i) {
-    const bool is_free = moves.data()[i] != 0;
-    std::vector<int>& kind = is_free ? free : pinned;
-    (is_free ? unknown : place)[i] = static_cast<int>(kind.size());
+  std::vector<bool> is_free(unknown.size(), true);
+  for (const solver::Pin& pin : ode.pins)
+    for (int c = 0; c < 3; ++c) is_free[3 * pin.particle + c] = !pin.fixed(c);
+  for (int i = 0; i < std::ssize(unknown); ++i) {
+    std::vector<int>& kind = is_free[i] ? free : pinned;
+    (is_free[i] ? unknown : place)[i] = static_cast<int>(kind.size());
     kind.push_back(i);
   }
   if (free.empty()) throw std::invalid_argument("every coordinate is pinned: there is no equation of motion to integrate");

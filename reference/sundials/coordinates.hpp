@@ -9,7 +9,8 @@ namespace drape::reference {
 /// Compressed rows with the 64 bit indices of SUNDIALS.
 using WideSparseMatrix = Eigen::SparseMatrix<double, Eigen::RowMajor, std::int64_t>;
 
-/// Which of the 3N coordinates 3i + c are free, and which are pinned and move with a prescribed constant velocity.
+/// Which of the 3N coordinates 3i + c are free, and which are pinned and move with a prescribed constant velocity. Those of
+/// oblique pins are free: their derivatives are filtered.
 struct Coordinates {
   std::vector<int> free, pinned;  ///< in increasing order
   std::vector<int> unknown;       ///< 3N: place among the free ones, -1 if pinned

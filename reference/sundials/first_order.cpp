@@ -35,8 +35,10 @@ FirstOrderOde::FirstOrderOde(const solver::SplitOde& ode, const State& start, do
       start_(prescribed_start(ode, start)),
       t0_(t0),
       inverse_mass_(ode.mass.cwiseInverse().replicate(1, 3)),
+      oblique_(ode.pins),
       scratch_{.damping = Vectors::Zero(ode.particles(), 3)} {
-  solver::filter(ode.pins, inverse_mass_);
+  for (const int i : coordinates_.pinned) inverse_mass_.data()[i] = 0;
+  if (!oblique_.empty()) free_ = oblique_.matrix(ode.particles());
 }
 
 State FirstOrderOde::output(double t, State y) const {
@@ -91,6 +93,7 @@ void FirstOrderOde::derivative(double t, const State& y, State& dy, Part part) c
   if (ode_.memory) derive_memory(t, y, part, dy.z);
   evaluate(t, y, part, dy.v);
   dy.v.array() *= inverse_mass_.array();
+  oblique_(dy.v);
   if (std::isfinite(dy.v.sum())) return;
   for (int i = 0; i < ode_.particles(); ++i)
     if (!dy.v.row(i).allFinite())
@@ -99,9 +102,14 @@ void FirstOrderOde::derivative(double t, const State& y, State& dy, Part part) c
 
 void FirstOrderOde::update_derivatives(double t, const State& y, Part part) const {
   if (ode_.memory) ode_.memory->begin(1, t, y);
-  if (part == Part::whole) return ode_.jacobian(t, y.x, y.v, scratch_.df_dx, scratch_.df_dv);
-  scratch_.df_dx = threefold(stiffness());
-  scratch_.df_dv = threefold(ode_.damping);
+  if (part == Part::whole) {
+    ode_.jacobian(t, y.x, y.v, scratch_.df_dx, scratch_.df_dv);
+  } else {
+    scratch_.df_dx = threefold(stiffness());
+    scratch_.df_dv = threefold(ode_.damping);
+  }
+  if (oblique_.empty()) return;
+  for (SparseMatrix* derivative : {&scratch_.df_dx, &scratch_.df_dv}) *derivative = SparseMatrix(free_ * *derivative);
 }
 
 template <class Add>

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "reference/sundials/coordinates.hpp"
+#include "solver/filter.hpp"
 
 namespace drape::reference {
 
@@ -70,6 +71,8 @@ class FirstOrderOde {
   solver::State start_;  ///< with the prescribed velocities
   double t0_;
   solver::Vectors inverse_mass_;  ///< N × 3, [1/kg], 0 in the pinned coordinates
+  solver::ObliquePins oblique_;
+  solver::SparseMatrix free_;  ///< their projector; empty without any
   mutable Scratch scratch_;
 };
 

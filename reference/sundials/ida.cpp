@@ -8,6 +8,7 @@
 #include "reference/sundials/reduced_newton.hpp"
 #include "reference/sundials/session.hpp"
 #include "reference/sundials/sparse_rows.hpp"
+#include "solver/filter.hpp"
 #include "solver/linear/klu_factor.hpp"
 
 namespace drape::reference {
@@ -22,13 +23,14 @@ using solver::Vectors;
 class ResidualForm {
  public:
   ResidualForm(const solver::SplitOde& ode, const State& start, double t0)
-      : ode_(ode), coordinates_(ode), start_(prescribed_start(ode, start)), t0_(t0), n_(3 * ode.particles()) {
+      : ode_(ode), coordinates_(ode), start_(prescribed_start(ode, start)), t0_(t0), n_(3 * ode.particles()), oblique_(ode.pins) {
+    if (!oblique_.empty()) free_ = oblique_.matrix(ode.particles());
     force_ = right_ = Vectors::Zero(ode.particles(), 3);
   }
 
   int size() const { return 2 * n_ + static_cast<int>(coordinates_.pinned.size()); }
 
-  /// N × 3, zero in the free coordinates.
+  /// N × 3, zero in the free coordinates, those of oblique pins among them.
   Vectors reactions(const StateVector& y) const {
     Vectors all = Vectors::Zero(n_ / 3, 3);
     for (std::size_t k = 0; k < coordinates_.pinned.size(); ++k)
@@ -64,9 +66,12 @@ class ResidualForm {
   State start_;
   double t0_;
   int n_;
-  SparseMatrix df_dx_, df_dv_;  // kept for their memory
+  solver::ObliquePins oblique_;
+  SparseMatrix free_;                        ///< their projector; empty without any
+  SparseMatrix df_dx_, df_dv_;               // kept for their memory
+  SparseMatrix free_df_dx_, free_df_dv_;  ///< of what the equation of motion has of the forces
   WideSparseMatrix jacobian_;
-  Vectors force_, right_;
+  Vectors force_, free_force_, right_;
 };
 
 const Vectors& ResidualForm::force(double t, const State& y) {
@@ -99,7 +104,7 @@ StateVector ResidualForm::initial_derivative() {
 StateVector ResidualForm::differential() const {
   StateVector id = zero();
   id.state.x.setOnes();
-  solver::filter(ode_.pins, id.state.x);
+  for (const int i : coordinates_.pinned) id.state.x.data()[i] = 0;
   id.state.v = id.state.x;
   return id;
 }
@@ -107,7 +112,9 @@ StateVector ResidualForm::differential() const {
 void ResidualForm::residual(double t, const StateVector& y, const StateVector& dy, StateVector& r) {
   const Vectors& f = force(t, y.state);
   r.state.x = dy.state.x - y.state.v;
-  r.state.v = ode_.mass.asDiagonal() * dy.state.v - f;
+  free_force_ = f;
+  oblique_(free_force_);
+  r.state.v = ode_.mass.asDiagonal() * dy.state.v - free_force_;
   for (std::size_t k = 0; k < coordinates_.pinned.size(); ++k) {
     const int i = coordinates_.pinned[k];
     const double w = start_.v.data()[i];
@@ -119,11 +126,12 @@ void ResidualForm::residual(double t, const StateVector& y, const StateVector& d
 
 template <class Add>
 void ResidualForm::for_entries(double c, const Add& add) const {
-  const auto add_force_row = [&](int row, int i, double sign, double inertia) {
-    for (SparseMatrix::InnerIterator entry(df_dx_, i); entry; ++entry)
+  const auto add_force_row = [&](const SparseMatrix& dx, const SparseMatrix& dv, int row, int i, double sign, double inertia) {
+    for (SparseMatrix::InnerIterator entry(dx, i); entry; ++entry)
       add(row, static_cast<int>(entry.col()), sign * entry.value());
-    for_row_with_diagonal(df_dv_, i, [&](int j, double value) { add(row, n_ + j, sign * value + (j == i ? inertia : 0)); });
+    for_row_with_diagonal(dv, i, [&](int j, double value) { add(row, n_ + j, sign * value + (j == i ? inertia : 0)); });
   };
+  const SparseMatrix &free_dx = oblique_.empty() ? df_dx_ : free_df_dx_, &free_dv = oblique_.empty() ? df_dv_ : free_df_dv_;
   for (int i = 0; i < n_; ++i) {
     const bool is_free = coordinates_.unknown[i] >= 0;
     add(i, i, is_free ? c : 1.0);
@@ -131,18 +139,19 @@ void ResidualForm::for_entries(double c, const Add& add) const {
   }
   for (int i = 0; i < n_; ++i) {
     if (coordinates_.unknown[i] >= 0)
-      add_force_row(n_ + i, i, -1, c * ode_.mass[i / 3]);
+      add_force_row(free_dx, free_dv, n_ + i, i, -1, c * ode_.mass[i / 3]);
     else
       add(n_ + i, n_ + i, 1.0);
   }
   for (int row = 2 * n_; row < size(); ++row) {
-    add_force_row(row, coordinates_.pinned[static_cast<std::size_t>(row - 2 * n_)], 1, 0);
+    add_force_row(df_dx_, df_dv_, row, coordinates_.pinned[static_cast<std::size_t>(row - 2 * n_)], 1, 0);
     add(row, row, 1.0);
   }
 }
 
 const WideSparseMatrix& ResidualForm::jacobian(double t, double c, const State& y) {
   ode_.jacobian(t, y.x, y.v, df_dx_, df_dv_);
+  if (!oblique_.empty()) free_df_dx_ = free_ * df_dx_, free_df_dv_ = free_ * df_dv_;
   fill(jacobian_, size(), [&](const auto& add) { for_entries(c, add); });
   if (!std::isfinite(jacobian_.coeffs().sum()))
     throw std::runtime_error(fmt::format("the Jacobian is not finite at t = {} s", t));

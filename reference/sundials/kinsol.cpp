@@ -10,6 +10,7 @@
 
 #include "reference/sundials/coordinates.hpp"
 #include "reference/sundials/session.hpp"
+#include "solver/filter.hpp"
 
 namespace drape::reference {
 namespace {
@@ -84,6 +85,8 @@ Kinsol::Kinsol(const solver::SplitOde& ode, const Vectors& guess, const Equilibr
                                               session_.context()))),
       linear_solver_(require_created(SUNLinSol_KLU(y_.get(), matrix_.get(), session_.context()))),
       memory_(require_created(KINCreate(session_.context())), [](void* memory) { KINFree(&memory); }) {
+  if (!solver::ObliquePins(ode.pins).empty())
+    throw std::invalid_argument("an equilibrium: expected pins along axes, not along a direction of their own");
   for (std::size_t r = 0; r < coordinates_.free.size(); ++r)
     values(y_.get())[Eigen::Index(r)] = guess.data()[coordinates_.free[r]];
   void* const kinsol = memory_.get();

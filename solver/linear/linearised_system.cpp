@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/filter.hpp"
 #include "solver/linear/kernels.hpp"
 
 namespace drape::solver {
@@ -30,7 +31,13 @@ LinearisedSystem::LinearisedSystem(const SplitOde& ode)
       klu_(ode.work->counter("klu_analyses", "symbolic analyses by KLU of the matrix with the exact Jacobian")),
       work_(*ode.work) {
   for (const Pin& pin : ode.pins)
-    for (int c = 0; c < 3; ++c) pinned_[3 * pin.particle + c] = pin.fixed[c];
+    for (int c = 0; c < 3; ++c) pinned_[3 * pin.particle + c] = pin.fixed(c);
+  const ObliquePins oblique(ode.pins);
+  if (oblique.empty()) return;
+  free_ = oblique.matrix(ode.particles());
+  SparseMatrix identity(free_.rows(), free_.cols());
+  identity.setIdentity();
+  held_ = thrice(ode.mass).asDiagonal() * SparseMatrix(identity - free_);
 }
 
 /// Row by row, which costs next to nothing beside the factors, whatever the patterns of the two derivatives.
@@ -53,6 +60,7 @@ void LinearisedSystem::merge_derivatives() {
     }
   }
   A_.finalize();
+  if (free_.nonZeros() > 0) A_ = SparseMatrix(free_ * A_ * free_) + held_;
 }
 
 Outcome LinearisedSystem::make(double gamma, double t, const State& y) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/filter.hpp"
 #include "solver/linear/kernels.hpp"
 
 namespace drape::solver {
@@ -53,7 +54,8 @@ PhiFunctions::PhiFunctions(const SplitOde& ode)
       exponential_(most_dimensions + 1),
       work_(*ode.work) {
   for (const Pin& pin : ode.pins)
-    for (int c = 0; c < 3; ++c) pinned_[3 * pin.particle + c] = pin.fixed[c];
+    for (int c = 0; c < 3; ++c) pinned_[3 * pin.particle + c] = pin.fixed(c);
+  if (const ObliquePins oblique(ode.pins); !oblique.empty()) free_ = oblique.matrix(ode.particles());
 }
 
 // With p = θ/h M^½ x and q = M^½ v, hJ becomes (0 θ; h²/θ M^-½ K M^-½, h M^-½ D M^-½): undamped springs make it nearly
@@ -62,6 +64,10 @@ Outcome PhiFunctions::linearise(double h, double t, const State& y) {
   h_ = h;
   clear();
   ode_.jacobian(t, y.x, y.v, stiffness_, damping_);
+  if (free_.nonZeros() > 0) {
+    stiffness_ = SparseMatrix(free_ * stiffness_);
+    damping_ = SparseMatrix(free_ * damping_);
+  }
   const double stiffest = scale_entries(stiffness_, h * h, roots_, pinned_);
   const double decay = scale_entries(damping_, h, roots_, pinned_);
   if (!std::isfinite(stiffest + decay)) return Outcome::not_finite;

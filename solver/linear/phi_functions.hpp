@@ -83,6 +83,7 @@ class PhiFunctions {
   SparseMatrix stiffness_, damping_;  ///< h²/θ M^-½ ∂f/∂x M^-½ and h M^-½ ∂f/∂v M^-½, 3N × 3N
   Eigen::VectorXd roots_;             ///< of the masses, 3N
   std::vector<bool> pinned_;          ///< 3N
+  SparseMatrix free_;                 ///< projector on the directions that oblique pins leave; or empty
   Eigen::MatrixXd inputs_;            ///< 6N × most_inputs, scaled as states are
   Eigen::MatrixXd basis_;             ///< 6N + most_inputs rows: scaled states, and the powers of c that the inputs go with
   Eigen::MatrixXd H_, projected_;     ///< the equation in the space, and with e_1 appended

@@ -1,3 +1,4 @@
+#include "solver/filter.hpp"
 #include "solver/linear/kernels.hpp"
 #include "solver/methods/sub_steps.hpp"
 #include "solver/stability.hpp"
@@ -47,6 +48,7 @@ bool bridson_sub_steps(Step& s, double tau, double count) {
     multiply(s.ode.damping, ahead, delta);
     f -= delta;
   }
+  ObliquePins(s.ode.pins)(f);
   y.v.array() += (0.5 * tau) * weight.array() * f.array();
   return true;
 }

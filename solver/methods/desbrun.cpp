@@ -6,6 +6,7 @@
 #include <array>
 #include <limits>
 
+#include "solver/filter.hpp"
 #include "solver/linear/kernels.hpp"
 #include "solver/methods/constant_matrix.hpp"
 
@@ -18,6 +19,7 @@ constexpr int most_inverted = 5000;
 /// A and its inverses, as dense matrices: one for each coordinate, those with the same pins once.
 struct DenseInverses {
   ConstantMatrix A;
+  ObliquePins oblique;  ///< they hold what A⁻¹ gives, not what it inverts
   std::vector<std::vector<bool>> pinned;  ///< of each inverse, which particles
   std::vector<Eigen::MatrixXd> inverses;
   std::array<int, 3> of_coordinate{};
@@ -28,11 +30,11 @@ struct DenseInverses {
   void invert(int particles);
 };
 
-DenseInverses::DenseInverses(const SplitOde& ode) : A(ode), free_mass(ode.mass) {
+DenseInverses::DenseInverses(const SplitOde& ode) : A(ode), oblique(ode.pins), free_mass(ode.mass) {
   for (const Pin& pin : ode.pins) free_mass[pin.particle] = 0;
   for (int c = 0; c < 3; ++c) {
     std::vector<bool> mine(ode.particles(), false);
-    for (const Pin& pin : ode.pins) mine[pin.particle] = pin.fixed[c];
+    for (const Pin& pin : ode.pins) mine[pin.particle] = pin.fixed(c);
     const auto known = std::ranges::find(pinned, mine);
     of_coordinate[c] = static_cast<int>(known - pinned.begin());
     if (known == pinned.end()) pinned.push_back(mine);
@@ -71,6 +73,7 @@ void multiply_by_inverse(Step& s, DenseInverses& dense) {
     const Eigen::MatrixXd& inverse = dense.inverses[dense.of_coordinate[c]];
     s.scratch.av.col(c).noalias() = inverse * r.col(c);
   }
+  dense.oblique(s.scratch.av);
   v1 = y0.v + s.scratch.av;
   ++dense.A.work().updates;
   ++s.result.updates;

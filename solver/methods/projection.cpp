@@ -57,6 +57,7 @@ std::vector<CompliantConstraint> coloured(const std::vector<CompliantConstraint>
 Projection::Projection(const SplitOde& ode)
     : constraints_(coloured(listed(ode))),
       multipliers_(constraints_.size()),
+      oblique_(ode.pins),
       weights_(ode.particles(), 3),
       moves_(ode.particles(), 3),
       shares_(ode.particles()),
@@ -75,7 +76,9 @@ template <bool at_once>
 void Projection::project(const Vectors& x, Vectors& moved) {
   for (std::size_t c = 0; c < constraints_.size(); ++c) {
     const CompliantConstraint& constraint = constraints_[c];
-    const ConstraintValue now = evaluate(constraint, x);
+    ConstraintValue now = evaluate(constraint, x);
+    if (!oblique_.empty())
+      for (int k = 0; k < now.particles; ++k) now.gradients[k] = oblique_.filtered(constraint.particles[k], now.gradients[k]);
     const double alpha = constraint.compliance * per_tau_squared_;
     double denominator = alpha;
     for (int k = 0; k < now.particles; ++k) {

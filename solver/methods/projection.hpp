@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "solver/filter.hpp"
 #include "solver/split_ode.hpp"
 
 namespace drape::solver {
@@ -37,7 +38,7 @@ std::vector<CompliantConstraint> coloured(const std::vector<CompliantConstraint>
 
 /// Projects positions on the compliant constraints of an ODE   [Macklin, Müller, Chentanez 2016, (18)]: a sweep changes each
 /// multiplier by
-///   Δλ = (−C − α̃ λ)/(∇C W ∇Cᵀ + α̃),   x += W ∇Cᵀ Δλ,   α̃ = α/τ²,   W = M⁻¹, 0 in pinned coordinates.
+///   Δλ = (−C − α̃ λ)/(∇C W ∇Cᵀ + α̃),   x += W ∇Cᵀ Δλ,   α̃ = α/τ²,   W = M⁻¹, 0 in pinned directions.
 /// Only the constructor allocates.
 class Projection {
  public:
@@ -60,6 +61,7 @@ class Projection {
 
   std::vector<CompliantConstraint> constraints_;
   std::vector<double> multipliers_;  ///< λ
+  ObliquePins oblique_;
   Vectors weights_, moves_;
   std::vector<double> shares_;  ///< number of constraints of each particle
   double per_tau_squared_ = 0;

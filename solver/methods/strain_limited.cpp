@@ -40,6 +40,7 @@ double soft_step_limit(const SplitOde& ode, double t, const State& y) {
 
 bool whole_soft_step(Step& s, double substeps) {
   const Softened& softened = s.keep<Softened>();
+  const ObliquePins oblique(s.ode.pins);
   const double tau = s.h / substeps;
   Vectors &weight = s.scratch.ax, &before = s.scratch.av, &f = s.scratch.f_hat;
   State& y = s.y1();
@@ -47,14 +48,16 @@ bool whole_soft_step(Step& s, double substeps) {
   inverse_masses(s.ode, weight);
   y = s.y0();
   softened.force(s.ode, s.t, y.x, y.v, f);
+  oblique(f);
   for (double k = 1; k <= substeps; ++k) {
     y.v.array() += 0.5 * tau * weight.array() * f.array();
     y.x += tau * y.v;
     before = y.x;
-    for (int n = 0; n < s.options.sweeps && limit_strain(softened.springs, weight, y.x); ++n) {
+    for (int n = 0; n < s.options.sweeps && limit_strain(softened.springs, weight, oblique, y.x); ++n) {
     }
     y.v += (y.x - before) / tau;
     softened.force(s.ode, s.t + k * tau, y.x, y.v, f);
+    oblique(f);
     s.pass(s.t + k * tau, y);
     if (limit_narrowed(s, soft_step_limit, s.t + k * tau, y.v, alternates(s, f, weight))) return false;
     y.v.array() += 0.5 * tau * weight.array() * f.array();
@@ -64,18 +67,19 @@ bool whole_soft_step(Step& s, double substeps) {
 
 }  // namespace
 
-bool limit_strain(std::span<const CompliantConstraint> constraints, const Vectors& inverse_masses, Vectors& x) {
+bool limit_strain(std::span<const CompliantConstraint> constraints, const Vectors& inverse_masses, const ObliquePins& pins,
+                  Vectors& x) {
   bool any = false;
   for (const CompliantConstraint& spring : constraints) {
     if (spring.kind != CompliantConstraint::Kind::distance) continue;
     const ConstraintValue now = evaluate(spring, x);
     const double excess = now.C - most_strain * spring.rest;
     const auto [i, j, unused] = spring.particles;
-    const Eigen::RowVector3d n = now.gradients[1];
-    const double weight = (inverse_masses.row(i) + inverse_masses.row(j)).dot(n.cwiseAbs2());
+    const Eigen::RowVector3d n_i = pins.filtered(i, now.gradients[1]), n_j = pins.filtered(j, now.gradients[1]);
+    const double weight = inverse_masses.row(i).dot(n_i.cwiseAbs2()) + inverse_masses.row(j).dot(n_j.cwiseAbs2());
     if (excess <= 0 || weight == 0) continue;
-    x.row(i) += excess / weight * inverse_masses.row(i).cwiseProduct(n);
-    x.row(j) -= excess / weight * inverse_masses.row(j).cwiseProduct(n);
+    x.row(i) += excess / weight * inverse_masses.row(i).cwiseProduct(n_i);
+    x.row(j) -= excess / weight * inverse_masses.row(j).cwiseProduct(n_j);
     any = true;
   }
   return any;

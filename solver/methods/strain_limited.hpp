@@ -2,6 +2,7 @@
 
 #include <span>
 
+#include "solver/filter.hpp"
 #include "solver/split_ode.hpp"
 
 namespace drape::solver {
@@ -11,6 +12,6 @@ constexpr double most_strain = 0.1;
 
 /// Moves the ends of distances that are longer than 1 + most_strain times their rest length, one after the other and weighted
 /// by their inverse masses, until these are as long as that; right angles are left. Returns whether any was longer.
-bool limit_strain(std::span<const CompliantConstraint> constraints, const Vectors& inverse_masses, Vectors& x);
+bool limit_strain(std::span<const CompliantConstraint> constraints, const Vectors& inverse_masses, const ObliquePins& pins, Vectors& x);
 
 }  // namespace drape::solver

@@ -52,7 +52,9 @@ bool limit_narrowed(Step& s, SubStepLimit limit, double t, const Vectors& v, boo
 
 void inverse_masses(const SplitOde& ode, Vectors& w) {
   for (int c = 0; c < 3; ++c) w.col(c) = ode.mass.cwiseInverse();
-  filter(ode.pins, w);
+  for (const Pin& pin : ode.pins)
+    for (int c = 0; c < 3; ++c)
+      if (pin.fixed(c)) w(pin.particle, c) = 0;
 }
 
 }  // namespace drape::solver

@@ -21,7 +21,7 @@ inline bool alternates(Step& s, const Vectors& f, const Vectors& weight) {
   return s.sub_stepping.limit_watch.alarmed(f, weight);
 }
 
-/// 1/m of all coordinates, 0 of those that are pinned.
+/// 1/m of all coordinates, 0 of those that are pinned. What oblique pins hold has to be filtered as well.
 void inverse_masses(const SplitOde& ode, Vectors& w);
 
 }  // namespace drape::solver

@@ -1,3 +1,4 @@
+#include "solver/filter.hpp"
 #include "solver/methods/sub_steps.hpp"
 #include "solver/stability.hpp"
 
@@ -13,6 +14,7 @@ bool narrowed(Step& s, double t, const Vectors& f) {
 /// The state is kept at (x1, v at the middle of the sub-step), so that there is one pass over memory between two evaluations of
 /// the force. False if the limit has become narrower meanwhile.
 bool sub_steps(Step& s, double tau, double count) {
+  const ObliquePins oblique(s.ode.pins);
   const Eigen::Index n = s.scratch.ax.size();
   const double* const w = s.scratch.ax.data();
   const double* const f = s.next.f.data();
@@ -28,9 +30,11 @@ bool sub_steps(Step& s, double tau, double count) {
       ahead[i] = middle + (0.5 * tau) * a;
     }
   };
+  oblique(s.next.f);
   for (double k = 1; k <= count; ++k) {
     advance(k == 1 ? 0.5 * tau : tau);
     s.ode.force(s.t + k * tau, s.y1().x, s.scratch.av, s.next.f);
+    oblique(s.next.f);
     s.pass(s.t + k * tau, s.y1());
     if (narrowed(s, s.t + k * tau, s.next.f)) return false;
   }
@@ -41,7 +45,9 @@ bool sub_steps(Step& s, double tau, double count) {
 /// The same with the impulses of obstacles between the parts of a sub-step.
 bool sub_steps_with_impacts(Step& s, double tau, double count) {
   State& y = s.y1();
+  const ObliquePins oblique(s.ode.pins);
   Vectors& a = s.next.f;
+  oblique(a);
   a.array() *= s.scratch.ax.array();
   s.sub_stepping.impacts->push_out(0, y.x);
   s.sub_stepping.impacts->stop(tau, true, y.v, a);
@@ -51,6 +57,7 @@ bool sub_steps_with_impacts(Step& s, double tau, double count) {
     y.v += (0.5 * tau) * a;                // the half of a0
     s.scratch.av = y.v + (0.5 * tau) * a;  // the velocity that a1 is evaluated with
     s.ode.force(s.t + k * tau, y.x, s.scratch.av, a);
+    oblique(a);
     s.pass(s.t + k * tau, y);
     if (narrowed(s, s.t + k * tau, a)) return false;
     a.array() *= s.scratch.ax.array();

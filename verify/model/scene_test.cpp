@@ -61,9 +61,9 @@ TEST(Pins, MayNameParticles) {
 
 TEST(Pins, FixAllDirectionsUnlessTold) {
   PinRule rule = at("upper corners");
-  EXPECT_THAT(pins(pinned({rule})), Each(Field(&solver::Pin::fixed, ElementsAre(true, true, true))));
+  EXPECT_THAT(pins(pinned({rule})), Each(Field(&solver::Pin::held, solver::axes(true, true, true))));
   rule.directions = {false, true, false};
-  EXPECT_THAT(pins(pinned({rule})), Each(Field(&solver::Pin::fixed, ElementsAre(false, true, false))));
+  EXPECT_THAT(pins(pinned({rule})), Each(Field(&solver::Pin::held, solver::axes(false, true, false))));
 }
 
 TEST(Pins, ThatOverlapMergeDirectionsAndTheLaterVelocityWins) {
@@ -75,11 +75,46 @@ TEST(Pins, ThatOverlapMergeDirectionsAndTheLaterVelocityWins) {
   const auto all = pins(pinned({left, lower}));
   ASSERT_EQ(all.size(), 6u);
   EXPECT_EQ(all[0].particle, 0);
-  EXPECT_THAT(all[0].fixed, Each(true));
+  EXPECT_TRUE(all[0].all());
   EXPECT_EQ(all[0].velocity, Eigen::Vector3d(1, 5, 6));
   EXPECT_EQ(all[1].velocity, Eigen::Vector3d(0, 5, 6));
   EXPECT_EQ(all[4].velocity, Eigen::Vector3d(1, 2, 0));
   EXPECT_EQ(compile(pinned({left, lower})).plan.pinned_dofs, 3 + 3 * 2 + 2 * 2);
+}
+
+TEST(Pins, HoldADirectionOfTheirOwn) {
+  PinRule rule = at("upper corners");
+  rule.direction = {3, 0, 4};
+  rule.velocity = {5, 7, 0};  // of which 3 are along it
+  for (const solver::Pin& pin : pins(pinned({rule}))) {
+    EXPECT_TRUE(pin.held.isApprox(Eigen::Vector3d(0.6, 0, 0.8) * Eigen::RowVector3d(0.6, 0, 0.8), 1e-15)) << pin.held;
+    EXPECT_TRUE(pin.prescribed().isApprox(Eigen::Vector3d(1.8, 0, 2.4), 1e-15)) << pin.prescribed();
+    EXPECT_TRUE(pin.oblique());
+    EXPECT_FALSE(pin.fixed(0) || pin.fixed(1) || pin.fixed(2) || pin.all());
+  }
+  EXPECT_EQ(compile(pinned({rule})).plan.pinned_dofs, 2);
+  rule.direction = {0, -2, 0};
+  for (const solver::Pin& pin : pins(pinned({rule}))) EXPECT_FALSE(pin.oblique()) << "that of an axis";
+}
+
+/// Of directions that are not orthogonal both velocities are kept; what is held by the later rule is not held again.
+TEST(Pins, OfSeveralDirectionsAllHold) {
+  PinRule first = at("left edge"), second = at("left edge");
+  first.direction = {1, 1, 0};
+  first.velocity = {2, 0, 0};
+  second.directions = {true, false, false};
+  second.velocity = {5, 0, 0};
+  for (const solver::Pin& pin : pins(pinned({first, second}))) {
+    EXPECT_TRUE(pin.held.isApprox(Eigen::Matrix3d(solver::axes(true, true, false)), 1e-15)) << pin.held;
+    EXPECT_NEAR(pin.velocity[0], 5, 1e-14);
+    EXPECT_NEAR(pin.velocity[0] + pin.velocity[1], 2, 1e-14);
+  }
+  second.direction = {-2, -2, 0};
+  second.velocity = {0, 8, 0};
+  for (const solver::Pin& pin : pins(pinned({first, second}))) {
+    EXPECT_NEAR(pin.held.trace(), 1, 1e-15);
+    EXPECT_TRUE(pin.prescribed().isApprox(Eigen::Vector3d(4, 4, 0), 1e-14)) << pin.prescribed();
+  }
 }
 
 TEST(Start, IsFlatInItsPlaneStretchedAndMovesAsAWhole) {

@@ -161,7 +161,7 @@ SplitOde coordinate(double sign) {
     df_dv.resize(3, 3);
     df_dx.insert(0, 0) = sign;
   };
-  ode.pins = {{.particle = 0, .fixed = {false, true, true}}};
+  ode.pins = {{.particle = 0, .held = solver::axes(false, true, true)}};
   return ode;
 }
 

@@ -143,13 +143,13 @@ TEST_P(IntegratorWith, EndsWhereAStepFailsAndSaysWhy) {
 TEST_P(IntegratorWith, KeepsPinnedCoordinatesOnTheirWay) {
   State start = problem.start;
   for (const Pin& pin : problem.ode.pins)
-    for (int c = 0; c < 3; ++c) start.v(pin.particle, c) += pin.fixed[c] ? 7 : 0;  // replaced by the prescribed velocity
+    for (int c = 0; c < 3; ++c) start.v(pin.particle, c) += pin.fixed(c) ? 7 : 0;  // replaced by the prescribed velocity
   Integrator integrator(problem.ode, method, tight(), start, start_time);
   ASSERT_EQ(integrate(integrator, t_end, 0.03).outcome, Outcome::success);
   const State exact = problem.exact(t_end);
   for (const Pin& pin : problem.ode.pins)
     for (int c = 0; c < 3; ++c) {
-      if (!pin.fixed[c]) continue;
+      if (!pin.fixed(c)) continue;
       EXPECT_NEAR(integrator.state().x(pin.particle, c), exact.x(pin.particle, c), 1e-13);
       EXPECT_EQ(integrator.state().v(pin.particle, c), pin.velocity[c]);
     }

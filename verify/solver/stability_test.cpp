@@ -101,7 +101,7 @@ double dense_eigenvalue(const solver::SplitOde& ode, double t, const State& y, V
   }
   for (const Pin& pin : ode.pins)
     for (int c = 0; c < 3; ++c)
-      if (pin.fixed[c]) J.row(3 * pin.particle + c).setZero(), J.col(3 * pin.particle + c).setZero();
+      if (pin.fixed(c)) J.row(3 * pin.particle + c).setZero(), J.col(3 * pin.particle + c).setZero();
   return base::eigenvalues(J).cwiseAbs().maxCoeff();
 }
 

@@ -92,7 +92,7 @@ Problem towed_particle() {
   const double m = 0.1, k = 15, u = 0.5, w = -0.25, f = std::sqrt(k / m);
   SplitOde ode = linear_ode(Eigen::VectorXd::Constant(2, m), row_of_springs(2, k), SparseMatrix(2, 2));
   ode.pins = {Pin{.particle = 1, .velocity = {u, 0, 0}},
-              Pin{.particle = 0, .fixed = {false, true, true}, .velocity = {99, 0, w}}};
+              Pin{.particle = 0, .held = solver::axes(false, true, true), .velocity = {99, 0, w}}};
   const auto exact = [=](double t) {
     State s{Vectors::Zero(2, 3), Vectors::Zero(2, 3)};
     s.x.row(0) << u * t - u / f * std::sin(f * t), 0.2, w * t;

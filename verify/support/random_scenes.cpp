@@ -62,6 +62,7 @@ void choose_pins(Dice& dice, std::vector<model::PinRule>& pins) {
   if (!dice.one_in(5)) pins.push_back({.where = places[dice.up_to(5)], .particles = {}});
   if (dice.one_in(3)) pins.push_back({.where = "right edge", .particles = {}, .velocity = dice.vector(0.1, 3)});
   if (dice.one_in(6) && !pins.empty()) pins.back().directions[static_cast<std::size_t>(dice.up_to(3))] = false;
+  if (dice.one_in(6) && !pins.empty()) pins.back().direction = dice.vector(0.1, 3);
 }
 
 void choose_obstacle(Dice& dice, Scene& scene) {

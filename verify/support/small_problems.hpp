@@ -64,6 +64,7 @@ Problem free_particles();
 Problem pinned_particle();
 Problem towed_particle();
 Problem partly_pinned();
+Problem obliquely_pinned();
 
 /// A problem whose force is not finite after a time, and whose matrix is not definite for long steps, as some methods look at
 /// the force only at the beginning of a step.

@@ -313,7 +313,7 @@ std::vector<ClaimCase> equilibrium_differs_by_squares() {
         model::compile(with("tension", {{"forces.gravity", gravity}, {"material.tension", fmt::format("{}", pulled.modulus)}}));
     std::vector<solver::Pin> pins(cloth.start.x.rows());
     for (int i = 0; i < cloth.ode.particles(); ++i)
-      pins[i] = {.particle = i, .fixed = {false, false, true}};  // springs would buckle
+      pins[i] = {.particle = i, .held = solver::axes(false, false, true)};  // springs would buckle
     for (const solver::Pin& pin : cloth.ode.pins) pins[pin.particle] = pin;
     cloth.ode.pins = std::move(pins);
     solver::Vectors guess = cloth.start.x;

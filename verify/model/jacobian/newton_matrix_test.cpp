@@ -32,7 +32,7 @@ Eigen::MatrixXd exact(const model::Cloth& cloth, const State& y) {
   Eigen::MatrixXd J = -gamma * gamma * Eigen::MatrixXd(dx) - gamma * Eigen::MatrixXd(dv);
   for (const solver::Pin& pin : cloth.ode.pins)
     for (int a = 0; a < 3; ++a)
-      if (pin.fixed[a]) J.row(3 * pin.particle + a).setZero(), J.col(3 * pin.particle + a).setZero();
+      if (pin.fixed(a)) J.row(3 * pin.particle + a).setZero(), J.col(3 * pin.particle + a).setZero();
   J.diagonal() += cloth.ode.mass.replicate(1, 3).reshaped<Eigen::RowMajor>();
   return J;
 }

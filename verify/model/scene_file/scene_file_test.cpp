@@ -73,6 +73,9 @@ where = "left edge"
 particles = [[3, 0], [3, 2]]
 directions = "xz"
 velocity = [0.05, 0, 1]
+[[pins]]
+where = "right edge"
+direction = [3, 0, -4]
 [[obstacles]]
 shape = "plane"
 [[obstacles]]
@@ -171,7 +174,7 @@ void expect_complete(const Scene& scene) {
   EXPECT_EQ(scene.contact.relaxation, 1);
   EXPECT_EQ(scene.contact.response, model::ResponseKind::reaction);
   EXPECT_EQ(scene.contact.reaction_time, 0.01);
-  ASSERT_EQ(scene.pins.size(), 2u);
+  ASSERT_EQ(scene.pins.size(), 3u);
   EXPECT_EQ(scene.pins[0].where, "left edge");
   EXPECT_THAT(scene.pins[0].directions, ElementsAre(true, true, true));
   EXPECT_EQ(scene.pins[0].velocity, Eigen::Vector3d(0, 0, 0));
@@ -179,6 +182,8 @@ void expect_complete(const Scene& scene) {
   EXPECT_THAT(scene.pins[1].particles, ElementsAre(Pair(3, 0), Pair(3, 2)));
   EXPECT_THAT(scene.pins[1].directions, ElementsAre(true, false, true));
   EXPECT_EQ(scene.pins[1].velocity, Eigen::Vector3d(0.05, 0, 1));
+  EXPECT_FALSE(scene.pins[1].oblique());
+  EXPECT_EQ(scene.pins[2].direction, Eigen::Vector3d(3, 0, -4));
 }
 
 TEST(SceneFile, SaysWhatTheSceneIs) { expect_complete(parsed(complete)); }
@@ -258,7 +263,7 @@ TEST(SceneFile, IsTheSameAfterItsRowsAreReadAgain) {
 TEST(SceneFile, HasARowForEveryKeyAndEveryEntryOfAList) {
   std::vector<std::string> keys;
   for (const model::KeyValue& row : model::key_values(parsed(complete))) keys.push_back(row.key);
-  EXPECT_EQ(std::ranges::count(keys, "pins"), 2);
+  EXPECT_EQ(std::ranges::count(keys, "pins"), 3);
   EXPECT_EQ(std::ranges::count(keys, "obstacles"), 4);
   const std::size_t empty = 22;  // sides, a cut, curves, tables, elements of relaxation, panels, seams, phases
   EXPECT_EQ(keys.size(), model::scene_keys().size() + 1 + 3 - empty);

@@ -153,7 +153,7 @@ TEST(Cuts, AlongLinesLeaveRectangles) {
     EXPECT_LE(largest(moved - f), rounding * largest(f)) << force.name;
     EXPECT_EQ(largest(left), 0) << force.name;
     EXPECT_EQ(std::ssize(ode.pins), whole.particles() - rectangle.particles());
-    for (const solver::Pin& pin : ode.pins) EXPECT_TRUE(pin.fixed[0] && pin.fixed[1] && pin.fixed[2]);
+    for (const solver::Pin& pin : ode.pins) EXPECT_TRUE(pin.fixed(0) && pin.fixed(1) && pin.fixed(2));
   }
 }
 

@@ -161,7 +161,7 @@ TEST_P(FirstOrder, LeavesPinnedCoordinatesTheirVelocities) {
   ode.derivative(t, state(y), dy);
   for (const solver::Pin& pin : problem.ode.pins)
     for (int c = 0; c < 3; ++c) {
-      if (!pin.fixed[c]) continue;
+      if (!pin.fixed(c)) continue;
       EXPECT_EQ(dy.x(pin.particle, c), pin.velocity[c]);
       EXPECT_EQ(dy.v(pin.particle, c), 0);
     }

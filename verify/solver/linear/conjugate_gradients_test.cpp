@@ -105,11 +105,11 @@ TEST(ConjugateGradients, RememberTheDirectionsBefore) {
 }
 
 TEST_P(ConjugateGradientsWith, SolveInTheFreeCoordinates) {
-  const std::vector<Pin> pins = {{.particle = 0, .fixed = {true, false, false}},
-                                 {.particle = 3, .fixed = {false, true, true}},
-                                 {.particle = 7, .fixed = {true, false, true}},
-                                 {.particle = 8, .fixed = {false, false, true}},
-                                 {.particle = 19, .fixed = {true, true, false}}};
+  const std::vector<Pin> pins = {{.particle = 0, .held = solver::axes(true, false, false)},
+                                 {.particle = 3, .held = solver::axes(false, true, true)},
+                                 {.particle = 7, .held = solver::axes(true, false, true)},
+                                 {.particle = 8, .held = solver::axes(false, false, true)},
+                                 {.particle = 19, .held = solver::axes(true, true, false)}};
   const int n = 20;
   const SparseMatrix A = sheet(5, 4);
   Vectors b = noise(n, 9);
@@ -123,7 +123,7 @@ TEST_P(ConjugateGradientsWith, SolveInTheFreeCoordinates) {
   for (const Pin& pin : pins)
     for (int c = 0; c < 3; ++c) {
       const int k = 3 * pin.particle + c;
-      if (!pin.fixed[c]) continue;
+      if (!pin.fixed(c)) continue;
       dense.row(k).setZero(), dense.col(k).setZero();
       dense(k, k) = 1;
     }
@@ -136,7 +136,7 @@ TEST_P(ConjugateGradientsWith, SolveInTheFreeCoordinates) {
 
 TEST_P(ConjugateGradientsWith, TellHowTheyFailed) {
   const SparseMatrix A = definite(400, 0.01, 7), indefinite = A - 3 * diagonal(Eigen::VectorXd::Ones(400));
-  const std::vector<Pin> pins = {{.particle = 5, .fixed = {true, false, false}}};  // or a direct solver would not iterate
+  const std::vector<Pin> pins = {{.particle = 5, .held = solver::axes(true, false, false)}};  // or a direct solver would not iterate
   Vectors b = noise(400, 9);
   filter(pins, b);
   Vectors r = b, d(400, 3);

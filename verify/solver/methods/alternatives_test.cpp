@@ -208,11 +208,11 @@ TEST(StrainLimiting, CutsASpringByItsInverseMasses) {
   weights.row(0).setConstant(1);
   weights.row(1).setConstant(3);
   const std::vector<CompliantConstraint> spring{{CompliantConstraint::Kind::distance, {0, 1, 1}, 1, 1}};
-  EXPECT_TRUE(solver::limit_strain(spring, weights, x));
+  EXPECT_TRUE(solver::limit_strain(spring, weights, solver::ObliquePins(std::vector<Pin>()), x));
   EXPECT_NEAR(x(0, 0), 0.1, 1e-15);
   EXPECT_NEAR(x(1, 0), 1.2, 1e-15);
   x(1, 0) = 1.19;
-  EXPECT_FALSE(solver::limit_strain(spring, weights, x));
+  EXPECT_FALSE(solver::limit_strain(spring, weights, solver::ObliquePins(std::vector<Pin>()), x));
 }
 
 /// A hung sheet, pulled to one and a half of its size, that has been cut by this number of sweeps in an order.
@@ -223,7 +223,7 @@ Vectors cut(const model::Cloth& cloth, unsigned order, int sweeps) {
   for (int c = 0; c < 3; ++c) weights.col(c) = cloth.ode.mass.cwiseInverse();
   filter(cloth.ode.pins, weights);
   for (const Pin& pin : cloth.ode.pins) x.row(pin.particle) = cloth.start.x.row(pin.particle);
-  for (int k = 0; k < sweeps; ++k) solver::limit_strain(constraints, weights, x);
+  for (int k = 0; k < sweeps; ++k) solver::limit_strain(constraints, weights, solver::ObliquePins(cloth.ode.pins), x);
   return x;
 }
 

@@ -72,7 +72,7 @@ Eigen::MatrixXd dense_jacobian(const Problem& problem, double h, const State& y)
   J.bottomRightCorner(n, n) = inverse_masses.asDiagonal() * Eigen::MatrixXd(D);
   for (const Pin& pin : problem.ode.pins)
     for (int c = 0; c < 3; ++c)
-      if (pin.fixed[c]) J.row(n + 3 * pin.particle + c).setZero();
+      if (pin.fixed(c)) J.row(n + 3 * pin.particle + c).setZero();
   return h * J;
 }
 

@@ -285,7 +285,7 @@ TEST(Verlet, IsTheRecurrenceOfStoermerWithoutDamping) {
 SplitOde ode_with_an_explicit_part() {
   SplitOde ode = linear_ode(0.5, true);
   const SparseMatrix K = laplacian(&Spring::k), D = laplacian(&Spring::d);
-  const Pin pin{.particle = 2, .fixed = {true, false, true}, .velocity = {0.3, 0, -0.2}};
+  const Pin pin{.particle = 2, .held = solver::axes(true, false, true), .velocity = {0.3, 0, -0.2}};
   ode.pins = {pin};
   ode.force = [K, D](double t, const Vectors& x, const Vectors& v, Vectors& f) {
     f = K * x + D * v + std::sin(3 * t) * Vectors::Ones(particles, 3);

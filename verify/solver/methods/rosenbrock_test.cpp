@@ -100,7 +100,7 @@ Eigen::MatrixXd filtered(const SplitOde& ode, double gamma, const Eigen::MatrixX
   A.diagonal() += solver::thrice(ode.mass);
   for (const Pin& pin : ode.pins)
     for (int c = 0; c < 3; ++c) {
-      if (!pin.fixed[c]) continue;
+      if (!pin.fixed(c)) continue;
       const int i = 3 * pin.particle + c;
       A.row(i).setZero();
       A.col(i).setZero();
@@ -133,7 +133,7 @@ TEST(LinearisedSystem, IsSolvedInTheFreeCoordinatesAlsoWithAnotherPattern) {
     problem.ode.jacobian(start_time, y.x, y.v, K, D);
     EXPECT_LE(left_over(problem.ode, gamma, K, D, r, k), 1e-13) << gamma;
     for (const Pin& pin : problem.ode.pins)
-      for (int c = 0; c < 3; ++c) EXPECT_TRUE(!pin.fixed[c] || k.v(pin.particle, c) == 0);
+      for (int c = 0; c < 3; ++c) EXPECT_TRUE(!pin.fixed(c) || k.v(pin.particle, c) == 0);
   }
   EXPECT_EQ(problem.ode.work->count("factorisations"), 2);
   EXPECT_EQ(problem.ode.work->count("updates"), 2);
