@@ -182,7 +182,7 @@ class HeldDirections {
     const Eigen::Vector3d n = rest / length;
     pin_.velocity += (velocity - pin_.velocity.dot(d)) / length * n;
     pin_.held += n * n.transpose();
-    if (++count_ == 3) pin_.held.setIdentity();
+    if (++count_ == 3) pin_.held.setIdentity();  // not only to round-off
   }
 
   solver::Pin pin(int node) const { return {node, pin_.held, pin_.velocity}; }

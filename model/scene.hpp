@@ -26,9 +26,9 @@ struct PinRule {
   std::vector<std::pair<int, int>> particles;  ///< (a, b) along u and v, if `where` is empty
   std::array<bool, 3> directions{true, true, true};
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();  ///< instead of `directions` a single one, unless it is 0
-  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< [m/s]
-  Eigen::Vector3d circle = Eigen::Vector3d::Zero();    ///< x, y and radius on the pattern [m], if nothing else is named
-  std::vector<PathPoint> path = {};                    ///< instead of a velocity; times ascend, and between them it is uniform
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();   ///< [m/s]
+  Eigen::Vector3d circle = Eigen::Vector3d::Zero();     ///< x, y and radius on the pattern [m], if nothing else is named
+  std::vector<PathPoint> path = {};                     ///< instead of a velocity; times ascend, and between them it is uniform
 
   /// Whether it has a direction of its own instead of those of axes.
   bool oblique() const { return !direction.isZero(0); }
@@ -142,8 +142,8 @@ std::vector<int> pinned_particles(const Grid& grid, const PinRule& rule);
 /// The grid whose particles a rule names. Throws std::invalid_argument if there is no such panel.
 const Grid& pinned_grid(const Scene& scene, const PinRule& rule);
 
-/// The pins of a scene at its start, at most one for a node. Later rules win where directions overlap; of those that are not orthogonal, both hold. What a cut leaves
-/// outside is pinned where it is.
+/// The pins of a scene at its start, at most one for a node. Later rules win where directions overlap; of those that are not
+/// orthogonal, both hold. What a cut leaves outside is pinned where it is.
 std::vector<solver::Pin> pins(const Scene& scene);
 
 /// What finds the contacts of its obstacles. Throws as Contacts does.

@@ -21,7 +21,7 @@ struct Pin {
   Eigen::Matrix3d held = Eigen::Matrix3d::Identity();  ///< orthogonal projector on these directions
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< [m/s], used in these directions
 
-  bool all() const { return held == Eigen::Matrix3d::Identity(); }
+  bool all() const { return held(0, 0) == 1 && held(1, 1) == 1 && held(2, 2) == 1; }  // a projector of trace 3
   /// Whether the coordinate c is prescribed by itself.
   bool fixed(int c) const { return held.col(c) == Eigen::Vector3d::Unit(c); }
   /// Whether directions are held that are not those of axes.

@@ -76,7 +76,8 @@ Json particles(const model::Scene& scene, const model::Cloth& cloth) {
 Json pins(const model::Cloth& cloth, std::span<const double> times) {
   Json all = Json::array();
   for (const solver::Pin& pin : cloth.ode.pins) {
-    Json entry{{"particle", pin.particle}, {"fixed", {pin.fixed(0), pin.fixed(1), pin.fixed(2)}}, {"velocity", list(pin.velocity)}};
+    Json entry{
+        {"particle", pin.particle}, {"fixed", {pin.fixed(0), pin.fixed(1), pin.fixed(2)}}, {"velocity", list(pin.velocity)}};
     if (!pin.velocity.isZero(0)) {
       entry["positions"] = Json::array();  // at the times of the frames; null in free directions
       for (const double t : times) {

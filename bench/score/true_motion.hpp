@@ -23,8 +23,8 @@ struct TrueMotion {
   std::vector<double> uncertainty;  ///< [m], root mean square over the particles, at these times
 };
 
-/// Throws std::invalid_argument if a scene has what its description for other programs cannot say: several panels, or pins along
-/// directions that are not those of axes.
+/// Throws std::invalid_argument if a scene has what its description for other programs cannot say: several panels, or pins
+/// along directions that are not those of axes.
 void require_describable(const model::Scene& scene);
 
 /// `times` [s] ascend from 0 to at most the scene's end. `agreement`: as References has it. Throws reference::NotCertified

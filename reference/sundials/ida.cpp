@@ -23,7 +23,12 @@ using solver::Vectors;
 class ResidualForm {
  public:
   ResidualForm(const solver::SplitOde& ode, const State& start, double t0)
-      : ode_(ode), coordinates_(ode), start_(prescribed_start(ode, start)), t0_(t0), n_(3 * ode.particles()), oblique_(ode.pins) {
+      : ode_(ode),
+        coordinates_(ode),
+        start_(prescribed_start(ode, start)),
+        t0_(t0),
+        n_(3 * ode.particles()),
+        oblique_(ode.pins) {
     if (!oblique_.empty()) free_ = oblique_.matrix(ode.particles());
     force_ = right_ = Vectors::Zero(ode.particles(), 3);
   }
@@ -67,8 +72,8 @@ class ResidualForm {
   double t0_;
   int n_;
   solver::ObliquePins oblique_;
-  SparseMatrix free_;                        ///< their projector; empty without any
-  SparseMatrix df_dx_, df_dv_;               // kept for their memory
+  SparseMatrix free_;                     ///< their projector; empty without any
+  SparseMatrix df_dx_, df_dv_;            // kept for their memory
   SparseMatrix free_df_dx_, free_df_dv_;  ///< of what the equation of motion has of the forces
   WideSparseMatrix jacobian_;
   Vectors force_, free_force_, right_;

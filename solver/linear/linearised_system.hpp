@@ -42,7 +42,7 @@ class LinearisedSystem {
   void merge_derivatives();
 
   const SplitOde& ode_;
-  std::vector<bool> pinned_;        ///< 3N
+  std::vector<bool> pinned_;  ///< 3N
   SparseMatrix free_, held_;  ///< projector on the directions that oblique pins leave, and the mass in theirs; or empty
   SparseMatrix df_dx_, df_dv_, A_;
   Vectors right_;

@@ -19,7 +19,7 @@ constexpr int most_inverted = 5000;
 /// A and its inverses, as dense matrices: one for each coordinate, those with the same pins once.
 struct DenseInverses {
   ConstantMatrix A;
-  ObliquePins oblique;  ///< they hold what A⁻¹ gives, not what it inverts
+  ObliquePins oblique;                    ///< they hold what A⁻¹ gives, not what it inverts
   std::vector<std::vector<bool>> pinned;  ///< of each inverse, which particles
   std::vector<Eigen::MatrixXd> inverses;
   std::array<int, 3> of_coordinate{};

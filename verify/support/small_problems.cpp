@@ -34,8 +34,8 @@ struct Motion {
   }
 };
 
-/// Waves of different frequencies in the free directions, the prescribed velocity in the pinned ones. Where these are oblique all
-/// coordinates have one phase, so that they move along a line.
+/// Waves of different frequencies in the free directions, the prescribed velocity in the pinned ones. Where these are oblique
+/// all coordinates have one phase, so that they move along a line.
 Motion motion(const std::vector<Pin>& pins) {
   Motion x{noise(particles, 1), 0.2 * noise(particles, 2), {}};
   x.waves = {{1.3, 0.4 * noise(particles, 3), 3 * noise(particles, 4)},
@@ -157,15 +157,17 @@ Problem pinned_particle() { return manufactured("pinned", {Pin{.particle = 3}});
 Problem towed_particle() { return manufactured("towed", {Pin{.particle = 0, .velocity = {0.5, -0.3, 0.2}}}); }
 
 Problem partly_pinned() {
-  return manufactured("partly_pinned", {Pin{.particle = 1, .held = solver::axes(true, false, false)},
-                                        Pin{.particle = 4, .held = solver::axes(false, true, true), .velocity = {99, 0.4, -0.2}}});
+  return manufactured("partly_pinned",
+                      {Pin{.particle = 1, .held = solver::axes(true, false, false)},
+                       Pin{.particle = 4, .held = solver::axes(false, true, true), .velocity = {99, 0.4, -0.2}}});
 }
 
 Problem obliquely_pinned() {
   const Eigen::Vector3d held = Eigen::Vector3d(2, -1, 2) / 3, free = Eigen::Vector3d(1, 2, -2) / 3;
-  return manufactured("obliquely_pinned",
-                      {Pin{.particle = 1, .held = held * held.transpose(), .velocity = {0.3, 0.1, 0.2}},
-                       Pin{.particle = 4, .held = Eigen::Matrix3d::Identity() - free * free.transpose(), .velocity = {0, 0.4, 0.1}}});
+  return manufactured(
+      "obliquely_pinned",
+      {Pin{.particle = 1, .held = held * held.transpose(), .velocity = {0.3, 0.1, 0.2}},
+       Pin{.particle = 4, .held = Eigen::Matrix3d::Identity() - free * free.transpose(), .velocity = {0, 0.4, 0.1}}});
 }
 
 Problem breaking(double time) {
@@ -179,7 +181,7 @@ Problem breaking(double time) {
   return broken;
 }
 
-std::vector<Problem> problems() { 
+std::vector<Problem> problems() {
   return {free_particles(), pinned_particle(), partly_pinned(), towed_particle(), obliquely_pinned()};
 }
 

@@ -136,7 +136,8 @@ TEST_P(ConjugateGradientsWith, SolveInTheFreeCoordinates) {
 
 TEST_P(ConjugateGradientsWith, TellHowTheyFailed) {
   const SparseMatrix A = definite(400, 0.01, 7), indefinite = A - 3 * diagonal(Eigen::VectorXd::Ones(400));
-  const std::vector<Pin> pins = {{.particle = 5, .held = solver::axes(true, false, false)}};  // or a direct solver would not iterate
+  const std::vector<Pin> pins = {
+      {.particle = 5, .held = solver::axes(true, false, false)}};  // or a direct solver would not iterate
   Vectors b = noise(400, 9);
   filter(pins, b);
   Vectors r = b, d(400, 3);
