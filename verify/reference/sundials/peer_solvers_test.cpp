@@ -77,7 +77,7 @@ TEST_P(ExplicitRungeKuttaOn, FollowsTheExactMotionWithoutMatrices) {
 TEST_P(FamilyOn, BeginsWithTheStart) {
   const auto trajectory = solver.solve(problem.ode, problem.start, start_time, std::vector{start_time, start_time + 0.1}, {});
   EXPECT_EQ(trajectory.states[0].x, problem.start.x);
-  EXPECT_EQ(trajectory.states[0].v, problem.exact(start_time).v);
+  EXPECT_LE(largest(trajectory.states[0].v - problem.exact(start_time).v), 1e-15);
 }
 
 TEST_P(FamilyOn, NamesItselfAndTheReasonWhenItFails) {

@@ -90,7 +90,7 @@ TEST_P(StageOf, KeepsPinnedCoordinatesAtTheirVelocity) {
   ASSERT_EQ(c.solve().outcome, Outcome::success);
   Vectors prescribed = c.y.v;
   prescribe(c.problem.ode.pins, prescribed);
-  EXPECT_EQ(c.y.v, prescribed);
+  EXPECT_LE(largest(c.y.v - prescribed), 1e-15);
 }
 
 TEST(StageSolver, MeetsTheToleranceOfTheLoopBesideTheRightHandSide) {
