@@ -6,7 +6,6 @@
 #include <array>
 #include <limits>
 
-#include "solver/filter.hpp"
 #include "solver/linear/kernels.hpp"
 #include "solver/methods/constant_matrix.hpp"
 
@@ -19,18 +18,33 @@ constexpr int most_inverted = 5000;
 /// A and its inverses, as dense matrices: one for each coordinate, those with the same pins once.
 struct DenseInverses {
   ConstantMatrix A;
-  ObliquePins oblique;                    ///< they hold what A⁻¹ gives, not what it inverts
   std::vector<std::vector<bool>> pinned;  ///< of each inverse, which particles
   std::vector<Eigen::MatrixXd> inverses;
   std::array<int, 3> of_coordinate{};
   Eigen::VectorXd free_mass;  ///< 0 of particles with pins
+  struct Held {
+    int particle;
+    Eigen::Vector3d direction;
+  };
+  std::vector<Held> held;  ///< of oblique pins, orthonormal for each particle
+  Eigen::MatrixXd solved;  ///< (C A⁻¹ Cᵀ)⁻¹ for the components C in these directions
   Outcome outcome = Outcome::success;
+
+  /// The entry (i, j) of A⁻¹ between two directions.
+  double inverse(const Held& i, const Held& j) const {
+    double sum = 0;
+    for (int c = 0; c < 3; ++c) sum += i.direction[c] * j.direction[c] * inverses[of_coordinate[c]](i.particle, j.particle);
+    return sum;
+  }
+
+  /// What multipliers in the held directions leave of A⁻¹ r: nothing in these.
+  void hold(Vectors& dv) const;
 
   explicit DenseInverses(const SplitOde& ode);
   void invert(int particles);
 };
 
-DenseInverses::DenseInverses(const SplitOde& ode) : A(ode), oblique(ode.pins), free_mass(ode.mass) {
+DenseInverses::DenseInverses(const SplitOde& ode) : A(ode), free_mass(ode.mass) {
   for (const Pin& pin : ode.pins) free_mass[pin.particle] = 0;
   for (int c = 0; c < 3; ++c) {
     std::vector<bool> mine(ode.particles(), false);
@@ -39,6 +53,21 @@ DenseInverses::DenseInverses(const SplitOde& ode) : A(ode), oblique(ode.pins), f
     of_coordinate[c] = static_cast<int>(known - pinned.begin());
     if (known == pinned.end()) pinned.push_back(mine);
   }
+  for (const Pin& pin : ode.pins) {
+    if (!pin.oblique()) continue;
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> found(pin.held - axes(pin.fixed(0), pin.fixed(1), pin.fixed(2)));
+    for (int k = 0; k < 3; ++k)
+      if (found.eigenvalues()[k] > 0.5) held.push_back({pin.particle, found.eigenvectors().col(k)});
+  }
+}
+
+void DenseInverses::hold(Vectors& dv) const {
+  Eigen::VectorXd components(std::ssize(held));
+  for (Eigen::Index k = 0; k < components.size(); ++k) components[k] = held[k].direction.dot(dv.row(held[k].particle));
+  const Eigen::VectorXd multipliers = solved * components;
+  for (Eigen::Index k = 0; k < components.size(); ++k)
+    for (int c = 0; c < 3; ++c)
+      dv.col(c) -= multipliers[k] * held[k].direction[c] * inverses[of_coordinate[c]].col(held[k].particle);
 }
 
 /// Rows and columns of pinned particles are those of the identity, so that what is 0 there remains 0.
@@ -58,6 +87,9 @@ void DenseInverses::invert(int particles) {
     if (factor.info() != Eigen::Success) outcome = Outcome::breakdown;
     inverses.emplace_back(factor.solve(Eigen::MatrixXd::Identity(particles, particles)));
   }
+  const Eigen::Index n = std::ssize(held);
+  solved = Eigen::MatrixXd::NullaryExpr(n, n, [this](Eigen::Index i, Eigen::Index j) { return inverse(held[i], held[j]); });
+  if (n > 0) solved = Eigen::LLT<Eigen::MatrixXd>(solved).solve(Eigen::MatrixXd::Identity(n, n));
 }
 
 /// v1 of IMEX Euler by A⁻¹.
@@ -73,7 +105,7 @@ void multiply_by_inverse(Step& s, DenseInverses& dense) {
     const Eigen::MatrixXd& inverse = dense.inverses[dense.of_coordinate[c]];
     s.scratch.av.col(c).noalias() = inverse * r.col(c);
   }
-  dense.oblique(s.scratch.av);
+  if (!dense.held.empty()) dense.hold(s.scratch.av);
   v1 = y0.v + s.scratch.av;
   ++dense.A.work().updates;
   ++s.result.updates;

@@ -99,9 +99,12 @@ double dense_eigenvalue(const solver::SplitOde& ode, double t, const State& y, V
     const Vectors change = ode.mass.cwiseInverse().asDiagonal() * (ahead - behind) / (2 * step);
     J.col(k) = Eigen::VectorXd::Map(change.data(), n);
   }
-  for (const Pin& pin : ode.pins)
-    for (int c = 0; c < 3; ++c)
-      if (pin.fixed(c)) J.row(3 * pin.particle + c).setZero(), J.col(3 * pin.particle + c).setZero();
+  for (const Pin& pin : ode.pins) {
+    auto rows = J.middleRows<3>(3 * pin.particle);
+    rows = (pin.free() * rows).eval();
+    auto columns = J.middleCols<3>(3 * pin.particle);
+    columns = (columns * pin.free()).eval();
+  }
   return base::eigenvalues(J).cwiseAbs().maxCoeff();
 }
 

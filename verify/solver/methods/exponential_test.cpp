@@ -70,9 +70,10 @@ Eigen::MatrixXd dense_jacobian(const Problem& problem, double h, const State& y)
   J.topRightCorner(n, n).setIdentity();
   J.bottomLeftCorner(n, n) = inverse_masses.asDiagonal() * Eigen::MatrixXd(K);
   J.bottomRightCorner(n, n) = inverse_masses.asDiagonal() * Eigen::MatrixXd(D);
-  for (const Pin& pin : problem.ode.pins)
-    for (int c = 0; c < 3; ++c)
-      if (pin.fixed(c)) J.row(n + 3 * pin.particle + c).setZero();
+  for (const Pin& pin : problem.ode.pins) {
+    auto rows = J.middleRows<3>(n + 3 * pin.particle);
+    rows = (pin.free() * rows).eval();
+  }
   return h * J;
 }
 
