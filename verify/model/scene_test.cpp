@@ -97,7 +97,7 @@ TEST(Pins, HoldADirectionOfTheirOwn) {
   for (const solver::Pin& pin : pins(pinned({rule}))) EXPECT_FALSE(pin.oblique()) << "that of an axis";
 }
 
-/// Of directions that are not orthogonal both velocities are kept; what is held by the later rule is not held again.
+/// Both velocities are kept of directions that are not orthogonal; what is held by the later rule is not held again.
 TEST(Pins, OfSeveralDirectionsAllHold) {
   PinRule first = at("left edge"), second = at("left edge");
   first.direction = {1, 1, 0};
