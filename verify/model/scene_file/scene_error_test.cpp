@@ -184,7 +184,7 @@ const std::vector<BadScene> bad_scenes = {
     {"direction_of_no_length", "[[pins]]\nwhere = 'all'\ndirection = [0, 0, 0]",
      "a.toml:4: pins.direction = [ 0, 0, 0 ]: expected [x, y, z], not all of them 0"},
     {"direction_beside_directions", "[[pins]]\nwhere = 'all'\ndirection = [1, 1, 0]\ndirections = 'x'",
-     "expected 'direction' or 'directions' in a pin, not both"},
+     "a.toml:2: pins = direction = [ 1, 1, 0 ] directions = 'x' where = 'all': expected 'direction' or 'directions' in a pin, not both"},
     {"infinite_velocity", "[[pins]]\nwhere = 'all'\nvelocity = [0, 0, inf]", "a.toml:4: pins.velocity = inf: expected a finite number"},
     {"pinned_particle_off_the_grid", "[grid]\nn = [4, 3]\n[[pins]]\nparticles = [[3, 2], [4, 0]]",
      "a.toml:5: pins.particles = [ [ 3, 2 ], [ 4, 0 ] ]: expected places [a, b] with 0 ≤ a < 4 and 0 ≤ b < 3"},

@@ -266,7 +266,7 @@ TEST(SceneFile, HasARowForEveryKeyAndEveryEntryOfAList) {
   EXPECT_EQ(std::ranges::count(keys, "pins"), 3);
   EXPECT_EQ(std::ranges::count(keys, "obstacles"), 4);
   const std::size_t empty = 22;  // sides, a cut, curves, tables, elements of relaxation, panels, seams, phases
-  EXPECT_EQ(keys.size(), model::scene_keys().size() + 1 + 3 - empty);
+  EXPECT_EQ(keys.size(), model::scene_keys().size() + 2 + 3 - empty);
 }
 
 TEST(SceneFile, HasTheUnitOfEveryKeyInItsHelpAndItsRow) {
