@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <ranges>
 #include <set>
 #include <stdexcept>
 #include <utility>
@@ -202,9 +201,9 @@ void hold(const PinRule& rule, HeldDirections& node) {
 
 std::vector<solver::Pin> Garment::pins(const Scene& phase, const Vectors& x) const {
   std::map<int, HeldDirections> held;
-  for (const PinRule& rule : phase.pins | std::views::reverse) {  // what holds first wins
-    const Panel& of = panel(rule.panel);
-    for (const int particle : pinned_particles(of.sheet.grid, rule)) hold(rule, held[of.node(particle)]);
+  for (auto rule = phase.pins.rbegin(); rule != phase.pins.rend(); ++rule) {  // what holds first wins
+    const Panel& of = panel(rule->panel);
+    for (const int particle : pinned_particles(of.sheet.grid, *rule)) hold(*rule, held[of.node(particle)]);
   }
   std::map<int, solver::Pin> merged;
   for (const auto& [node, directions] : held) merged[node] = directions.pin(node);
