@@ -91,6 +91,19 @@ TEST(ObliquePins, AreThoseOfTheTurnedScene) {
   EXPECT_EQ(both.straight.plan.pinned_dofs, both.oblique.plan.pinned_dofs);
 }
 
+TEST(ObliquePins, AreMovedByTheForceAlongThem) {
+  const Turned both;
+  const State a = after(both.straight, solver::method("verlet"), {});
+  const State b{turned(a.x, turn), turned(a.v, turn), a.z};
+  Vectors given, of_turned;
+  both.straight.given(0.1, a.x, a.v, given);
+  both.oblique.given(0.1, b.x, b.v, of_turned);
+  ASSERT_GE(given.cwiseAbs().maxCoeff(), 1e-2);
+  EXPECT_LE((turned(given, turn) - of_turned).cwiseAbs().maxCoeff(), 1e-10);
+  solver::filter(both.oblique.ode.pins, of_turned);
+  EXPECT_LE(of_turned.cwiseAbs().maxCoeff(), 1e-12) << "across them they do no work";
+}
+
 class ObliquePinsWith : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(, ObliquePinsWith, testing::ValuesIn(small_problems::names(solver::methods())),
                          [](const auto& test) { return small_problems::identifier(test.param); });

@@ -81,6 +81,19 @@ TEST_F(PlausibleReference, HasThePinsOfTheScene) {
   EXPECT_THAT(objection(moved), HasSubstr("pinned"));
 }
 
+TEST(PlausibleReferences, MaySlideAcrossTheDirectionsOfTheirPins) {
+  model::Scene scene = model::load_scene("hung-corners", std::vector<model::Override>{{"grid.n", "5"}});
+  for (model::PinRule& pin : scene.pins) pin.direction = {0, 1, 3};
+  const model::Cloth cloth = compile(scene);
+  Reference reference = reference_of(cloth);
+  const int corner = cloth.ode.pins.front().particle;
+  ASSERT_GE((reference.trajectory.states[2].x - cloth.start.x).row(corner).norm(), 1e-3 * size);
+  require_plausible(reference, cloth.ode, cloth.start, 0, times, size);
+  for (auto* trajectory : {&reference.trajectory, &reference.witnessed}) trajectory->states[2].x(corner, 2) += 1e-4 * size;
+  reference.error[2] = reference::rms_distance(reference.trajectory.states[2].x, reference.witnessed.states[2].x);
+  EXPECT_THROW(require_plausible(reference, cloth.ode, cloth.start, 0, times, size), reference::DamagedFile);
+}
+
 TEST_F(PlausibleReference, HasTheTimesTheParticlesAndOnlyFiniteNumbers) {
   const std::vector<std::function<void(Reference&)>> damages{
       [](Reference& r) { r.trajectory.times[1] = 0.21; },

@@ -215,6 +215,19 @@ TEST(StrainLimiting, CutsASpringByItsInverseMasses) {
   EXPECT_FALSE(solver::limit_strain(spring, weights, solver::ObliquePins(std::vector<Pin>()), x));
 }
 
+TEST(StrainLimiting, MovesPinnedParticlesAcrossTheirPins) {
+  const Eigen::Vector3d held = Eigen::Vector3d(3, 0, 4) / 5;
+  const std::vector<Pin> pins{{.particle = 1, .held = held * held.transpose()}};
+  Vectors x = Vectors::Zero(2, 3), weights = Vectors::Ones(2, 3);
+  x(1, 0) = 1.5;
+  const double along = x.row(1).dot(held);
+  const std::vector<CompliantConstraint> spring{{CompliantConstraint::Kind::distance, {0, 1, 1}, 1, 1}};
+  EXPECT_TRUE(solver::limit_strain(spring, weights, solver::ObliquePins(pins), x));
+  EXPECT_NEAR(x.row(1).dot(held), along, 1e-15);
+  EXPECT_LT(x.row(1).norm(), 1.45);
+  EXPECT_GT(x(0, 0), 0.2);
+}
+
 /// A hung sheet, pulled to one and a half of its size, that has been cut by this number of sweeps in an order.
 Vectors cut(const model::Cloth& cloth, unsigned order, int sweeps) {
   auto constraints = cloth.ode.compliant_constraints();
