@@ -324,8 +324,10 @@ std::vector<GarmentRun> run_scene(const std::string& name, bool quick, Checkpoin
     checkpoint.advance();
   }
   checkpoint.show("timing " + name);
-  time_parts(group, counts, quick ? 1 : 3, rows);
-  return rows;
+  return checkpoint.once("costs " + name, [&] {
+    time_parts(group, counts, quick ? 1 : 3, rows);
+    return rows;
+  });
 }
 
 }  // namespace
