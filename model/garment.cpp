@@ -192,9 +192,12 @@ class HeldDirections {
 };
 
 void hold(const PinRule& rule, HeldDirections& node) {
+  if (rule.oblique()) {
+    const Eigen::Vector3d d = rule.direction.stableNormalized();
+    return node.hold(d, rule.velocity.dot(d));
+  }
   for (int c = 0; c < 3; ++c)
-    if (rule.directions[c] && !rule.oblique()) node.hold(Eigen::Vector3d::Unit(c), rule.velocity[c]);
-  if (rule.oblique()) node.hold(rule.direction.stableNormalized(), rule.velocity.dot(rule.direction.stableNormalized()));
+    if (rule.directions[c]) node.hold(Eigen::Vector3d::Unit(c), rule.velocity[c]);
 }
 
 }  // namespace

@@ -117,9 +117,13 @@ StateVector ResidualForm::differential() const {
 void ResidualForm::residual(double t, const StateVector& y, const StateVector& dy, StateVector& r) {
   const Vectors& f = force(t, y.state);
   r.state.x = dy.state.x - y.state.v;
-  free_force_ = f;
-  oblique_(free_force_);
-  r.state.v = ode_.mass.asDiagonal() * dy.state.v - free_force_;
+  if (oblique_.empty()) {
+    r.state.v = ode_.mass.asDiagonal() * dy.state.v - f;
+  } else {
+    free_force_ = f;
+    oblique_(free_force_);
+    r.state.v = ode_.mass.asDiagonal() * dy.state.v - free_force_;
+  }
   for (std::size_t k = 0; k < coordinates_.pinned.size(); ++k) {
     const int i = coordinates_.pinned[k];
     const double w = start_.v.data()[i];
