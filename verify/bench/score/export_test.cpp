@@ -151,6 +151,8 @@ TEST(Export, LeavesNothingWhereItCannotBeDone) {
               HasSubstr("2: bench_integrators: --every: expected at most the scene's end"));
   EXPECT_THAT(complaint({"--out", "a", "--agreement", "1e-15"}),
               HasSubstr("1: bench_integrators: hung-edge: cvode-bdf and arkode-esdirk disagree"));
+  EXPECT_THAT(complaint({"--out", "a", "--set", "pins=[{where = 'all', direction = [1, 1, 0]}]"}),
+              HasSubstr("2: bench_integrators: hung-edge: expected pins along axes ('directions'), not 'direction'"));
   EXPECT_THAT(program.files(), IsEmpty());
   program.write("a", "");
   EXPECT_THAT(complaint({"--out", "a"}), HasSubstr("2: bench_integrators: a: expected a new or empty folder"));

@@ -289,6 +289,8 @@ TEST(Score, SaysInOneLineWhatIsWrongWithAFile) {
               HasSubstr("1.obj: expected 12 vertices as in 0.obj, not 11"));
   EXPECT_THAT(complaint({"0.obj", "2.ply", "--frame-time", "0.1"}), HasSubstr("2.ply: cannot be read as a mesh"));
   EXPECT_THAT(complaint({"a.h5", "--frame-time", "0.1"}), HasSubstr("--frame-time: an HDF5 file has its own times"));
+  EXPECT_THAT(complaint({"a.h5", "--set", "pins=[{where = 'all', direction = [1, 1, 0]}]"}),
+              HasSubstr("hung-edge: expected pins along axes ('directions'), not 'direction'"));
 }
 
 }  // namespace

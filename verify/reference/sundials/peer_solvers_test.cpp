@@ -263,5 +263,11 @@ TEST(Kinsol, SaysThatASheetWithoutPinsHasNoEquilibrium) {
   EXPECT_THROW(reference::equilibrium(cloth.ode, cloth.start.x), ReferenceError);
 }
 
+TEST(Kinsol, RefusesPinsAlongADirection) {
+  const Problem problem = obliquely_pinned();
+  EXPECT_THAT([&] { reference::equilibrium(problem.ode, problem.exact(start_time).x); },
+              testing::ThrowsMessage<std::invalid_argument>(HasSubstr("expected pins along axes")));
+}
+
 }  // namespace
 }  // namespace drape::verify::peer_solvers_test
