@@ -1,16 +1,21 @@
 // Costs of the pieces, for what a person asks before choosing a solver: ns per particle of the product with the constant
 // matrix beside the triad of the machine, of every force, and of a whole CG iteration; and of what Eigen and CHOLMOD offer for
-// the same, so that the reason for kernels of our own stays measured.
+// the same, so that the reason for kernels of our own stays measured. And ns per triangle of finding where cloth meets itself.
 
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <Eigen/IterativeLinearSolvers>
+#include <array>
+#include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "model/cloth.hpp"
+#include "model/collision/self_contacts.hpp"
 #include "model/scene_file/scene_file.hpp"
 #include "solver/linear/cholmod_view.hpp"
 #include "solver/linear/conjugate_gradients.hpp"
@@ -140,6 +145,45 @@ std::vector<model::Override> only(std::vector<model::Override> kept) {
   return changes;
 }
 
+/// Layers of n × n particles each, 2 cm apart, 3 mm above each other, which lie askew and fall by 1.5 cm in waves of 1 cm.
+struct Layers {
+  model::ClothSurface surface;
+  Vectors x0, x1;
+};
+
+Layers layers_of_cloth(int layers, int n) {
+  constexpr double side = 0.02, between = 3e-3, amplitude = 0.01, wave_number = 20;  // [m], [1/m]
+  const Eigen::Matrix3d turned = Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()).matrix();
+  Vectors x0(layers * n * n, 3), x1 = x0;
+  std::vector<std::array<int, 3>> triangles;
+  for (int k = 0; k < layers; ++k)
+    for (int b = 0; b < n; ++b)
+      for (int a = 0; a < n; ++a) {
+        const int i = a + n * (b + n * k);
+        const Eigen::Vector3d flat(a * side, b * side, k * between);
+        x0.row(i) = turned * flat;
+        x1.row(i) = turned * (flat + Eigen::Vector3d(0, 0, -0.015 + amplitude * std::sin(wave_number * flat.x())));
+        if (a + 1 == n || b + 1 == n) continue;
+        triangles.push_back({i, i + 1, i + n});
+        triangles.push_back({i + n + 1, i + n, i + 1});
+      }
+  return {model::ClothSurface(triangles, x0), x0, x1};
+}
+
+/// What a step with contact of the cloth with itself would find within 4 mm.
+void collision(benchmark::State& state, int layers) {
+  const Layers cloth = layers_of_cloth(layers, static_cast<int>(state.range(0)));
+  solver::Counters work;
+  model::SelfContacts contacts(cloth.surface, work);
+  std::vector<model::Approach> found;
+  contacts.find(cloth.x0, cloth.x1, 4e-3, found);  // it grows once
+  for (auto _ : state) contacts.find(cloth.x0, cloth.x1, 4e-3, found);
+  const auto triangles = static_cast<double>(cloth.surface.faces().size());
+  state.counters["per_triangle"] =
+      benchmark::Counter(triangles, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  state.counters["found"] = static_cast<double>(found.size()) / triangles;
+}
+
 void register_all() {
   const std::vector<std::int64_t> sizes{20, 100, 1000};
   const auto add = [&](const std::string& name, auto function, const std::vector<std::int64_t>& some_sizes) {
@@ -176,6 +220,8 @@ void register_all() {
   for (const auto& [name, changes] : forces)
     add(
         "force/" + name, [changes = changes](benchmark::State& state) { force(state, changes); }, sizes);
+  for (const auto& [name, layers] : {std::pair("collision/flat", 1), std::pair("collision/layers", 3)})
+    add(name, [layers = layers](benchmark::State& state) { collision(state, layers); }, {23, 71, 224});
 }
 
 }  // namespace

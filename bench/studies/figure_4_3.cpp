@@ -2,13 +2,18 @@
 
 #include <algorithm>
 #include <iterator>
+#include <numeric>
 #include <optional>
 #include <span>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "bench/runs/record.hpp"
 #include "bench/runs/timing.hpp"
 #include "bench/studies/step_means.hpp"
 #include "bench/studies/studies.hpp"
+#include "model/collision/body_faces.hpp"
 #include "model/scene_file/scene_file.hpp"
 #include "results/columns.hpp"
 #include "results/verdict.hpp"
@@ -41,11 +46,42 @@ using results::StepRecord;
 struct BoxRun {
   std::string method;
   RunRecord run;
+  std::vector<int> face_pairs;  ///< of cloth and box that are near at the ends of the steps
 };
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(BoxRun, method, run, face_pairs)
+
+/// Counts the pairs of faces of the sheet and of obstacles that are near at the end of each step, as in_contact() has it of
+/// particles.
+class FacePairs : public Observer {
+ public:
+  void begin(const model::Scene& scene, const model::Cloth& cloth, const solver::State& /*start*/) override {
+    constexpr double no_plane = 0;
+    surface_.emplace(*cloth.garment);
+    for (const model::ObstacleRule& rule : scene.obstacles) bodies_.emplace_back(rule, no_plane);
+    distance_ = 1.05 * scene.contact.distance;
+  }
+  void observe(const solver::StepReport& step) override {
+    counts_.push_back(model::face_pairs(*surface_, bodies_, step.t, step.y.x, distance_));
+  }
+  const std::vector<int>& counts() const { return counts_; }
+
+ private:
+  std::optional<model::ClothSurface> surface_;
+  std::vector<model::PosedObstacle> bodies_;
+  double distance_ = 0;  ///< [m]
+  std::vector<int> counts_;
+};
+
+BoxRun swing_run(const RunSpec& run) {
+  FacePairs pairs;
+  Observer* const observers[] = {&pairs};
+  RunRecord recorded = record(run, observers);
+  return {std::string(run.method->name), std::move(recorded), pairs.counts()};
+}
 
 /// Means of a run over some of its steps.
 struct Means {
-  double updates, cg_iterations, contacts;
+  double updates, cg_iterations, contacts, face_pairs;
 };
 
 /// Steps of the same time; of each run that lasts so long, its means.
@@ -61,22 +97,26 @@ constexpr results::ColumnOf<Means> curves[] = {
     {"{}_updates", "{}: updates", "1", "updates a step", Role::counter, field<&Means::updates>},
     {"{}_CG", "{}: CG", "1", "CG iterations a step", Role::counter, field<&Means::cg_iterations>},
     {"{}_contacts", "{}: contacts", "1", "particles in contact", Role::quantity, field<&Means::contacts>},
+    {"{}_face_pairs", "{}: face pairs", "1", "pairs of faces of sheet and box that are near", Role::quantity,
+     field<&Means::face_pairs>},
 };
 
 /// The means of `length` steps from one on, if the run has them.
-std::optional<Means> means(const RunRecord& run, std::size_t first, std::size_t length) {
-  if (first + length > run.steps.size()) return std::nullopt;
-  const Steps steps = Steps(run.steps).subspan(first, length);
-  return Means{mean(steps, &StepRecord::updates), iterations(steps), mean(steps, &StepRecord::contacts)};
+std::optional<Means> means(const BoxRun& box, std::size_t first, std::size_t length) {
+  if (first + length > box.run.steps.size()) return std::nullopt;
+  const Steps steps = Steps(box.run.steps).subspan(first, length);
+  const auto pairs = std::span(box.face_pairs).subspan(first, length);
+  return Means{mean(steps, &StepRecord::updates), iterations(steps), mean(steps, &StepRecord::contacts),
+               std::accumulate(pairs.begin(), pairs.end(), 0.0) / static_cast<double>(length)};
 }
 
 std::vector<Window> windows(const std::vector<BoxRun>& runs, std::size_t length) {
   std::size_t steps = 0;
-  for (const auto& [method, run] : runs) steps = std::max(steps, run.steps.size());
+  for (const BoxRun& box : runs) steps = std::max(steps, box.run.steps.size());
   std::vector<Window> all;
   for (std::size_t first = 0; first + length <= steps; first += length) {
     Window& next = all.emplace_back(Window{box_step * static_cast<double>(first + length), {}});
-    for (const auto& [method, run] : runs) next.runs.push_back(means(run, first, length));
+    for (const BoxRun& box : runs) next.runs.push_back(means(box, first, length));
   }
   return all;
 }
@@ -173,7 +213,7 @@ std::vector<Job> figure_4_3(const Question& question) {
     std::vector<BoxRun> runs;
     for (const char* method : {"bdf2", "sbdf2"}) {
       checkpoint.show(fmt::format("{} against the box", method));
-      runs.push_back({method, checkpoint.once(method, [&] { return record(spec(swing(quick), method)); })});
+      runs.push_back(checkpoint.once(method, [&] { return swing_run(spec(swing(quick), method)); }));
       checkpoint.advance();
     }
     return runs;

@@ -1,0 +1,53 @@
+#include "model/collision/body_faces.hpp"
+
+#include <Eigen/Geometry>
+
+#include "model/collision/box_tree.hpp"
+#include "model/collision/face_distance.hpp"
+
+namespace drape::model {
+namespace {
+
+std::vector<Corners> triangles_of(const Polygons& polygons) {
+  std::vector<Corners> all;
+  for (const std::vector<int>& face : polygons.faces)
+    for (std::size_t k = 2; k < face.size(); ++k)
+      all.push_back({polygons.vertices[face[0]], polygons.vertices[face[k - 1]], polygons.vertices[face[k]]});
+  return all;
+}
+
+std::vector<Corners> triangles_of(const ClothSurface& surface, const Vectors& x) {
+  std::vector<Corners> all;
+  for (int k = 0; k < static_cast<int>(surface.faces().size()); ++k)
+    if (!surface.faces()[k].is_edge()) all.push_back(surface.corners(k, x));
+  return all;
+}
+
+/// A tree of the boxes around triangles, which are larger by `margin` [m] on all sides.
+BoxTree tree_of(const std::vector<Corners>& triangles, double margin) {
+  std::vector<Eigen::Vector3d> centres;
+  std::vector<Eigen::AlignedBox3d> boxes;
+  for (const auto& [a, b, c] : triangles) {
+    centres.emplace_back((a + b + c) / 3);
+    boxes.emplace_back(a.cwiseMin(b).cwiseMin(c).array() - margin, a.cwiseMax(b).cwiseMax(c).array() + margin);
+  }
+  BoxTree tree(centres);
+  tree.refit(boxes);
+  return tree;
+}
+
+}  // namespace
+
+int face_pairs(const ClothSurface& surface, std::span<const PosedObstacle> bodies, double t, const Vectors& x,
+               double distance) {
+  const std::vector<Corners> cloth = triangles_of(surface, x);
+  const BoxTree tree = tree_of(cloth, distance);
+  int count = 0;
+  for (const PosedObstacle& body : bodies) {
+    const std::vector<Corners> faces = triangles_of(body.at(t));
+    tree.overlapping_pairs(tree_of(faces, 0), [&](int i, int j) { count += nearer(cloth[i], faces[j], distance) ? 1 : 0; });
+  }
+  return count;
+}
+
+}  // namespace drape::model

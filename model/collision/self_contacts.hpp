@@ -1,0 +1,67 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "model/collision/box_tree.hpp"
+#include "model/collision/cloth_surface.hpp"
+#include "model/collision/proximity.hpp"
+#include "solver/counters.hpp"
+
+namespace drape::model {
+
+/// A pair that comes near in a step.
+struct Approach {
+  PairKind kind;
+  Proximity begin;  ///< where the step begins
+  Proximity touch;  ///< where the distance has fallen as far as was asked
+  double part;      ///< of the step until then
+};
+
+/// Finds where a cloth comes near itself: pairs of a vertex and a face, or of two edges, that have no node in common. Two edges
+/// count where they are nearest inside both; where one ends, a vertex and a face are as near, unless it is that of a chain.
+/// Pairs come in an order that depends on the surface alone. Memory is kept from call to call.
+class SelfContacts {
+ public:
+  SelfContacts(ClothSurface surface, solver::Counters& work);
+
+  const ClothSurface& surface() const { return surface_; }
+
+  /// Sets `found` to the pairs whose distance falls to `distance` [m] or below while nodes move uniformly from x0 to x1, N × 3,
+  /// as first_approach() has it. Those that begin nearer have part 0, and are left out if they end farther apart and do not
+  /// come nearer by a thousandth on the way. Two edges have to be nearest inside both at that time.
+  void find(const Vectors& x0, const Vectors& x1, double distance, std::vector<Approach>& found);
+
+  /// Sets `found` to the pairs nearer than `distance` [m] at x, N × 3.
+  void near(const Vectors& x, double distance, std::vector<Proximity>& found);
+
+  /// Pairs of triangles without a common node that have a point in common at x, as intersect() has it; indices of faces, the
+  /// lower first.
+  std::vector<std::array<int, 2>> intersections(const Vectors& x);
+
+  /// Number of pairs of triangles without a common node that are nearer than `distance` [m] at x.
+  int face_pairs(const Vectors& x, double distance);
+
+ private:
+  /// Fits the tree to the ways of the faces from x on, and half of `reach` around them [m].
+  void fit(const Vectors& x, double reach);
+
+  /// Calls visit(kind, particles, may_end) for pairs that may come within `reach` on their ways from x; `may_end`: one edge is
+  /// that of a chain.
+  template <class Visit>
+  void each_pair(const Vectors& x, double reach, const Visit& visit);
+
+  /// Calls visit(i, j, corners, corners) for pairs of triangles i < j without a common node that may be within `reach` at x.
+  template <class Visit>
+  void each_face_pair(const Vectors& x, double reach, const Visit& visit);
+
+  ClothSurface surface_;
+  BoxTree tree_;
+  std::vector<Eigen::AlignedBox3d> boxes_;  ///< of the faces
+  Vectors way_;                             ///< of the nodes in a step, without that of all on average [m]
+  std::int64_t& pairs_;
+};
+
+}  // namespace drape::model
