@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/collision/cloth_pairs.hpp"
 #include "model/garment_forces.hpp"
 #include "model/obstacles/reaction.hpp"
 #include "model/phases.hpp"
@@ -135,6 +136,8 @@ Cloth compile(const Scene& scene, std::shared_ptr<const Garment> garment, solver
     cloth.contacts = std::make_shared<Contacts>(contacts(scene, *ode.work));
     reaction = respond(scene.contact, cloth.contacts, ode);
   }
+  if (scene.contact.thickness > 0)
+    ode.pairs = std::make_shared<ClothPairs>(ClothSurface(*cloth.garment), scene.contact.thickness, *ode.work);
   cloth.given = given(forces, reaction, ode);
   solver::prescribe(ode.pins, cloth.start.v);
   cloth.plan.obstacles = static_cast<int>(scene.obstacles.size());

@@ -9,6 +9,11 @@ Filter Filter::partial(const std::vector<Pin>& pins) {
   return filter;
 }
 
+void Filter::operator()(Vectors& r) const {
+  for (const Block& block : blocks_) r.row(block.particle) *= block.free;
+  if (projector_ != nullptr) projector_->project(r);
+}
+
 ObliquePins::ObliquePins(const std::vector<Pin>& pins) {
   for (const Pin& pin : pins)
     if (pin.oblique()) free_[pin.particle] = pin.free();

@@ -7,7 +7,15 @@
 
 namespace drape::solver {
 
-/// Removes the prescribed directions of some particles from a vector field: P = I − Σ c cᵀ  [Etzmuß 2002, (4.3)].
+/// Removes from a vector field what several particles have in common.
+class Projector {
+ public:
+  virtual ~Projector() = default;
+  virtual void project(Vectors& r) const = 0;
+};
+
+/// Removes the prescribed directions of some particles from a vector field, P = I − Σ c cᵀ  [Etzmuß 2002, (4.3)], and then what
+/// a projector does.
 class Filter {
  public:
   /// The free directions of a particle.
@@ -19,17 +27,20 @@ class Filter {
   /// The pins whose particles still have free directions: the others have no entries in the filtered matrices.
   static Filter partial(const std::vector<Pin>& pins);
 
-  void clear() { blocks_.clear(); }
+  void clear() {
+    blocks_.clear();
+    projector_ = nullptr;
+  }
   void add(int particle, const Eigen::Matrix3d& free) { blocks_.push_back({particle, free}); }
-  bool empty() const { return blocks_.empty(); }
+  void add(const Projector& projector) { projector_ = &projector; }
+  bool empty() const { return blocks_.empty() && projector_ == nullptr; }
   const std::vector<Block>& blocks() const { return blocks_; }
 
-  void operator()(Vectors& r) const {
-    for (const Block& block : blocks_) r.row(block.particle) *= block.free;
-  }
+  void operator()(Vectors& r) const;
 
  private:
   std::vector<Block> blocks_;
+  const Projector* projector_ = nullptr;
 };
 
 /// The free directions of particles that are pinned along others than axes. Other pins set coordinates to zero, in matrices and

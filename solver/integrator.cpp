@@ -27,6 +27,9 @@ constexpr double same_kink = 1e-6;
 /// Part of the kinetic energy that an impact must stop to be a hard one.
 constexpr double hard_impact = 1e-2;
 
+/// Part of the thickness that no step leaves less of.
+constexpr double least_part = 0.1;
+
 /// Tests the sum, which is finite only if all its terms are: unlike a test of each term, it is vectorised.
 bool finite(const State& y) { return std::isfinite(y.x.sum() + y.v.sum()); }
 
@@ -96,8 +99,9 @@ Integrator::Integrator(const SplitOde& ode, const Method& method, const Options&
     stiffness_changes_ = ode.memory->stiffness_changes();
     own_->stiffness = ode.memory->stiffness();
   }
+  if (ode.pairs) separation_.emplace(step_.ode);
   if (method.implicit()) {
-    if (ode.contacts) step_.contacts = &contacts_.emplace(step_.ode);
+    if (ode.contacts || (ode.pairs && method.meets_obstacles)) step_.contacts = &contacts_.emplace(step_.ode);
     step_.stage = &stage_.emplace(step_.ode, options_, step_.contacts);
   } else if (ode.contacts) {
     sub_stepping_.impacts = &impacts_.emplace(step_.ode);
@@ -142,6 +146,7 @@ bool Integrator::attempt(double h) {
   if (hard) step_without_history();
   StageResult& result = step_.result;
   if (result.outcome == Outcome::success && !finite(next_.y)) result.outcome = Outcome::not_finite;
+  if (result.outcome == Outcome::success && separation_) separate();
   if (result.outcome == Outcome::success && !hard) {
     predict(h);
     error_ = estimate_error(h);
@@ -205,6 +210,18 @@ void Integrator::follow_stiffness() {
 void Integrator::begin_contacts(double h) {
   if (contacts_) contacts_->begin(step_.t, h, state());
   if (impacts_) impacts_->begin(step_.t, h, state());
+}
+
+/// The last word on whether the cloth meets itself: stages constrain pairs where their ways are linearised, and not all methods
+/// have such stages.
+void Integrator::separate() {
+  const bool constrains = contacts_ && !method_.sub_steps;
+  const double thickness = step_.ode.pairs->thickness(), least = least_part * thickness;
+  std::span<const Contact> possible;
+  if (contacts_) possible = contacts_->possible();
+  if (impacts_) possible = impacts_->possible();
+  if (!separation_->separate(state(), step_.h, {constrains ? least : thickness, least}, possible, next_.y))
+    step_.result.outcome = Outcome::not_converged;
 }
 
 /// Whether the step met an obstacle so hard that the neighbours' velocities jump as well, which makes the history useless.

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "solver/contact/separation.hpp"
 #include "solver/methods.hpp"
 
 namespace drape::solver {
@@ -59,6 +60,7 @@ class Integrator {
   void begin_contacts(double h);
   bool hit_hard() const;
   void step_without_history();
+  void separate();
   void finish_contacts();
   void predict(double h);
   double estimate_error(double h);
@@ -70,6 +72,7 @@ class Integrator {
   std::optional<SplitOde> own_;              ///< with the K of now, if forces remember the motion
   std::optional<ContactResponse> contacts_;  ///< of implicit methods
   std::optional<ImpactResponse> impacts_;    ///< of explicit ones
+  std::optional<Separation> separation_;     ///< if the cloth meets itself
   std::optional<StageSolver> stage_;
   std::optional<LinearisedSystem> linearised_;
   std::optional<PhiFunctions> phi_;

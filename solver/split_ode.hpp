@@ -32,6 +32,8 @@ struct Pin {
   Eigen::Vector3d prescribed() const { return held * velocity; }
 };
 
+class PairSearch;
+
 /// A half-space that a particle must not leave in the next step: at its end <x, n> ≥ `least`.
 struct Contact {
   int particle = 0;
@@ -104,6 +106,8 @@ struct SplitOde {
 
   /// Finds the possible contacts of a step from t to t + h, ordered by particle; absent: there are no obstacles.
   std::function<void(double t, double h, const State& y, std::vector<Contact>& found)> contacts;
+
+  std::shared_ptr<PairSearch> pairs;  ///< finds where the cloth meets itself; null: it passes through itself
 
   std::shared_ptr<Counters> work = std::make_shared<Counters>();
 

@@ -7,6 +7,7 @@
 
 #include "bench/runs/available_memory.hpp"
 #include "model/at_rest.hpp"
+#include "model/clear_cloth.hpp"
 #include "model/clear_start.hpp"
 #include "model/scene_file/scene_file.hpp"
 #include "solver/base/printable.hpp"
@@ -20,6 +21,7 @@ model::Scene SceneChoice::load() const {
   require_memory(loaded);
   try {
     model::require_clear_start(loaded);
+    model::require_clear_cloth(loaded);
   } catch (const std::invalid_argument& error) {
     throw std::invalid_argument(fmt::format("{}: {}", scene, error.what()));
   }

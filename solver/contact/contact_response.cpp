@@ -24,7 +24,9 @@ ContactResponse::ContactResponse(const SplitOde& ode)
       pinned_(Filter::partial(ode.pins)),
       constrained_particles_(
           ode.work->counter("constrained_particles", "particles constrained by contacts, summed over steps")),
-      changes_(ode.work->counter("contact_changes", "contacts caught, released, or changed between sticking and sliding")) {}
+      changes_(ode.work->counter("contact_changes", "contacts caught, released, or changed between sticking and sliding")) {
+  if (ode.pairs) pairs_.emplace(ode);
+}
 
 void ContactResponse::begin(double t0, double h, const State& y0, bool again) {
   if (!again) remember();
@@ -34,8 +36,15 @@ void ContactResponse::begin(double t0, double h, const State& y0, bool again) {
   impulse_.setZero();
   work_ = 0;
   contacts_.clear();
-  ode_.contacts(t0, h, y0, contacts_);
+  if (ode_.contacts) ode_.contacts(t0, h, y0, contacts_);
+  if (pairs_) pairs_->begin(t0, h, y0, again);
   touch_all(t0, h, y0);
+}
+
+bool ContactResponse::find_pairs(const Stage& stage, const State& y) {
+  if (!pairs_ || divided_ || !pairs_->find(stage, y)) return false;
+  rebuild_filter();
+  return true;
 }
 
 void ContactResponse::begin_part(double t0, double h, const State& y0) {
@@ -43,6 +52,7 @@ void ContactResponse::begin_part(double t0, double h, const State& y0) {
   if (std::exchange(divided_, true)) {
     remember();
   } else {
+    if (pairs_) pairs_->clear();
     borders_.clear();
     for (const Contact& contact : contacts_)
       borders_.push_back({along_normal(contact) - std::max(0.0, contact.gap), contact.least});
@@ -207,6 +217,9 @@ void ContactResponse::rebuild_filter() {
   }
   for (const Touched& p : touched_)
     if (p.status != Status::free || !p.free.isIdentity(0)) filter_.add(p.particle, p.free);
+  if (!pairs_ || pairs_->empty()) return;
+  pairs_->set_free(filter_);
+  filter_.add(*pairs_);
 }
 
 void ContactResponse::impose(const Stage& stage, State& y) const {
@@ -222,9 +235,50 @@ void ContactResponse::impose(const Stage& stage, State& y) const {
     y.v.row(p.particle) = v;
     y.x.row(p.particle) = x;
   }
+  if (pairs_) pairs_->impose(stage, y);
 }
 
-bool ContactResponse::update(const Stage& stage, const State& y, const Vectors& r, double noise, Changes changes) {
+bool ContactResponse::update(const Stage& stage, State& y, const Vectors& r, const Eigen::VectorXd& bounds, double noise,
+                             Changes changes) {
+  if (!pairs_ || pairs_->empty()) return update_particles(stage, y, r, noise, changes);
+  rubbed_ = r;
+  pairs_->add_forces(rubbed_);
+  const bool changed = update_particles(stage, y, rubbed_, noise, changes);
+  rubbed_ = r;
+  add_friction(stage.gamma, rubbed_);
+  find_supports(r, y.v);
+  using PairChanges = PairResponse::Changes;
+  const PairChanges may_change = changes == Changes::captures ? PairChanges::captures : PairChanges::all;
+  if (!pairs_->update(y, rubbed_, bounds, noise, may_change, supports_)) return changed;
+  leave_supports();
+  rebuild_filter();
+  return true;
+}
+
+/// Contacts of which pairs may push particles away: of those with one contact.
+void ContactResponse::find_supports(const Vectors& r, const Vectors& v) {
+  supports_.clear();
+  for (const Touched& p : touched_) {
+    if (p.status == Status::free || p.normals.cols() != 1) continue;
+    const Eigen::Vector3d normal = p.normals.col(0).normalized();
+    supports_.push_back({p.particle, normal, std::max(0.0, -r.row(p.particle).dot(normal)), v.row(p.particle).dot(normal)});
+  }
+}
+
+/// Releases the contacts whose supports do not push any more.
+void ContactResponse::leave_supports() {
+  auto support = supports_.begin();
+  for (Touched& p : touched_) {
+    while (support != supports_.end() && support->particle < p.particle) ++support;
+    if (support == supports_.end() || support->particle != p.particle || support->lambda > 0) continue;
+    std::fill(active_.begin() + static_cast<std::ptrdiff_t>(p.begin), active_.begin() + static_cast<std::ptrdiff_t>(p.end),
+              false);
+    configure(p);
+    ++changes_;
+  }
+}
+
+bool ContactResponse::update_particles(const Stage& stage, const State& y, const Vectors& r, double noise, Changes changes) {
   const base::Stopwatch stopwatch(ode_.response_ms);
   bool changed = false;
   for (Touched& p : touched_) {
@@ -314,7 +368,7 @@ void ContactResponse::rewrite_history(const Eigen::Matrix3d& directions, const E
 }
 
 double ContactResponse::stopped_energy() const {
-  double energy = 0;
+  double energy = pairs_ ? pairs_->stopped_energy() : 0;
   for (const Touched& p : touched_)
     if (p.fresh)
       energy +=
@@ -324,7 +378,7 @@ double ContactResponse::stopped_energy() const {
 
 bool ContactResponse::finish(State& y1, State& y0) {
   const base::Stopwatch stopwatch(ode_.response_ms);
-  bool changed = false;
+  bool changed = pairs_ && pairs_->finish(y1, y0);
   for (Touched& p : touched_) {
     if (p.status == Status::free) continue;
     ++constrained_particles_;
@@ -352,7 +406,7 @@ bool ContactResponse::finish(State& y1, State& y0) {
 }
 
 bool ContactResponse::impact() const {
-  return std::ranges::any_of(touched_, [](const Touched& p) { return p.fresh; });
+  return std::ranges::any_of(touched_, [](const Touched& p) { return p.fresh; }) || (pairs_ && pairs_->impact());
 }
 
 int ContactResponse::constrained() const {

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <optional>
+#include <span>
 #include <vector>
 
+#include "solver/contact/pair_response.hpp"
 #include "solver/filter.hpp"
 #include "solver/stage.hpp"
 
@@ -34,7 +37,13 @@ class ContactResponse {
   void begin_part(double t0, double h, const State& y0);
 
   /// Whether nothing can be touched in this step.
-  bool empty() const { return touched_.empty(); }
+  bool empty() const { return touched_.empty() && (!pairs_ || pairs_->empty()); }
+
+  /// Adds constraints of pairs of the cloth that meet on the way to a stage's solution; true if there are any.
+  bool find_pairs(const Stage& stage, const State& y);
+
+  /// All contacts of the step, in which particles may take part.
+  std::span<const Contact> possible() const { return contacts_; }
 
   /// Partially pinned particles and the constrained directions.
   const Filter& filter() const { return filter_; }
@@ -50,8 +59,9 @@ class ContactResponse {
   };
 
   /// Adapts the constraints to a stage's solution y, and friction once no constraint changes. r: the whole residual
-  /// M (av − v) + γ f without friction; `noise`: round-off in r. True if something changed, so that it must be imposed again.
-  bool update(const Stage& stage, const State& y, const Vectors& r, double noise, Changes changes);
+  /// M (av − v) + γ f without friction; `bounds`: as PairResponse::update takes them; `noise`: round-off in r. True if
+  /// something changed, so that it must be imposed again.
+  bool update(const Stage& stage, State& y, const Vectors& r, const Eigen::VectorXd& bounds, double noise, Changes changes);
 
   /// Adds γ times friction to a residual.
   void add_friction(double gamma, Vectors& r) const;
@@ -109,6 +119,9 @@ class ContactResponse {
     double bound;
   };
 
+  void find_supports(const Vectors& r, const Vectors& v);
+  void leave_supports();
+  bool update_particles(const Stage& stage, const State& y, const Vectors& r, double noise, Changes changes);
   void remember();
   void touch_all(double t0, double h, const State& y0);
   void touch(int particle, std::size_t begin, std::size_t end, std::size_t& past);
@@ -141,6 +154,9 @@ class ContactResponse {
   std::vector<Touched> touched_;
   std::vector<Past> past_;
   Filter pinned_, filter_;
+  std::optional<PairResponse> pairs_;  ///< if the cloth meets itself
+  Vectors rubbed_;                     ///< the residual with other forces of contacts
+  std::vector<PairResponse::Support> supports_;
   Eigen::Vector3d impulse_ = Eigen::Vector3d::Zero();
   double work_ = 0;
   std::int64_t &constrained_particles_, &changes_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "solver/split_ode.hpp"
@@ -16,6 +17,9 @@ class ImpactResponse {
   void begin(double t0, double h, const State& y0);
 
   bool empty() const { return contacts_.empty(); }
+
+  /// All contacts of the step, in which particles may take part.
+  std::span<const Contact> possible() const { return found_; }
 
   /// Moves particles that have left their half-spaces to the border as it is s seconds after t0 ...
   void push_out(double s, Vectors& x);

@@ -18,10 +18,22 @@ StageSolver::StageSolver(const SplitOde& ode, const Options& options, ContactRes
 StageSolver::~StageSolver() = default;
 
 StageResult StageSolver::solve_linear(const Stage& stage, const Vectors& f_explicit, State& y) {
-  return system_.touches() ? fixed_point(stage, &f_explicit, y) : one_system(stage, f_explicit, y);
+  return meet_pairs(stage, &f_explicit, y,
+                    system_.touches() ? fixed_point(stage, &f_explicit, y) : one_system(stage, f_explicit, y));
 }
 
-StageResult StageSolver::solve(const Stage& stage, State& y) {
+StageResult StageSolver::solve(const Stage& stage, State& y) { return meet_pairs(stage, nullptr, y, solve_once(stage, y)); }
+
+/// Solves again while the solution brings pairs of the cloth together that have no constraint.
+StageResult StageSolver::meet_pairs(const Stage& stage, const Vectors* f_explicit, State& y, StageResult result) {
+  while (result.outcome == Outcome::success && system_.finds_pairs(stage, y)) {
+    const StageResult again = fixed_point(stage, f_explicit, y);
+    result = {again.outcome, result.updates + again.updates, result.cg_iterations + again.cg_iterations};
+  }
+  return result;
+}
+
+StageResult StageSolver::solve_once(const Stage& stage, State& y) {
   if (system_.touches()) return fixed_point(stage, nullptr, y);
   if (accelerated_) return accelerated_->solve(stage, y);
   if (iteration_) return iteration_->solve(stage, y);

@@ -44,6 +44,8 @@ class StageSolver {
   StageResult solve_increment(double gamma, const State& y, const State& r, State& k);
 
  private:
+  StageResult solve_once(const Stage& stage, State& y);
+  StageResult meet_pairs(const Stage& stage, const Vectors* f_explicit, State& y, StageResult result);
   StageResult one_system(const Stage& stage, const Vectors& f_explicit, State& y);
 
   /// Algorithm 6, with the response to contacts. f̂ is given for linear stages with contacts.

@@ -85,6 +85,9 @@ class StageSystem {
   LinearResult respond(const State& r, double tolerance, double noise);
 
   bool touches() const { return contacts_ != nullptr && !contacts_->empty(); }
+
+  /// Finds where the cloth meets itself on the way to a solution; true if that adds constraints.
+  bool finds_pairs(const Stage& stage, const State& y) { return contacts_ != nullptr && contacts_->find_pairs(stage, y); }
   const Vectors& residual() const { return r_; }
   Vectors& correction() { return d_; }
 
@@ -104,6 +107,7 @@ class StageSystem {
   Eigen::ArrayXd momentum_, spring_;           // mass and diagonal of K, three times each, as coordinates lie in memory
   double gamma_ = 0, inertia_ = 1;
   Vectors r_, d_, q_;
+  Eigen::VectorXd bounds_;
   LinearCounters work_;
 };
 

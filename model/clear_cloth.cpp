@@ -1,0 +1,94 @@
+#include "model/clear_cloth.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "model/collision/self_contacts.hpp"
+#include "model/phases.hpp"
+#include "model/sheet/cells.hpp"
+
+namespace drape::model {
+namespace {
+
+/// The cell that has all corners of a face.
+std::string cell_of(const Garment& garment, const ClothSurface::Face& face) {
+  for (const Garment::Panel& panel : garment.panels())
+    for (const Cell& cell : cells(panel.sheet.grid)) {
+      const auto is_corner = [&](int node) {
+        return std::ranges::any_of(
+            cell.corner, [&](const auto& side) { return panel.node(side[0]) == node || panel.node(side[1]) == node; });
+      };
+      if (!std::ranges::all_of(face.corners, is_corner)) continue;
+      const int first = cell.corner[0][0], nu = panel.sheet.grid.nu;
+      const std::string place = fmt::format("cell [{}, {}]", first % nu, first / nu);
+      return panel.name.empty() ? place : fmt::format("{} of panel '{}'", place, panel.name);
+    }
+  return "an edge of a chain";
+}
+
+std::string particle_at(const Garment& garment, int node) {
+  for (const Garment::Panel& panel : garment.panels())
+    for (int i = 0; i < panel.sheet.grid.particles(); ++i) {
+      if (panel.node(i) != node) continue;
+      const std::string place = fmt::format("particle [{}, {}]", i % panel.sheet.grid.nu, i / panel.sheet.grid.nu);
+      return panel.name.empty() ? place : fmt::format("{} of panel '{}'", place, panel.name);
+    }
+  return "a particle";
+}
+
+/// A face and its smallest altitude [m].
+struct Flattest {
+  int face = 0;
+  double altitude = std::numeric_limits<double>::infinity();
+};
+
+Flattest flattest(const ClothSurface& surface, const Vectors& x) {
+  Flattest least;
+  for (int k = 0; k < std::ssize(surface.faces()); ++k) {
+    if (surface.faces()[static_cast<std::size_t>(k)].is_edge()) continue;
+    const auto [a, b, c] = surface.corners(k, x);
+    const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
+    const double altitude = (b - a).cross(c - a).norm() / longest;
+    if (altitude < least.altitude) least = {k, altitude};
+  }
+  return least;
+}
+
+}  // namespace
+
+void require_clear_cloth(const Scene& scene) {
+  const double thickness = scene.contact.thickness;
+  if (thickness == 0) return;
+  for (const Scene& phase : phases(scene))
+    if (phase.seam_state == SeamState::pulled)
+      throw std::invalid_argument(
+          "contact.thickness: expected a garment that is sewn from the start, not seams that are pulled");
+  const Garment garment(phases(scene).front());
+  const Vectors x = garment.start().x;
+  solver::Counters unused;
+  SelfContacts contacts(ClothSurface(garment), unused);
+  const auto cell = [&](int face) { return cell_of(garment, contacts.surface().faces()[static_cast<std::size_t>(face)]); };
+  const Flattest least = flattest(contacts.surface(), x);
+  if (thickness > least.altitude / 2)
+    throw std::invalid_argument(
+        fmt::format("contact.thickness = {:g}: expected at most half of the smallest altitude of triangles, {:.3g} m in {}",
+                    thickness, least.altitude / 2, cell(least.face)));
+  if (const auto through = contacts.intersections(x); !through.empty())
+    throw std::invalid_argument(fmt::format("expected cloth that does not begin through itself, as {} and {} do",
+                                            cell(through.front()[0]), cell(through.front()[1])));
+  constexpr double round_off = 1e-9;
+  std::vector<Proximity> near;
+  contacts.near(x, (1 - round_off) * thickness, near);
+  if (near.empty()) return;
+  const Proximity& nearest = *std::ranges::min_element(near, {}, &Proximity::distance);
+  throw std::invalid_argument(fmt::format(
+      "expected cloth to begin at least contact.thickness = {:g} m from itself, not {:.3g} m as {} and {} do", thickness,
+      nearest.distance, particle_at(garment, nearest.particles[0]), particle_at(garment, nearest.particles[2])));
+}
+
+}  // namespace drape::model

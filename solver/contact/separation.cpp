@@ -1,0 +1,180 @@
+#include "solver/contact/separation.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "solver/base/decompositions.hpp"
+#include "solver/base/disjoint_sets.hpp"
+#include "solver/base/stopwatch.hpp"
+#include "solver/filter.hpp"
+
+namespace drape::solver {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+constexpr int wanting_rounds = 5;   ///< for the wanted distance
+constexpr int pushing_rounds = 20;  ///< of impulses; pairs that need more move as one body
+constexpr int most_rounds = 100;
+constexpr int pushing_sweeps = 30;  ///< over all pairs in a round
+constexpr double regained = 0.05;   ///< part of what is missing of the distance that pairs gain in a step
+constexpr double enough = 1e-3;     ///< part of the distance by which a sweep moves nothing any more
+
+/// Mass, centre and momenta of some particles.
+struct Body {
+  double mass = 0;
+  Vector3d centre = Vector3d::Zero();
+  Matrix3d inertia = Matrix3d::Zero();
+};
+
+template <class Particles, class Mass>
+Body body_of(const Particles& particles, const Mass& mass, const Vectors& x) {
+  Body body;
+  for (const int i : particles) {
+    body.mass += mass(i);
+    body.centre += mass(i) * x.row(i).transpose();
+  }
+  body.centre /= body.mass;
+  for (const int i : particles) {
+    const Vector3d arm = x.row(i).transpose() - body.centre;
+    body.inertia += mass(i) * (arm.squaredNorm() * Matrix3d::Identity() - arm * arm.transpose());
+  }
+  return body;
+}
+
+}  // namespace
+
+Separation::Separation(const SplitOde& ode)
+    : ode_(ode),
+      lightness_(static_cast<std::size_t>(ode.particles())),
+      joined_(ode.particles()),
+      pushed_(
+          ode.work->counter("separated_pairs", "pairs of the cloth that were pushed apart after a step, summed over rounds")),
+      rigid_(ode.work->counter("rigid_particles", "particles that moved with others as one body after a step")) {
+  for (int i = 0; i < ode.particles(); ++i) lightness_[i] = 1 / ode.mass[i];
+  for (const Pin& pin : ode.pins) lightness_[pin.particle] = 0;
+}
+
+double Separation::Push::missing(const Vectors& x) const {
+  Vector3d between = Vector3d::Zero();
+  for (int k = 0; k < 4; ++k) between += weights[k] * x.row(particles[k]).transpose();
+  return aim - between.dot(normal);
+}
+
+void Separation::Push::give(double impulse, Vectors& x) {
+  given += impulse;
+  for (int k = 0; k < 4; ++k) x.row(particles[k]) += impulse * way[k];
+}
+
+/// Impulses that change x1 by h times the change of v1 keep angular momentum if they have no torque about x1 − h v1.
+Separation::Push Separation::push_of(const PairContact& pair, double distance, const Vectors& arms) const {
+  const bool near = pair.begin.distance < distance;
+  const PairContact::Points& points = near ? pair.begin : pair.touch;
+  Push push{pair.particles, {}, points.weights, points.normal, 0, distance * (1 + enough)};
+  if (near) push.aim = pair.begin.distance + regained * (distance - pair.begin.distance);
+  for (int k = 0; k < 4; ++k) push.way[k] = lightness_[pair.particles[k]] * points.weights[k] * points.normal;
+  const auto light = [&](int i) { return lightness_[i]; };
+  if (std::ranges::none_of(pair.particles, [&](int i) { return light(i) == 0; })) {
+    const Body body = body_of(
+        pair.particles, [&](int i) { return ode_.mass[i]; }, arms);
+    Vector3d torque = Vector3d::Zero();  // about the centre; the sum of impulses is 0
+    for (int k = 0; k < 4; ++k)
+      torque += (arms.row(pair.particles[k]).transpose() - body.centre).cross(points.weights[k] * points.normal);
+    const Vector3d turn = base::pseudo_inverse(body.inertia) * torque;
+    for (int k = 0; k < 4; ++k) push.way[k] -= turn.cross(arms.row(pair.particles[k]).transpose() - body.centre);
+  }
+  for (int k = 0; k < 4; ++k) push.gain += points.weights[k] * push.way[k].dot(points.normal);
+  return push;
+}
+
+/// Particles that are deep already need not come out.
+void Separation::bound(std::span<const Contact> contacts, const Vectors& x1) {
+  bounds_.clear();
+  for (const Contact& contact : contacts)
+    if (lightness_[contact.particle] > 0)
+      bounds_.push_back(
+          {contact.particle, contact.normal, std::min(contact.least, x1.row(contact.particle).dot(contact.normal))});
+}
+
+void Separation::push_out(Vectors& x1) {
+  for (Bound& bound : bounds_) {
+    const double way = std::max(bound.least - x1.row(bound.particle).dot(bound.normal), -bound.given);
+    bound.given += way;
+    x1.row(bound.particle) += way * bound.normal;
+  }
+}
+
+/// By Gauss and Seidel's iteration over all pairs; impulses that are not needed any more are taken back.
+void Separation::push_apart(const Vectors& arms, double distance, Vectors& x1) {
+  pushes_.clear();
+  for (const PairContact& pair : found_) {
+    const Push push = push_of(pair, distance, arms);
+    if (push.gain > 0) pushes_.push_back(push);
+  }
+  for (Bound& bound : bounds_) bound.given = 0;
+  double most = distance;
+  for (int sweep = 0; sweep < pushing_sweeps && most > enough * distance; ++sweep) {
+    most = 0;
+    for (Push& push : pushes_) {
+      const double impulse = std::max(push.missing(x1) / push.gain, -push.given);
+      push.give(impulse, x1);
+      most = std::max(most, std::abs(impulse) * push.gain);
+    }
+    push_out(x1);
+  }
+}
+
+/// Moves sets of pairs that still meet as one body, which has their momentum and angular momentum.
+void Separation::move_rigidly(const Vectors& x0, Vectors& x1) {
+  for (const PairContact& pair : found_)
+    for (int k = 1; k < 4; ++k) joined_.join(pair.particles[0], pair.particles[k]);
+  std::vector<std::vector<int>> bodies(lightness_.size());
+  for (int i = 0; i < ode_.particles(); ++i) bodies[joined_.root(i)].push_back(i);
+  // Pinned particles are much heavier than the others of their body, so that these follow them.
+  constexpr double heavy = 1e6;
+  const auto mass = [&](int i) { return lightness_[i] > 0 ? ode_.mass[i] : heavy * ode_.mass[i]; };
+  for (const std::vector<int>& particles : bodies) {
+    if (particles.size() < 2) continue;
+    rigid_ += std::ssize(particles);
+    const Body body = body_of(particles, mass, x0);
+    Vector3d way = Vector3d::Zero(), spin = Vector3d::Zero();
+    for (const int i : particles) way += mass(i) / body.mass * (x1.row(i) - x0.row(i)).transpose();
+    for (const int i : particles)
+      spin += mass(i) * (x0.row(i).transpose() - body.centre).cross((x1.row(i) - x0.row(i)).transpose());
+    const Vector3d turn = base::pseudo_inverse(body.inertia) * spin;
+    const double angle = turn.norm();
+    const Matrix3d rotation =
+        angle > 0 ? Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix() : Matrix3d(Matrix3d::Identity());
+    for (const int i : particles)
+      if (lightness_[i] > 0) x1.row(i) = body.centre + way + rotation * (x0.row(i).transpose() - body.centre);
+  }
+}
+
+bool Separation::separate(const State& y0, double h, const Distances& distances, std::span<const Contact> contacts, State& y1) {
+  const base::Stopwatch stopwatch(ode_.response_ms);
+  x1_ = y1.x;
+  joined_ = base::DisjointSets(ode_.particles());
+  arms_ = y1.x - h * y1.v;
+  bound(contacts, x1_);
+  for (int round = 0; round < most_rounds; ++round) {
+    const double distance = round < wanting_rounds ? distances.wanted : distances.least;
+    ode_.pairs->find(y0.x, x1_, distance, found_);
+    if (found_.empty()) {
+      if (round > 0) {
+        y1.v += (x1_ - y1.x) / h;
+        y1.x = x1_;
+      }
+      return true;
+    }
+    if (round < pushing_rounds) {
+      pushed_ += std::ssize(found_);
+      push_apart(arms_, distance, x1_);
+    } else {
+      move_rigidly(y0.x, x1_);
+    }
+  }
+  return false;
+}
+
+}  // namespace drape::solver

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "solver/base/disjoint_sets.hpp"
+#include "solver/contact/pair_search.hpp"
+#include "solver/split_ode.hpp"
+
+namespace drape::solver {
+
+/// Keeps a cloth apart from itself after a step, whatever method has taken it: pairs that meet on the way are pushed apart by
+/// inelastic impulses, one after the other [Bridson, Fedkiw, Anderson 2002]; what still meets then moves as one rigid body
+/// [Provot 1997]. Both keep momentum, and angular momentum where x1 = x0 + h v1.
+class Separation {
+ public:
+  explicit Separation(const SplitOde& ode);
+
+  /// Distances between pairs.
+  struct Distances {
+    double wanted;  ///< [m], by impulses as far as some rounds of them do it
+    double least;   ///< [m]
+  };
+
+  /// Changes y1 so that no pair comes nearer than the least distance on straight ways from y0, or nearer than it began, and no
+  /// particle goes deeper into the half-spaces of these contacts. False if that is not possible, as where pins force pairs
+  /// through each other.
+  bool separate(const State& y0, double h, const Distances& distances, std::span<const Contact> contacts, State& y1);
+
+ private:
+  /// How the particles of a pair move for a unit of impulse along its constraint, without what would turn or move the four as a
+  /// whole.
+  struct Push {
+    std::array<int, 4> particles;
+    std::array<Eigen::Vector3d, 4> way;
+    Eigen::Vector4d weights;
+    Eigen::Vector3d normal;
+    double gain;       ///< growth of the distance
+    double aim;        ///< distance that is wanted [m]
+    double given = 0;  ///< impulse
+
+    double missing(const Vectors& x) const;  ///< of the distance [m]
+    void give(double impulse, Vectors& x);
+  };
+
+  Push push_of(const PairContact& pair, double distance, const Vectors& arms) const;
+  void bound(std::span<const Contact> contacts, const Vectors& x1);
+  void push_apart(const Vectors& arms, double distance, Vectors& x1);
+  void push_out(Vectors& x1);
+  void move_rigidly(const Vectors& x0, Vectors& x1);
+
+  /// A half-space, in which a particle has been pushed by so far.
+  struct Bound {
+    int particle;
+    Eigen::Vector3d normal;
+    double least;      ///< <x, n> [m]
+    double given = 0;  ///< [m]
+  };
+
+  const SplitOde& ode_;
+  std::vector<double> lightness_;  ///< 1/m of each particle, 0 of those that are pinned [1/kg]
+  std::vector<PairContact> found_;
+  std::vector<Push> pushes_;
+  std::vector<Bound> bounds_;
+  base::DisjointSets joined_;  ///< particles that move as one body
+  Vectors x1_, arms_;
+  std::int64_t &pushed_, &rigid_;
+};
+
+}  // namespace drape::solver

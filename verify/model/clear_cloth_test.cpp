@@ -1,0 +1,65 @@
+// Cloth that cannot meet itself is refused in one line that says where.
+
+#include "model/clear_cloth.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+#include <string>
+
+#include "model/scene_file/scene_file.hpp"
+
+namespace drape::verify::clear_cloth_test {
+namespace {
+
+using testing::HasSubstr;
+
+std::string complaint(const std::string& toml) {
+  try {
+    model::require_clear_cloth(model::parse_scene("name = 'a'\n" + toml, "a.toml"));
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "";
+}
+
+/// Two squares of 4 × 4 particles and 0.3 m; `upper`: the start of the second.
+std::string plates(const std::string& upper, const std::string& thickness = "0.01") {
+  return "contact.thickness = " + thickness +
+         "\n[grid]\nn = 4\nsize = 0.3\n[[panels]]\nname = 'lower'\n[[panels]]\nname = 'upper'\n" + upper;
+}
+
+TEST(ClearCloth, BeginsApartFromItself) {
+  EXPECT_EQ(complaint(plates("start.position = [0.02, 0.01, 0.0101]")), "");
+  EXPECT_EQ(complaint(plates("start.position = [0.02, 0.01, 0]", "0")), "");
+  EXPECT_THAT(
+      complaint(plates("start.position = [0.02, 0.01, 0.0099]")),
+      AllOf(HasSubstr("expected cloth to begin at least contact.thickness = 0.01 m from itself, not 0.0099 m as particle ["),
+            HasSubstr("of panel 'upper'"), HasSubstr("of panel 'lower'")));
+}
+
+TEST(ClearCloth, DoesNotBeginThroughItself) {
+  EXPECT_THAT(complaint(plates("start.position = [0.02, 0.01, -0.02]\nstart.rotation = [20, 0, 0]")),
+              AllOf(HasSubstr("expected cloth that does not begin through itself, as cell ["),
+                    HasSubstr("of panel 'lower' and cell ["), HasSubstr("of panel 'upper' do")));
+}
+
+TEST(ClearCloth, IsThinnerThanItsTriangles) {
+  const std::string sheet = "[grid]\nn = [4, 2]\nsize = [0.3, 0.1]\n[contact]\nthickness = ";  // altitudes of 0.1/√2 m
+  EXPECT_EQ(complaint(sheet + "0.0353"), "");
+  EXPECT_THAT(
+      complaint(sheet + "0.0354"),
+      HasSubstr(
+          "contact.thickness = 0.0354: expected at most half of the smallest altitude of triangles, 0.0354 m in cell [0, 0]"));
+}
+
+TEST(ClearCloth, IsNotPulledTogetherBySeams) {
+  model::Scene scene = model::load_scene("sewn_dress");
+  EXPECT_NO_THROW(model::require_clear_cloth(scene));
+  scene.contact.thickness = 0.003;
+  EXPECT_THROW(model::require_clear_cloth(scene), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace drape::verify::clear_cloth_test

@@ -1,0 +1,253 @@
+// Cloth meets itself: pairs of faces, vertices and edges are constrained in the systems of a step, and separated after it.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "bench/runs/record.hpp"
+#include "model/collision/self_contacts.hpp"
+#include "solver/contact/pair_search.hpp"
+#include "solver/contact/separation.hpp"
+#include "verify/support/contact_scenes.hpp"
+#include "verify/support/slow.hpp"
+
+namespace drape::verify::self_contact_test {
+namespace {
+
+using contact_scenes::Moment;
+using contact_scenes::Trial;
+using Eigen::Vector3d;
+using solver::State;
+using solver::Vectors;
+
+Trial compiled(const std::string& toml, std::span<const model::Override> changes = {}) {
+  const model::Scene scene = model::parse_scene("name = 'test'\n" + toml, "test", changes);
+  return {scene, model::compile(scene)};
+}
+
+/// Two squares of 8 × 8 particles; the upper one flies against the lower one, which rests.
+Trial plates(std::span<const model::Override> changes = {}) {
+  return compiled(
+      "grid = { n = 8, size = 0.2 }\n"
+      "material = { density = 0.3, tension = 200, damping = 0.2, shear = 10, bend = 1e-5 }\n"
+      "contact = { thickness = 0.005 }\nend = { time = 0.06 }\n"
+      "[[panels]]\nname = 'lower'\n"
+      "[[panels]]\nname = 'upper'\nstart.position = [0.0071, 0.0043, 0.022]\nstart.velocity = [0, 0, -1]\n",
+      changes);
+}
+
+Vector3d momentum(const solver::SplitOde& ode, const State& y) { return (ode.mass.asDiagonal() * y.v).colwise().sum(); }
+
+Vector3d angular_momentum(const solver::SplitOde& ode, const State& y) {
+  Vector3d sum = Vector3d::Zero();
+  for (int i = 0; i < ode.particles(); ++i) {
+    const Vector3d x = y.x.row(i), v = y.v.row(i);
+    sum += ode.mass[i] * x.cross(v);
+  }
+  return sum;
+}
+
+/// The least distance of a cloth from itself [m], if it is below `reach`.
+double least_distance(const model::Cloth& cloth, const Vectors& x, double reach) {
+  solver::Counters unused;
+  std::vector<model::Proximity> near;
+  model::SelfContacts(model::ClothSurface(*cloth.garment), unused).near(x, reach, near);
+  for (const model::Proximity& pair : near) reach = std::min(reach, pair.distance);
+  return reach;
+}
+
+class SelfContactBy : public testing::TestWithParam<std::string> {};
+
+TEST_P(SelfContactBy, StopsASheetThatFliesAgainstAnother) {
+  const Trial trial = plates();
+  const std::vector<Moment> moments = contact_scenes::run(trial, GetParam(), 0.01);
+  const solver::SplitOde& ode = trial.cloth.ode;
+  const double before = solver::kinetic_energy(ode, moments.front().y.v);
+  for (const Moment& moment : moments) {
+    EXPECT_GE(least_distance(trial.cloth, moment.y.x, 0.006), 0.9 * 0.005) << moment.t;
+    EXPECT_LE((momentum(ode, moment.y) - momentum(ode, moments.front().y)).norm(), 1e-3 * 0.012) << moment.t;
+  }
+  EXPECT_NEAR(solver::kinetic_energy(ode, moments.back().y.v) / before, 0.5, 0.01);  // inelastic, of equal masses
+}
+
+TEST_P(SelfContactBy, CostsNoSystemsWhereNothingMeets) {
+  const model::Override apart[] = {{"end.time", "0.01"}}, without[] = {{"end.time", "0.01"}, {"contact.thickness", "0"}};
+  const Trial thick = plates(apart), thin = plates(without);
+  const std::vector<Moment> met = contact_scenes::run(thick, GetParam(), 0.01),
+                            free = contact_scenes::run(thin, GetParam(), 0.01);
+  EXPECT_EQ(met.back().y.x, free.back().y.x);
+  for (const char* counter : {"updates", "cg_iterations"})
+    EXPECT_EQ(thick.cloth.ode.work->count(counter), thin.cloth.ode.work->count(counter)) << counter;
+  EXPECT_THROW((void)thin.cloth.ode.work->count("self_pairs"), std::out_of_range);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, SelfContactBy,
+                         testing::Values("imex-euler", "implicit-euler", "sbdf2", "bdf2", "midpoint", "verlet"),
+                         [](const auto& method) {
+                           std::string name = method.param;
+                           std::ranges::replace(name, '-', '_');
+                           return name;
+                         });
+
+TEST(SelfContact, KeepsBothMomentaToRoundOff) {
+  // Without forces between particles all changes are those of contacts; explicit and implicit response.
+  for (const char* method : {"implicit-euler", "verlet"}) {
+    const model::Override loose[] = {
+        {"material.tension", "0"}, {"material.shear", "0"}, {"material.bend", "0"}, {"material.damping", "0"}};
+    const Trial trial = plates(loose);
+    const solver::SplitOde& ode = trial.cloth.ode;
+    const std::vector<Moment> moments = contact_scenes::run(trial, method, 0.01);
+    EXPECT_LE((momentum(ode, moments.back().y) - momentum(ode, moments.front().y)).norm(), 1e-12 * 0.012) << method;
+    EXPECT_LE((angular_momentum(ode, moments.back().y) - angular_momentum(ode, moments.front().y)).norm(), 1e-12 * 0.012)
+        << method;
+    EXPECT_LT(moments.back().energy, 0.6 * moments.front().energy) << method;
+  }
+}
+
+TEST(SelfContact, HoldsAStackAtRest) {
+  const Trial trial = compiled(
+      "grid = { n = 8, size = 0.2 }\n"
+      "material = { density = 0.3, tension = 200, damping = 0.2, shear = 10, bend = 1e-5 }\n"
+      "forces = { gravity = [0, 0, -9.81] }\nobstacles = [{ shape = 'plane' }]\n"
+      "contact = { distance = 0.005, thickness = 0.005 }\nend = { time = 0.4 }\n"
+      "[[panels]]\nname = 'lower'\nstart.position = [0, 0, 0.008]\n"
+      "[[panels]]\nname = 'middle'\nstart.position = [0.0071, 0.0043, 0.022]\n"
+      "[[panels]]\nname = 'upper'\nstart.position = [0.0031, 0.0133, 0.035]\n");
+  for (const double h : {0.01, 0.02}) {
+    const std::vector<Moment> moments = contact_scenes::run(trial, "bdf2", h);
+    const State& rest = moments.back().y;
+    EXPECT_LE(rest.v.cwiseAbs().maxCoeff(), 1e-5) << h;
+    for (int layer = 0; layer < 3; ++layer)
+      for (int i = 64 * layer; i < 64 * (layer + 1); ++i) EXPECT_NEAR(rest.x(i, 2), 0.005 * (layer + 1), 1e-4) << h;
+    // The floor bears the weight of all layers.
+    EXPECT_NEAR(moments.back().contacts.impulse[2] / h, 9.81 * trial.cloth.ode.mass.sum(),
+                1e-3 * 9.81 * trial.cloth.ode.mass.sum())
+        << h;
+  }
+}
+
+/// Counts in how many frames of a run cloth intersects itself, or has particles inside obstacles.
+class Intersections : public bench::Observer {
+ public:
+  void begin(const model::Scene&, const model::Cloth& cloth, const State& start) override {
+    cloth_ = &cloth;
+    contacts_.emplace(model::ClothSurface(*cloth.garment), unused_);
+    count(cloth.begin, start.x);
+  }
+  void observe(const solver::StepReport& step) override { count(step.t, step.y.x); }
+
+  int frames = 0;
+
+ private:
+  void count(double t, const Vectors& x) {
+    frames += contacts_->intersections(x).empty() && cloth_->contacts->distances(t, x).minCoeff() > 0 ? 0 : 1;
+  }
+
+  const model::Cloth* cloth_ = nullptr;
+  solver::Counters unused_;
+  std::optional<model::SelfContacts> contacts_;
+};
+
+struct SceneRun {
+  std::string scene, method, step, thickness;
+};
+
+int intersecting_frames(const SceneRun& run) {
+  const model::Override change[] = {{"contact.thickness", run.thickness}};
+  const model::Scene scene = model::load_scene(run.scene, change);
+  Intersections intersections;
+  bench::Observer* const observers[] = {&intersections};
+  (void)bench::record({scene, "", &solver::method(run.method), std::stod(run.step), solver::Options{}}, observers);
+  return intersections.frames;
+}
+
+TEST(SelfContact, LeavesNoIntersectionInAnyFrame) {
+  DRAPE_SLOW();
+  for (const char* scene : {"sphere_drop", "cloth_stack"})
+    for (const char* method : {"imex-euler", "sbdf2", "midpoint", "verlet"})
+      for (const char* step : {"0.01", "0.02"})
+        EXPECT_EQ(intersecting_frames({scene, method, step, "0.005"}), 0) << scene << ", " << method << ", " << step;
+}
+
+TEST(SelfContact, WithoutWhichSheetsPassThroughThemselves) {
+  DRAPE_SLOW();
+  EXPECT_GT(intersecting_frames({"sphere_drop", "midpoint", "0.01", "0"}), 0);
+  EXPECT_GT(intersecting_frames({"cloth_stack", "midpoint", "0.01", "0"}), 0);
+}
+
+/// A vertex above the middle of a triangle, without forces; all of 1 kg.
+struct Falling {
+  solver::SplitOde ode;
+  State y0;
+};
+
+/// Pairs of that vertex with that face.
+class VertexAndFace : public solver::PairSearch {
+ public:
+  double thickness() const override { return 0.01; }
+  void find(const Vectors& x0, const Vectors& x1, double distance, std::vector<solver::PairContact>& found) override {
+    found.clear();
+    if (height(x1) < distance && height(x1) < height(x0)) found.push_back({{3, 0, 1, 2}, false, points(x0), points(x1)});
+  }
+  void renew(const Vectors& x, std::vector<solver::PairContact>& pairs) const override {
+    for (solver::PairContact& pair : pairs) pair.begin = points(x);
+  }
+
+ private:
+  static double height(const Vectors& x) { return x(3, 2) - (x(0, 2) + x(1, 2) + x(2, 2)) / 3; }
+  static solver::PairContact::Points points(const Vectors& x) {
+    return {{1, -1. / 3, -1. / 3, -1. / 3}, Vector3d::UnitZ(), height(x)};
+  }
+};
+
+Falling falling() {
+  Falling trial;
+  trial.ode.mass = Eigen::VectorXd::Ones(4);
+  trial.ode.pairs = std::make_shared<VertexAndFace>();
+  trial.y0.x.resize(4, 3);
+  trial.y0.x << 0, 0, 0, 0.3, 0, 0, 0, 0.3, 0, 0.1, 0.1, 0.02;
+  trial.y0.v.setZero(4, 3);
+  trial.y0.v(3, 2) = -5;
+  return trial;
+}
+
+/// The state after a step of 0.01 s without forces.
+State moved(const State& y0) { return {y0.x + 0.01 * y0.v, y0.v}; }
+
+TEST(Separation, PushesAPairApartAndKeepsMomenta) {
+  const Falling trial = falling();
+  State y1 = moved(trial.y0);
+  ASSERT_TRUE(solver::Separation(trial.ode).separate(trial.y0, 0.01, {0.01, 0.001}, {}, y1));
+  EXPECT_NEAR(y1.x(3, 2) - y1.x.col(2).head(3).mean(), 0.01, 2e-5);
+  EXPECT_LE((momentum(trial.ode, y1) - momentum(trial.ode, trial.y0)).norm(), 1e-15);
+  EXPECT_LE((angular_momentum(trial.ode, y1) - angular_momentum(trial.ode, trial.y0)).norm(), 1e-15);
+}
+
+TEST(Separation, DoesNotMoveWhatIsPinnedNorPushIntoObstacles) {
+  Falling trial = falling();
+  for (const int i : {0, 1, 2}) trial.ode.pins.push_back({.particle = i});
+  State y1 = moved(trial.y0);
+  ASSERT_TRUE(solver::Separation(trial.ode).separate(trial.y0, 0.01, {0.01, 0.001}, {}, y1));
+  EXPECT_EQ(y1.x.topRows(3), trial.y0.x.topRows(3));
+  EXPECT_NEAR(y1.x(3, 2), 0.01, 2e-5);
+
+  Falling supported = falling();
+  std::vector<solver::Contact> floor;
+  for (const int i : {0, 1, 2}) floor.push_back({.particle = i, .normal = Vector3d::UnitZ(), .gap = 0, .least = 0});
+  y1 = moved(supported.y0);
+  ASSERT_TRUE(solver::Separation(supported.ode).separate(supported.y0, 0.01, {0.01, 0.001}, floor, y1));
+  for (const int i : {0, 1, 2}) EXPECT_GE(y1.x(i, 2), -1e-12);
+  EXPECT_GE(y1.x(3, 2), 0.001);
+}
+
+TEST(Separation, SaysWherePinsForceAPairThroughItself) {
+  Falling trial = falling();
+  for (const int i : {0, 1, 2, 3}) trial.ode.pins.push_back({.particle = i});
+  State y1 = moved(trial.y0);
+  EXPECT_FALSE(solver::Separation(trial.ode).separate(trial.y0, 0.01, {0.01, 0.001}, {}, y1));
+}
+
+}  // namespace
+}  // namespace drape::verify::self_contact_test
