@@ -269,8 +269,9 @@ bool PairResponse::update(State& y, const Vectors& r, const Eigen::VectorXd& bou
 void PairResponse::impose(const Stage& stage, State& y) const {
   if (!factor_) return;
   const base::Stopwatch stopwatch(ode_.response_ms);
+  const Vectors before = y.v;
   factor_->add(constrained([](const Row& row) { return row.target; }) - speeds(y.v), y.v);
-  y.x = stage.ax + stage.gamma * y.v;
+  y.x += stage.gamma * (y.v - before);  // obstacles have set some directions of x already
   const auto distance = [&](const Row& row) { return row.pair.begin.distance + (stage.t - t0_) * row.target; };
   factor_->add(constrained(distance) - speeds(y.x), y.x);
 }

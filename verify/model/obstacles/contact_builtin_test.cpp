@@ -20,12 +20,13 @@ using namespace contact_scenes;
 
 constexpr double h = 0.01;
 
-/// Cloth that meets itself has tests of its own (self_contact_test.cpp).
+/// Without scenes whose pins follow paths: what runs here is the first phase of a scene.
 std::vector<std::string> names(bool with_obstacles) {
   std::vector<std::string> found;
   for (const auto& [name, toml] : model::builtin_scenes())
     if (const model::Scene scene = model::load_scene(std::string(name));
-        scene.panels.empty() && scene.contact.thickness == 0 && scene.obstacles.empty() != with_obstacles)
+        scene.panels.empty() && scene.obstacles.empty() != with_obstacles &&
+        std::ranges::all_of(scene.pins, [](const model::PinRule& pin) { return pin.path.empty(); }))
       found.emplace_back(name);
   return found;
 }
@@ -38,7 +39,7 @@ std::string word(std::string name) {
 
 /// A method that iterates takes long: it runs through the first impacts only, unless the cloth still falls then.
 Trial trial_of(const std::string& name, const std::string& method) {
-  if (method != "bdf2" || name == "mannequin") return builtin(name);
+  if (method != "bdf2" || name == "mannequin" || name == "sphere_drop") return builtin(name);
   const std::vector<model::Override> shorter{{"end.time", fmt::format("{}", 0.25 * model::load_scene(name).end)}};
   return builtin(name, shorter);
 }
@@ -58,9 +59,7 @@ TEST_P(BuiltinContact, StaysOutsideLosesEnergyAndComesToRest) {
   const auto moments = run(trial, method, h);
   const auto [least, most] = std::ranges::minmax(moments, {}, &Moment::energy);
   EXPECT_GE(clearance(trial, moments), trial.scene.contact.distance - 1e-9);
-  // On the mannequin BDF(2) gains nothing or 49 J, as its processor rounds: friction there reverses within a step.
-  if (name != "mannequin" || method != "bdf2")
-    EXPECT_LE(energy_rise(moments), 1e-4 * (most.energy - least.energy)) << "of the energy that was lost";
+  EXPECT_LE(energy_rise(moments), 1e-4 * (most.energy - least.energy)) << "of the energy that was lost";
   EXPECT_GT(moments.back().contacts.constrained, 0);
   const auto fastest = std::ranges::max(moments, {}, [&](const Moment& moment) { return kinetic(trial, moment); });
   EXPECT_LE(kinetic(trial, moments.back()), (method == "bdf2" ? 0.2 : 0.02) * kinetic(trial, fastest));
