@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "model/collision/self_contacts.hpp"
@@ -15,6 +16,13 @@
 namespace drape::model {
 namespace {
 
+/// "cell [3, 4] of panel 'front'"; `particle`: its first one.
+std::string cloth_place(std::string_view what, const Garment::Panel& panel, int particle) {
+  const int nu = panel.sheet.grid.nu;
+  const std::string place = fmt::format("{} [{}, {}]", what, particle % nu, particle / nu);
+  return panel.name.empty() ? place : fmt::format("{} of panel '{}'", place, panel.name);
+}
+
 /// The cell that has all corners of a face.
 std::string cell_of(const Garment& garment, const ClothSurface::Face& face) {
   for (const Garment::Panel& panel : garment.panels())
@@ -23,21 +31,15 @@ std::string cell_of(const Garment& garment, const ClothSurface::Face& face) {
         return std::ranges::any_of(
             cell.corner, [&](const auto& side) { return panel.node(side[0]) == node || panel.node(side[1]) == node; });
       };
-      if (!std::ranges::all_of(face.corners, is_corner)) continue;
-      const int first = cell.corner[0][0], nu = panel.sheet.grid.nu;
-      const std::string place = fmt::format("cell [{}, {}]", first % nu, first / nu);
-      return panel.name.empty() ? place : fmt::format("{} of panel '{}'", place, panel.name);
+      if (std::ranges::all_of(face.corners, is_corner)) return cloth_place("cell", panel, cell.corner[0][0]);
     }
   return "an edge of a chain";
 }
 
 std::string particle_at(const Garment& garment, int node) {
   for (const Garment::Panel& panel : garment.panels())
-    for (int i = 0; i < panel.sheet.grid.particles(); ++i) {
-      if (panel.node(i) != node) continue;
-      const std::string place = fmt::format("particle [{}, {}]", i % panel.sheet.grid.nu, i / panel.sheet.grid.nu);
-      return panel.name.empty() ? place : fmt::format("{} of panel '{}'", place, panel.name);
-    }
+    for (int i = 0; i < panel.sheet.grid.particles(); ++i)
+      if (panel.node(i) == node) return cloth_place("particle", panel, i);
   return "a particle";
 }
 
@@ -64,11 +66,10 @@ Flattest flattest(const ClothSurface& surface, const Vectors& x) {
 void require_clear_cloth(const Scene& scene) {
   const double thickness = scene.contact.thickness;
   if (thickness == 0) return;
-  for (const Scene& phase : phases(scene))
-    if (phase.seam_state == SeamState::pulled)
-      throw std::invalid_argument(
-          "contact.thickness: expected a garment that is sewn from the start, not seams that are pulled");
-  const Garment garment(phases(scene).front());
+  const std::vector<Scene> all = phases(scene);
+  if (std::ranges::find(all, SeamState::pulled, &Scene::seam_state) != all.end())
+    throw std::invalid_argument("contact.thickness: expected a garment that is sewn from the start, not seams that are pulled");
+  const Garment garment(all.front());
   const Vectors x = garment.start().x;
   solver::Counters unused;
   SelfContacts contacts(ClothSurface(garment), unused);

@@ -7,7 +7,7 @@
 
 namespace drape::solver {
 
-/// Removes from a vector field what several particles have in common.
+/// An orthogonal projector that couples particles.
 class Projector {
  public:
   virtual ~Projector() = default;

@@ -32,7 +32,8 @@ void ContactObserver::see(double t, const solver::State& y) {
 std::vector<bool> in_contact(const model::Scene& scene, const model::Cloth& cloth, double t, const solver::Vectors& x) {
   std::vector<bool> touching;
   if (!cloth.contacts) return touching;
-  for (const double distance : cloth.contacts->distances(t, x)) touching.push_back(distance <= 1.05 * scene.contact.distance);
+  for (const double distance : cloth.contacts->distances(t, x))
+    touching.push_back(distance <= contact_reach * scene.contact.distance);
   return touching;
 }
 

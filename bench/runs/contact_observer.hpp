@@ -26,7 +26,10 @@ class ContactObserver : public Observer {
   double start_ = 0, least_ = 0, scale_ = 0, rise_ = 0;  ///< energies [J]
 };
 
-/// Which particles are in contact: at most a twentieth of d away from the collision area. Empty without obstacles.
+/// What is at most this part of d away is in contact: a twentieth of d away from the collision area.
+constexpr double contact_reach = 1.05;
+
+/// Which particles are in contact. Empty without obstacles.
 std::vector<bool> in_contact(const model::Scene& scene, const model::Cloth& cloth, double t, const solver::Vectors& x);
 
 /// Area of the particles in contact, over that of the sheet.

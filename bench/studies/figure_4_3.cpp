@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "bench/runs/contact_observer.hpp"
 #include "bench/runs/record.hpp"
 #include "bench/runs/timing.hpp"
 #include "bench/studies/step_means.hpp"
@@ -58,7 +59,7 @@ class FacePairs : public Observer {
     constexpr double no_plane = 0;
     surface_.emplace(*cloth.garment);
     for (const model::ObstacleRule& rule : scene.obstacles) bodies_.emplace_back(rule, no_plane);
-    distance_ = 1.05 * scene.contact.distance;
+    distance_ = contact_reach * scene.contact.distance;
   }
   void observe(const solver::StepReport& step) override {
     counts_.push_back(model::face_pairs(*surface_, bodies_, step.t, step.y.x, distance_));

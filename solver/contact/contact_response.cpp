@@ -217,7 +217,7 @@ void ContactResponse::rebuild_filter() {
   }
   for (const Touched& p : touched_)
     if (p.status != Status::free || !p.free.isIdentity(0)) filter_.add(p.particle, p.free);
-  if (!pairs_ || pairs_->empty()) return;
+  if (!has_pairs()) return;
   pairs_->set_free(filter_);
   filter_.add(*pairs_);
 }
@@ -240,16 +240,14 @@ void ContactResponse::impose(const Stage& stage, State& y) const {
 
 bool ContactResponse::update(const Stage& stage, State& y, const Vectors& r, const Eigen::VectorXd& bounds, double noise,
                              Changes changes) {
-  if (!pairs_ || pairs_->empty()) return update_particles(stage, y, r, noise, changes);
+  if (!has_pairs()) return update_particles(stage, y, r, noise, changes);
   rubbed_ = r;
   pairs_->add_forces(rubbed_);
   const bool changed = update_particles(stage, y, rubbed_, noise, changes);
   rubbed_ = r;
   add_friction(stage.gamma, rubbed_);
   find_supports(r, y.v);
-  using PairChanges = PairResponse::Changes;
-  const PairChanges may_change = changes == Changes::captures ? PairChanges::captures : PairChanges::all;
-  if (!pairs_->update(y, rubbed_, bounds, noise, may_change, supports_)) return changed;
+  if (!pairs_->update(y, rubbed_, bounds, noise, changes != Changes::captures, supports_)) return changed;
   leave_supports();
   rebuild_filter();
   return true;

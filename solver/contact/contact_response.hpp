@@ -37,7 +37,10 @@ class ContactResponse {
   void begin_part(double t0, double h, const State& y0);
 
   /// Whether nothing can be touched in this step.
-  bool empty() const { return touched_.empty() && (!pairs_ || pairs_->empty()); }
+  bool empty() const { return touched_.empty() && !has_pairs(); }
+
+  /// Whether pairs of the cloth may be constrained.
+  bool has_pairs() const { return pairs_ && !pairs_->empty(); }
 
   /// Adds constraints of pairs of the cloth that meet on the way to a stage's solution; true if there are any.
   bool find_pairs(const Stage& stage, const State& y);
@@ -59,8 +62,8 @@ class ContactResponse {
   };
 
   /// Adapts the constraints to a stage's solution y, and friction once no constraint changes. r: the whole residual
-  /// M (av − v) + γ f without friction; `bounds`: as PairResponse::update takes them; `noise`: round-off in r. True if
-  /// something changed, so that it must be imposed again.
+  /// M (av − v) + γ f without friction; `bounds`: as PairResponse::update takes them, if there are pairs; `noise`: round-off in
+  /// r. True if something changed, so that it must be imposed again.
   bool update(const Stage& stage, State& y, const Vectors& r, const Eigen::VectorXd& bounds, double noise, Changes changes);
 
   /// Adds γ times friction to a residual.

@@ -84,18 +84,6 @@ class PairResponse::Factor {
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> cholesky_;
 };
 
-double PairResponse::Row::speed(const Vectors& v) const {
-  double sum = 0;
-  for (int k = 0; k < 4; ++k) sum += pair.begin.weights[k] * v.row(pair.particles[k]).dot(pair.begin.normal);
-  return sum;
-}
-
-double PairResponse::Push::speed(const Vectors& v) const {
-  return (weights[0] * v.row(particles[0]) + weights[1] * v.row(particles[1]) + weights[2] * v.row(particles[2]) +
-          weights[3] * v.row(particles[3]))
-      .dot(normal);
-}
-
 void PairResponse::Push::give(double impulse, Vectors& v) const {
   for (int k = 0; k < 4; ++k) v.row(particles[k]) += impulse * way[k];
 }
@@ -149,9 +137,9 @@ void PairResponse::begin(double t0, double h, const State& y0, bool again) {
 }
 
 /// Constrains the rows that push, at the velocities of u, and keeps those that were constrained unless they are released.
-void PairResponse::activate(bool release) {
+void PairResponse::activate(bool releases) {
   for (Row& row : rows_) {
-    row.active = row.lambda > 0 || (row.active && !release);
+    row.active = row.lambda > 0 || (row.active && !releases);
     row.target = row.speed(u_);
   }
   factorise();
@@ -196,13 +184,12 @@ void PairResponse::settle(const Eigen::VectorXd& mass, double noise, std::vector
   for (const Support& support : supports) loose_[support.particle] += support.normal * support.normal.transpose();
   pushes_.clear();
   for (const Row& row : rows_) {
-    Push& push = pushes_.emplace_back(
-        Push{row.pair.particles, row.pair.begin.weights, row.pair.begin.normal, {}, 0, row.least, row.lambda});
+    Push& push = pushes_.emplace_back(Push{row.pair.particles, row.pair.begin, row.least, row.lambda});
     double unheld = 0;
     for (int k = 0; k < 4; ++k) {
-      const double m = mass[push.particles[k]], w = push.weights[k];
-      push.way[k] = w / m * (loose_[push.particles[k]] * push.normal);
-      push.gain += w * push.way[k].dot(push.normal);
+      const double m = mass[push.particles[k]], w = push.points.weights[k];
+      push.way[k] = w / m * (loose_[push.particles[k]] * push.points.normal);
+      push.gain += w * push.way[k].dot(push.points.normal);
       unheld += w * w / m;
     }
     if (push.gain < held_part * unheld) push.gain = 0;  // pins and obstacles hold the pair
@@ -215,7 +202,7 @@ void PairResponse::settle(const Eigen::VectorXd& mass, double noise, std::vector
     ++sweeps_;
     for (Push& push : pushes_) {
       if (push.gain == 0) continue;
-      const double impulse = std::max((push.least - push.speed(u_)) / push.gain, -push.lambda);
+      const double impulse = std::max((push.least - push.points.along_normal(push.particles, u_)) / push.gain, -push.lambda);
       if (impulse == 0) continue;
       push.lambda += impulse;
       push.give(impulse, u_);
@@ -232,12 +219,11 @@ void PairResponse::settle(const Eigen::VectorXd& mass, double noise, std::vector
   for (std::size_t r = 0; r < rows_.size(); ++r) rows_[r].lambda = pushes_[r].lambda;
 }
 
-bool PairResponse::update(State& y, const Vectors& r, const Eigen::VectorXd& bounds, double noise, Changes changes,
+bool PairResponse::update(State& y, const Vectors& r, const Eigen::VectorXd& bounds, double noise, bool releases,
                           std::vector<Support>& supports) {
   if (rows_.empty()) return false;
   const base::Stopwatch stopwatch(ode_.response_ms);
-  const bool release = changes == Changes::all;
-  if (!release) supports.clear();
+  if (!releases) supports.clear();
   std::vector<char> moved(static_cast<std::size_t>(ode_.particles()), false);
   for (const Row& row : rows_)
     for (const int i : row.pair.particles) moved[i] = true;
@@ -254,7 +240,7 @@ bool PairResponse::update(State& y, const Vectors& r, const Eigen::VectorXd& bou
   settle(bounds, noise, supports);
   const double left = (bounds.asDiagonal() * (u_ - y.v)).norm();
   const bool differs =
-      std::ranges::any_of(rows_, [&](const Row& row) { return row.lambda > 0 ? !row.active : release && row.active; }) ||
+      std::ranges::any_of(rows_, [&](const Row& row) { return row.lambda > 0 ? !row.active : releases && row.active; }) ||
       std::ranges::any_of(supports, [](const Support& support) { return support.lambda == 0; });
   if (!differs || left <= 3 * noise) {
     supports.clear();
@@ -262,13 +248,12 @@ bool PairResponse::update(State& y, const Vectors& r, const Eigen::VectorXd& bou
   }
   ++changes_;
   y.v = u_;
-  activate(release);
+  activate(releases);
   return true;
 }
 
 void PairResponse::impose(const Stage& stage, State& y) const {
   if (!factor_) return;
-  const base::Stopwatch stopwatch(ode_.response_ms);
   const Vectors before = y.v;
   factor_->add(constrained([](const Row& row) { return row.target; }) - speeds(y.v), y.v);
   y.x += stage.gamma * (y.v - before);  // obstacles have set some directions of x already
@@ -326,7 +311,6 @@ void PairResponse::stop(State& y1) {
 
 bool PairResponse::finish(State& y1, State& y0) {
   if (!factor_) return false;
-  const base::Stopwatch stopwatch(ode_.response_ms);
   constrained_pairs_ += constrained();
   stop(y1);
   if (!impact()) return false;

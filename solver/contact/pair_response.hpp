@@ -43,9 +43,6 @@ class PairResponse : public Projector {
   /// Sets the constrained components of v, and those of x at the time of the stage.
   void impose(const Stage& stage, State& y) const;
 
-  /// What may change in an update.
-  enum class Changes { all, captures };
-
   /// A contact with an obstacle that constrains a particle, and from which pairs may push it.
   struct Support {
     int particle;
@@ -55,8 +52,9 @@ class PairResponse : public Projector {
   };
 
   /// Adapts the constrained rows, and v to them, to a stage's solution y with residual r; true if they changed. `bounds`: for
-  /// each particle more than the eigenvalues of the stage's matrix [kg]; `noise`: of r. `supports`: that may be released.
-  bool update(State& y, const Vectors& r, const Eigen::VectorXd& bounds, double noise, Changes changes,
+  /// each particle more than the eigenvalues of the stage's matrix [kg]; `noise`: of r. `releases`: whether rows and supports
+  /// may be released.
+  bool update(State& y, const Vectors& r, const Eigen::VectorXd& bounds, double noise, bool releases,
               std::vector<Support>& supports);
 
   /// Adds the multipliers of constrained rows to a residual.
@@ -85,26 +83,24 @@ class PairResponse : public Projector {
     bool active = false;                       ///< whether it is constrained
     bool before = false;                       ///< whether it was in the step before
 
-    double speed(const Vectors& v) const;  ///< Σ w <v, n>
+    double speed(const Vectors& v) const { return pair.begin.along_normal(pair.particles, v); }
   };
   class Factor;
 
   /// A row as the sweeps over all of them need it.
   struct Push {
     std::array<int, 4> particles;
-    Eigen::Vector4d weights;
-    Eigen::Vector3d normal;
-    std::array<Eigen::Vector3d, 4> way;  ///< changes of velocities for a unit of impulse [1/kg]
-    double gain;                         ///< change of the speed [1/kg]
-    double least, lambda;
+    PairContact::Points points;
+    double least, lambda;                     ///< those of the row
+    std::array<Eigen::Vector3d, 4> way = {};  ///< changes of velocities for a unit of impulse [1/kg]
+    double gain = 0;                          ///< change of the speed [1/kg]
 
-    double speed(const Vectors& v) const;
     void give(double impulse, Vectors& v) const;
   };
 
   Row row_of(const PairContact& pair) const;
   void settle(const Eigen::VectorXd& mass, double noise, std::vector<Support>& supports);
-  void activate(bool release);
+  void activate(bool releases);
   void factorise();
   void stop(State& y1);
   template <class Value>

@@ -14,6 +14,12 @@ struct PairContact {
     Eigen::Vector4d weights;  ///< Σ w x is the vector from the second point to the first [m]; their sum is 0
     Eigen::Vector3d normal;   ///< unit, along it
     double distance;          ///< [m]
+
+    /// Σ w <v, n>: how fast the distance grows, or what it is along n if v are positions.
+    double along_normal(const std::array<int, 4>& of, const Vectors& v) const {
+      return (weights[0] * v.row(of[0]) + weights[1] * v.row(of[1]) + weights[2] * v.row(of[2]) + weights[3] * v.row(of[3]))
+          .dot(normal);
+    }
   };
   std::array<int, 4> particles;
   bool edges;    ///< whether it is one of two edges

@@ -21,7 +21,7 @@ constexpr int pushing_sweeps = 30;  ///< over all pairs in a round
 constexpr double regained = 0.05;   ///< part of what is missing of the distance that pairs gain in a step
 constexpr double enough = 1e-3;     ///< part of the distance by which a sweep moves nothing any more
 
-/// Mass, centre and momenta of some particles.
+/// Mass, centre and moments of inertia of some particles.
 struct Body {
   double mass = 0;
   Vector3d centre = Vector3d::Zero();
@@ -56,12 +56,6 @@ Separation::Separation(const SplitOde& ode)
   for (const Pin& pin : ode.pins) lightness_[pin.particle] = 0;
 }
 
-double Separation::Push::missing(const Vectors& x) const {
-  Vector3d between = Vector3d::Zero();
-  for (int k = 0; k < 4; ++k) between += weights[k] * x.row(particles[k]).transpose();
-  return aim - between.dot(normal);
-}
-
 void Separation::Push::give(double impulse, Vectors& x) {
   given += impulse;
   for (int k = 0; k < 4; ++k) x.row(particles[k]) += impulse * way[k];
@@ -70,21 +64,20 @@ void Separation::Push::give(double impulse, Vectors& x) {
 /// Impulses that change x1 by h times the change of v1 keep angular momentum if they have no torque about x1 − h v1.
 Separation::Push Separation::push_of(const PairContact& pair, double distance, const Vectors& arms) const {
   const bool near = pair.begin.distance < distance;
-  const PairContact::Points& points = near ? pair.begin : pair.touch;
-  Push push{pair.particles, {}, points.weights, points.normal, 0, distance * (1 + enough)};
+  Push push{pair.particles, near ? pair.begin : pair.touch, distance * (1 + enough)};
   if (near) push.aim = pair.begin.distance + regained * (distance - pair.begin.distance);
-  for (int k = 0; k < 4; ++k) push.way[k] = lightness_[pair.particles[k]] * points.weights[k] * points.normal;
-  const auto light = [&](int i) { return lightness_[i]; };
-  if (std::ranges::none_of(pair.particles, [&](int i) { return light(i) == 0; })) {
-    const Body body = body_of(
-        pair.particles, [&](int i) { return ode_.mass[i]; }, arms);
+  const auto impulse = [&](int k) -> Vector3d { return push.points.weights[k] * push.points.normal; };
+  for (int k = 0; k < 4; ++k) push.way[k] = lightness_[pair.particles[k]] * impulse(k);
+  if (std::ranges::none_of(pair.particles, [&](int i) { return lightness_[i] == 0; })) {
+    const auto mass = [&](int i) { return ode_.mass[i]; };
+    const Body body = body_of(pair.particles, mass, arms);
+    const auto arm = [&](int k) -> Vector3d { return arms.row(pair.particles[k]).transpose() - body.centre; };
     Vector3d torque = Vector3d::Zero();  // about the centre; the sum of impulses is 0
-    for (int k = 0; k < 4; ++k)
-      torque += (arms.row(pair.particles[k]).transpose() - body.centre).cross(points.weights[k] * points.normal);
+    for (int k = 0; k < 4; ++k) torque += arm(k).cross(impulse(k));
     const Vector3d turn = base::pseudo_inverse(body.inertia) * torque;
-    for (int k = 0; k < 4; ++k) push.way[k] -= turn.cross(arms.row(pair.particles[k]).transpose() - body.centre);
+    for (int k = 0; k < 4; ++k) push.way[k] -= turn.cross(arm(k));
   }
-  for (int k = 0; k < 4; ++k) push.gain += points.weights[k] * push.way[k].dot(points.normal);
+  for (int k = 0; k < 4; ++k) push.gain += impulse(k).dot(push.way[k]);
   return push;
 }
 
@@ -125,7 +118,7 @@ void Separation::push_apart(const Vectors& arms, double distance, Vectors& x1) {
   }
 }
 
-/// Moves sets of pairs that still meet as one body, which has their momentum and angular momentum.
+/// Moves sets of pairs that still meet as one body, which has their momentum and, for small angles, angular momentum.
 void Separation::move_rigidly(const Vectors& x0, Vectors& x1) {
   for (const PairContact& pair : found_)
     for (int k = 1; k < 4; ++k) joined_.join(pair.particles[0], pair.particles[k]);
@@ -152,7 +145,6 @@ void Separation::move_rigidly(const Vectors& x0, Vectors& x1) {
 }
 
 bool Separation::separate(const State& y0, double h, const Distances& distances, std::span<const Contact> contacts, State& y1) {
-  const base::Stopwatch stopwatch(ode_.response_ms);
   x1_ = y1.x;
   joined_ = base::DisjointSets(ode_.particles());
   arms_ = y1.x - h * y1.v;
@@ -167,6 +159,7 @@ bool Separation::separate(const State& y0, double h, const Distances& distances,
       }
       return true;
     }
+    const base::Stopwatch stopwatch(ode_.response_ms);
     if (round < pushing_rounds) {
       pushed_ += std::ssize(found_);
       push_apart(arms_, distance, x1_);

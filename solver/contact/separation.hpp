@@ -12,7 +12,8 @@ namespace drape::solver {
 
 /// Keeps a cloth apart from itself after a step, whatever method has taken it: pairs that meet on the way are pushed apart by
 /// inelastic impulses, one after the other [Bridson, Fedkiw, Anderson 2002]; what still meets then moves as one rigid body
-/// [Provot 1997]. Both keep momentum, and angular momentum where x1 = x0 + h v1.
+/// [Provot 1997]. Both keep momentum where nothing is pinned; impulses keep angular momentum, rigid motion does to the second
+/// order of the angle.
 class Separation {
  public:
   explicit Separation(const SplitOde& ode);
@@ -33,14 +34,13 @@ class Separation {
   /// whole.
   struct Push {
     std::array<int, 4> particles;
-    std::array<Eigen::Vector3d, 4> way;
-    Eigen::Vector4d weights;
-    Eigen::Vector3d normal;
-    double gain;       ///< growth of the distance
-    double aim;        ///< distance that is wanted [m]
+    PairContact::Points points;
+    double aim;  ///< distance that is wanted [m]
+    std::array<Eigen::Vector3d, 4> way = {};
+    double gain = 0;   ///< growth of the distance
     double given = 0;  ///< impulse
 
-    double missing(const Vectors& x) const;  ///< of the distance [m]
+    double missing(const Vectors& x) const { return aim - points.along_normal(particles, x); }  ///< of the distance [m]
     void give(double impulse, Vectors& x);
   };
 

@@ -168,7 +168,7 @@ void StageSystem::evaluate(const Stage& stage, const Vectors* f_explicit, State&
 bool StageSystem::adapt_contacts(const Stage& stage, const Vectors* f_explicit, State& y, double noise,
                                  ContactResponse::Changes changes) {
   // More than the eigenvalues of A, by Gershgorin: the rows of K and D sum to 0.
-  bounds_ = 2 * Eigen::VectorXd(A_.diagonal()) - inertia_ * ode_.mass;
+  if (contacts_->has_pairs()) bounds_ = 2 * Eigen::VectorXd(A_.diagonal()) - inertia_ * ode_.mass;
   const bool changed = contacts_->update(stage, y, r_, bounds_, noise, changes);
   if (changed) evaluate(stage, f_explicit, y);
   return changed;
