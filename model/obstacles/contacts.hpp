@@ -21,7 +21,7 @@ struct ContactRule {
   double distance = 5e-3;   ///< d: what is nearer than this is in the collision area [m]
   double relaxation = 0.5;  ///< ω: part of its depth in the collision area that a particle loses in a step (4.4)
   ResponseKind response = ResponseKind::constraint;
-  double thickness = 0;     ///< distance between layers of cloth that touch [m]; 0: cloth passes through itself
+  double thickness = 0;         ///< distance between layers of cloth that touch [m]; 0: cloth passes through itself
   double reaction_time = 0.02;  ///< τ [s]: the springs of reaction constraints have k = m/τ² and d = 2m/τ
 };
 
