@@ -50,9 +50,9 @@ class BoxTree {
 
   /// AlignedBox3d::intersects without its branches: half of the boxes overlap, in no order.
   static bool overlap(const Eigen::AlignedBox3d& one, const Eigen::AlignedBox3d& other) {
-    bool all = true;
-    for (int c = 0; c < 3; ++c) all &= (one.min()[c] <= other.max()[c]) & (other.min()[c] <= one.max()[c]);
-    return all;
+    int all = 1;
+    for (int c = 0; c < 3; ++c) all &= int{one.min()[c] <= other.max()[c]} & int{other.min()[c] <= one.max()[c]};
+    return all != 0;
   }
 
   template <class Visit>
