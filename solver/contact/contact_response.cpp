@@ -317,15 +317,22 @@ bool ContactResponse::release(Touched& p, const PerContact& lambda, double noise
   return true;
 }
 
+/// Captures the contact that is violated most. One at a time: two contacts with almost parallel normals meet far away, and
+/// where the particle does not violate the second one any more, it has no reason to go there.
 bool ContactResponse::capture(Touched& p, const Eigen::Vector3d& x1) {
-  int captured = 0;
-  for (std::size_t k = p.begin; k < p.end && p.normals.cols() + captured < most_contacts; ++k) {
-    if (active_[k] || contacts_[k].least - x1.dot(contacts_[k].normal) <= violation_round_off * size_) continue;
+  if (p.normals.cols() == most_contacts) return false;
+  double most = violation_round_off * size_;
+  std::size_t captured = p.end;
+  for (std::size_t k = p.begin; k < p.end; ++k) {
+    const double violation = contacts_[k].least - x1.dot(contacts_[k].normal);
+    if (active_[k] || violation <= most) continue;
     if ((p.allowed * contacts_[k].normal).isZero(1e-6)) continue;  // pins decide
-    active_[k] = p.fresh = true;
-    ++captured;
+    most = violation;
+    captured = k;
   }
-  return captured > 0;
+  if (captured == p.end) return false;
+  active_[captured] = p.fresh = true;
+  return true;
 }
 
 /// Decides the friction of a new contact; later a particle that friction would reverse sticks.

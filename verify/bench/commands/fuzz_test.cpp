@@ -170,9 +170,11 @@ TEST(Fuzz, HostileScenesAreScenesOrErrors) {
   for (const char* name : {"hung-edge", "curtain", "box_swing"}) {
     const std::string good = model::to_toml(model::load_scene(name));
     for (int k = 0; k < 30 * rounds; ++k) {
-      std::string bad = good;
-      for (auto pieces = 1 + random() % 3; pieces > 0; --pieces)
-        bad.insert(random() % (bad.size() + 1), hostile_pieces()[random() % hostile_pieces().size()]);
+      std::string bad = good + "# ";
+      for (auto pieces = 1 + random() % 3; pieces > 0; --pieces) {
+        const std::size_t at = random() % 3 == 0 ? bad.size() : random() % (bad.size() + 1);  // at the end: in a comment
+        bad.insert(at, hostile_pieces()[random() % hostile_pieces().size()]);
+      }
       write(file, bad);
       ++(refuses<model::SceneError>([&] { model::load_scene(file.string()); }) ? refused : accepted);
     }
