@@ -44,6 +44,7 @@ class PairResponse::Factor {
 
   /// Adds W Cᵀ (C W Cᵀ)⁻¹ b to v; refined once, since rows may be nearly dependent.
   void add(const Eigen::VectorXd& b, Vectors& v) const {
+    if (rows_.empty()) return;
     Eigen::VectorXd left = b;
     for (int k = 0; k < 3; ++k) {
       const Eigen::VectorXd change = weights_.asDiagonal() * (C_.transpose() * cholesky_.solve(left)).eval();
@@ -64,6 +65,7 @@ class PairResponse::Factor {
         for (int c = 0; c < 3; ++c)
           entries.emplace_back(r, 3 * rows[rows_[r]].pair.particles[k] + c, rows[rows_[r]].direction[k][c]);
     C_.resize(std::ssize(rows_), weights_.size());
+    if (rows_.empty()) return true;
     C_.setFromTriplets(entries.begin(), entries.end());
     const Compressed weighted = C_ * weights_.asDiagonal();
     Eigen::SparseMatrix<double> S = weighted * C_.transpose();
