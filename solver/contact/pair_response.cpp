@@ -42,7 +42,7 @@ class PairResponse::Factor {
 
   const std::vector<int>& rows() const { return rows_; }
 
-  /// Adds W Cᵀ (C W Cᵀ)⁻¹ b to v; refined once, since rows may be nearly dependent.
+  /// Adds W Cᵀ (C W Cᵀ)⁻¹ b to v; refined twice, since rows may be nearly dependent.
   void add(const Eigen::VectorXd& b, Vectors& v) const {
     if (rows_.empty()) return;
     Eigen::VectorXd left = b;
