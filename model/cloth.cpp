@@ -137,7 +137,8 @@ Cloth compile(const Scene& scene, std::shared_ptr<const Garment> garment, solver
     reaction = respond(scene.contact, cloth.contacts, ode);
   }
   if (scene.contact.thickness > 0)
-    ode.pairs = std::make_shared<ClothPairs>(ClothSurface(*cloth.garment), scene.contact.thickness, *ode.work);
+    ode.pairs = std::make_shared<ClothPairs>(ClothSurface(*cloth.garment), scene.contact.thickness, scene.contact.self_friction,
+                                             *ode.work);
   cloth.given = given(forces, reaction, ode);
   solver::prescribe(ode.pins, cloth.start.v);
   cloth.plan.obstacles = static_cast<int>(scene.obstacles.size());

@@ -22,6 +22,7 @@ struct ContactRule {
   double relaxation = 0.5;  ///< ω: part of its depth in the collision area that a particle loses in a step (4.4)
   ResponseKind response = ResponseKind::constraint;
   double thickness = 0;         ///< distance between layers of cloth that touch [m]; 0: cloth passes through itself
+  double self_friction = 0;     ///< μ between layers of cloth
   double reaction_time = 0.02;  ///< τ [s]: the springs of reaction constraints have k = m/τ² and d = 2m/τ
 };
 

@@ -423,6 +423,8 @@ std::span<const SceneKey> scene_key_table() {
        in_contact<&ContactRule::relaxation>, check::part},
       {"contact.thickness", "m", "distance that cloth keeps from itself; 0: it passes through itself",
        in_contact<&ContactRule::thickness>, check::non_negative},
+      {"contact.self_friction", "1", "μ between layers of cloth that keep a thickness", in_contact<&ContactRule::self_friction>,
+       check::non_negative},
       {"contact.response", "", "\"constraint\" (of velocities in the linear systems) or \"reaction\" (damped springs instead of forces)",
        in_contact<&ContactRule::response>, check::one_of<responses>},
       {"contact.reaction_time", "s", "τ: the springs of reactions have k = m/τ² and d = 2m/τ",

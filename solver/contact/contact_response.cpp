@@ -245,7 +245,7 @@ bool ContactResponse::update(const Stage& stage, State& y, const Vectors& r, con
   pairs_->add_forces(rubbed_);
   const bool changed = update_particles(stage, y, rubbed_, noise, changes);
   rubbed_ = r;
-  add_friction(stage.gamma, rubbed_);
+  rub_obstacles(stage.gamma, rubbed_);
   find_supports(r, y.v);
   if (!pairs_->update(y, rubbed_, bounds, noise, changes != Changes::captures, supports_)) return changed;
   leave_supports();
@@ -358,6 +358,11 @@ bool ContactResponse::rub(Touched& p, const Eigen::Vector3d& v) {
 
 void ContactResponse::add_friction(double gamma, Vectors& r) const {
   const base::Stopwatch stopwatch(ode_.response_ms);
+  rub_obstacles(gamma, r);
+  if (pairs_) pairs_->add_friction(r);
+}
+
+void ContactResponse::rub_obstacles(double gamma, Vectors& r) const {
   for (const Touched& p : touched_) r.row(p.particle) += gamma * p.friction;
 }
 

@@ -134,6 +134,7 @@ class ContactResponse {
   double time_to_impact(const Touched& p) const;
   bool release(Touched& p, const PerContact& lambda, double noise);
   bool capture(Touched& p, const Eigen::Vector3d& x1);
+  void rub_obstacles(double gamma, Vectors& r) const;
   void remember_friction(Touched& p, const Past& was) const;
   bool rub(Touched& p, const Eigen::Vector3d& v);
   void rewrite_history(const Eigen::Matrix3d& directions, const Eigen::Vector3d& a, int particle, const State& y1,
