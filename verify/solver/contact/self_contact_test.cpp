@@ -142,7 +142,8 @@ class Intersections : public bench::Observer {
 
  private:
   void count(double t, const Vectors& x) {
-    frames += contacts_->intersections(x).empty() && cloth_->contacts->distances(t, x).minCoeff() > 0 ? 0 : 1;
+    const bool outside = !cloth_->contacts || cloth_->contacts->distances(t, x).minCoeff() > 0;
+    frames += outside && contacts_->intersections(x).empty() ? 0 : 1;
   }
 
   const model::Cloth* cloth_ = nullptr;
