@@ -251,7 +251,7 @@ struct ContactMoment {
   int pairs, contacts, cg_iterations;
 };
 
-constexpr ColumnOf<ContactMoment> moment_columns[] = {
+constexpr ColumnOf<ContactMoment> contact_moment_columns[] = {
     {"run", "run", "", "scene and method", Role::key, field<&ContactMoment::run>},
     {"t", "t", "s", "end of the step", Role::key, field<&ContactMoment::t>},
     {"pairs", "pairs", "1", "of the cloth with itself that are near", Role::quantity, field<&ContactMoment::pairs>},
@@ -307,7 +307,7 @@ void study_contact(const std::string& name, bool quick, Checkpoint& checkpoint, 
 
 std::vector<results::Table> present_contact(const ContactStudy& study) {
   results::Table moments =
-      results::make_table("contact-steps", "Contact: every step (in the file)", moment_columns, study.moments);
+      results::make_table("contact-steps", "Contact: every step (in the file)", contact_moment_columns, study.moments);
   moments.for_file = true;
   draw(moments, results::Figure::curves, {{results::Part::curve, "run"}, {results::Part::x, "t"}, {results::Part::y, "pairs"}});
   return {results::make_table("contact", "Contact of cloth with itself and with bodies", contact_columns, study.rows),
