@@ -47,7 +47,7 @@ name = "stack"
 grid = { n = 8, size = 0.2 }
 material = { density = 0.3, tension = 200, damping = 0.2, shear = 10, bend = 1e-5 }
 forces = { gravity = [0, 0, -9.81] }
-obstacles = [{ shape = "plane", friction = 0.3 }]
+obstacles = [{ shape = "plane" }]
 contact = { distance = 0.005, thickness = 0.005 }
 start = { stretch = 1.02 }
 end = { time = 0.8 }
