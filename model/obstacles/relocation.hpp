@@ -9,12 +9,13 @@ namespace drape::model {
 /// Responses that change positions and velocities after a step, of the particles that are in the collision area then: they are
 /// moved to its border along the normal n, and the normal part v_n of their velocities becomes, w being the obstacle's,
 ///
-///     reposition:  w_n                   if they approach
-///     reflect:     w_n − e (v_n − w_n)   if they approach             [Eberhardt, Weber, Straßer 1996; Etzmuß 2002, 4.2]
-///     impulse:     w_n − h F_n / m       if F = m (v − v⁻)/h presses   [Provot 1997; Etzmuß 2002, 4.2]
+///     reposition:  w_n                   [Etzmuß 2002, 4.1]
+///     reflect:     w_n − e (v_n − w_n)   [Eberhardt, Weber, Straßer 1996; Etzmuß 2002, 4.2]
+///     impulse:     w_n − h F_n / m       [Provot 1997; Etzmuß 2002, 4.2]
 ///
-/// The last estimates the force of the step, v⁻ being the velocity when it began, and counteracts it in the next step. None
-/// has friction. Nothing is tested on the way: thin obstacles may be passed.
+/// unless they leave already. F = m (v − v⁻)/h estimates the force of the step, v⁻ being the velocity when it began, as far as
+/// it presses: what is set counteracts it in the next step. None has friction. Nothing is tested on the way: thin obstacles may
+/// be passed.
 class Relocation {
  public:
   Relocation(std::shared_ptr<Contacts> contacts, const ContactRule& rule);
