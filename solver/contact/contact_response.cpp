@@ -236,8 +236,10 @@ void ContactResponse::impose(const Stage& stage, State& y) const {
     v += p.velocity - constrained * v;
     const Eigen::Vector3d x0 = y0_->x.row(p.particle), ax = stage.ax.row(p.particle);
     x = ax + stage.gamma * v;
-    x +=
-        p.altered ? Eigen::Vector3d(stage.gamma * p.alteration) : Eigen::Vector3d(constrained * (x0 + (stage.t - t0_) * v - x));
+    if (p.altered)
+      x += stage.gamma * p.alteration;
+    else
+      x += constrained * (x0 + (stage.t - t0_) * v - x);
     y.v.row(p.particle) = v;
     y.x.row(p.particle) = x;
   }
