@@ -1,7 +1,6 @@
 // The responses that constraints are compared with, against closed forms: single particles above a plane under their weight.
 
 #include <fmt/format.h>
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,8 +20,8 @@ constexpr double g = 9.81, d = 0.01, e = 2e-3, n = 10;
 /// Particles at height 0 that are `above` the surface of a plane.
 Trial above_plane(const std::string& response, double above, const std::string& more, double push = g) {
   return particles(
-      fmt::format("contact = {{ distance = {}, response = '{}', push = {}, exponent = {}, range = {}, restitution = 0.7 }}\n"
-                  "obstacles = [{{ shape = 'plane', position = [0, 0, {}] }}]\n{}\n",
+      fmt::format("contact.distance = {}\ncontact.response = '{}'\ncontact.push = {}\ncontact.exponent = {}\n"
+                  "contact.range = {}\nobstacles = [{{ shape = 'plane', position = [0, 0, {}] }}]\n{}\n",
                   d, response, push, n, e, -above, more));
 }
 
