@@ -169,6 +169,11 @@ void ContactResponse::configure(Touched& p) {
     p.inverse = base::pseudo_inverse(p.normals);
   p.velocity = p.inverse.transpose() * speed;
   p.obstacle = p.inverse.transpose() * recede + p.tangent() * mean;
+  p.altered = contacts_[p.begin].alters;
+  if (p.altered) {
+    p.alteration = p.inverse.transpose() * (speed - recede);
+    p.velocity -= p.alteration;
+  }
   if (p.status == Status::free) p.status = first_status(p);
   if (p.status == Status::sticks) {
     p.velocity += p.tangent() * (p.obstacle + time_to_impact(p) / h_ * (v0 - p.obstacle));
@@ -231,7 +236,10 @@ void ContactResponse::impose(const Stage& stage, State& y) const {
     v += p.velocity - constrained * v;
     const Eigen::Vector3d x0 = y0_->x.row(p.particle), ax = stage.ax.row(p.particle);
     x = ax + stage.gamma * v;
-    x += constrained * (x0 + (stage.t - t0_) * v - x);
+    if (p.altered)
+      x += stage.gamma * p.alteration;
+    else
+      x += constrained * (x0 + (stage.t - t0_) * v - x);
     y.v.row(p.particle) = v;
     y.x.row(p.particle) = x;
   }
