@@ -27,6 +27,7 @@ class MeasuredSearch : public solver::PairSearch {
  public:
   MeasuredSearch(std::shared_ptr<PairSearch> search, double& sum) : search_(std::move(search)), sum_(sum) {}
   double thickness() const override { return search_->thickness(); }
+  double friction() const override { return search_->friction(); }
   void find(const solver::Vectors& x0, const solver::Vectors& x1, double distance,
             std::vector<solver::PairContact>& found) override {
     const base::Stopwatch stopwatch(&sum_);

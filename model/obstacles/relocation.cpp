@@ -1,5 +1,6 @@
 #include "model/obstacles/relocation.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace drape::model {

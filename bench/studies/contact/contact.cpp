@@ -63,7 +63,8 @@ constexpr const char* contact_scenes[] = {"stack",         "sphere_drop", "cloth
 constexpr const char* contact_methods[] = {"imex-euler", "implicit-euler", "sbdf2", "bdf2", "midpoint", "verlet"};
 
 /// Values of contact.response; the others are compared with the first.
-constexpr std::string_view contact_responses[] = {"constraint", "reaction"};
+constexpr std::string_view contact_responses[] = {"constraint", "alteration", "reaction", "penalty",
+                                                  "field",      "reposition", "reflect",  "impulse"};
 constexpr const char* response_scenes[] = {"box_swing", "tablecloth", "ball"};
 constexpr const char* response_methods[] = {"imex-euler", "implicit-euler", "sbdf2", "bdf2", "midpoint"};
 
