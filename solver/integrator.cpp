@@ -221,8 +221,11 @@ void Integrator::separate() {
   std::span<const Contact> possible;
   if (contacts_) possible = contacts_->possible();
   if (impacts_) possible = impacts_->possible();
+  const Eigen::Vector3d before = next_.y.v.transpose() * step_.ode.mass;
   if (!separation_->separate(state(), step_.h, {constrains ? least : thickness, least}, possible, next_.y))
     step_.result.outcome = Outcome::not_converged;
+  separated_.setZero();
+  if (step_.ode.pins.empty()) separated_ = next_.y.v.transpose() * step_.ode.mass - before;
 }
 
 /// Whether the step met an obstacle so hard that the neighbours' velocities jump as well, which makes the history useless.
@@ -315,8 +318,8 @@ void Integrator::remember(double h, bool restart) {
 
 ContactReport Integrator::contacts() const {
   if (step_.ode.relocate) return relocated_;
-  if (contacts_) return {contacts_->constrained(), contacts_->impulse(), contacts_->work()};
-  if (impacts_) return {impacts_->constrained(), impacts_->impulse(), impacts_->work()};
+  if (contacts_) return {contacts_->constrained(), contacts_->impulse() + separated_, contacts_->work()};
+  if (impacts_) return {impacts_->constrained(), impacts_->impulse() + separated_, impacts_->work()};
   return {};
 }
 

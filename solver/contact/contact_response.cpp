@@ -250,8 +250,10 @@ bool ContactResponse::update(const Stage& stage, State& y, const Vectors& r, con
                              Changes changes) {
   if (!has_pairs()) return update_particles(stage, y, r, noise, changes);
   rubbed_ = r;
-  pairs_->add_forces(rubbed_);
-  const bool changed = update_particles(stage, y, rubbed_, noise, changes);
+  rub_obstacles(stage.gamma, rubbed_);
+  pushed_ = r;
+  pairs_->add_forces(rubbed_, pushed_);
+  const bool changed = update_particles(stage, y, pushed_, noise, changes);
   rubbed_ = r;
   rub_obstacles(stage.gamma, rubbed_);
   find_supports(r, y.v);
@@ -396,7 +398,12 @@ double ContactResponse::stopped_energy() const {
 
 bool ContactResponse::finish(State& y1, State& y0) {
   const base::Stopwatch stopwatch(ode_.response_ms);
-  bool changed = pairs_ && pairs_->finish(y1, y0);
+  bool changed = false;
+  if (pairs_) {
+    const Eigen::Vector3d before = y1.v.transpose() * ode_.mass;
+    changed = pairs_->finish(y1, y0);
+    if (ode_.pins.empty()) impulse_ += y1.v.transpose() * ode_.mass - before;  // what stands on supports stops by them
+  }
   for (Touched& p : touched_) {
     if (p.status == Status::free) continue;
     ++constrained_particles_;

@@ -165,7 +165,7 @@ class ContactResponse {
   std::vector<Past> past_;
   Filter pinned_, filter_;
   std::optional<PairResponse> pairs_;  ///< if the cloth meets itself
-  Vectors rubbed_;                     ///< the residual with other forces of contacts
+  Vectors rubbed_, pushed_;            ///< the residual with friction of obstacles, and with forces of pairs
   std::vector<PairResponse::Support> supports_;
   Eigen::Vector3d impulse_ = Eigen::Vector3d::Zero();
   double work_ = 0;
