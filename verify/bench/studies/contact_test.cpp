@@ -107,7 +107,7 @@ TEST(ContactStudy, JudgesStacksAndComparesResponses) {
   EXPECT_EQ(rows(steps), 6u * 80);
   ASSERT_EQ(rows(verdicts), 6u + 5) << "verlet solves no systems";
   for (std::size_t row = 0; row < 6; ++row) EXPECT_EQ(text_in(find_column(verdicts, "verdict"), row), "met: no intersection");
-  ASSERT_EQ(rows(responses), 5u * 2);
+  ASSERT_EQ(rows(responses), 5u * 8);
   for (std::size_t row = 0; row < rows(responses); ++row)
     EXPECT_EQ(text_in(find_column(responses, "verdict"), row).empty(),
               text_in(find_column(responses, "response"), row) == "constraint");
