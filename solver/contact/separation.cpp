@@ -61,7 +61,10 @@ void Separation::Push::rub(double friction, Vectors& x) {
 /// Impulses that change x1 by h times the change of v1 keep angular momentum if they have no torque about x1 − h v1.
 Separation::Push Separation::push_of(const PairContact& pair, double distance, const Vectors& x0, const Vectors& arms) const {
   const bool near = pair.begin.distance < distance;
-  Push push{.particles = pair.particles, .points = pair.touch, .aim = distance * (1 + enough)};
+  Push push;
+  push.particles = pair.particles;
+  push.points = pair.touch;
+  push.aim = distance * (1 + enough);
   if (near) push.aim = pair.begin.distance + regained * (distance - pair.begin.distance);
   const bool pinned = std::ranges::any_of(pair.particles, [&](int i) { return lightness_[i] == 0; });
   push.motion = pinned ? held_motion_of(push.points) : motion_of(push.points, pair.particles, ode_.mass, arms);

@@ -149,8 +149,8 @@ TEST_F(Shifted, HasTheContactsOfTheRigidMesh) {
     expect_same(found, expected);
     most = std::max(most, found.size());
     std::vector<model::Depth> inside, expected_inside;
-    vertices.inside(t, y.x, inside);
-    motion.inside(t, y.x, expected_inside);
+    vertices.near(t, y.x, 0.01, inside);
+    motion.near(t, y.x, 0.01, expected_inside);
     ASSERT_EQ(inside.size(), expected_inside.size());
     for (std::size_t k = 0; k < inside.size(); ++k) {
       EXPECT_NEAR(inside[k].depth, expected_inside[k].depth, 1e-14);

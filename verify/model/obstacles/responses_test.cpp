@@ -168,7 +168,7 @@ INSTANTIATE_TEST_SUITE_P(, Relocations, testing::ValuesIn(methods()), [](const a
 /// Without weight particles fly towards a plane that rises, and fly on after one step from the border.
 TEST_P(Relocations, SendBackWithTheirRestitution) {
   const double w = 0.25, end = 0.1;
-  for (const auto& [response, e] : {std::pair("reposition", 0.0), std::pair("impulse", 0.0), std::pair("reflect", 0.7)}) {
+  for (const auto& [response, back] : {std::pair("reposition", 0.0), std::pair("impulse", 0.0), std::pair("reflect", 0.7)}) {
     const Trial trial = particles(
         fmt::format("contact = {{ distance = {}, response = '{}', restitution = 0.7 }}\nstart.velocity = [0.5, 0, -1]\n"
                     "obstacles = [{{ shape = 'plane', motion = [{{ time = 0, position = [0, 0, -0.05] }}, {{ time = 1, "
@@ -179,10 +179,10 @@ TEST_P(Relocations, SendBackWithTheirRestitution) {
     const auto hit = std::ranges::find_if(moments, [](const Moment& moment) { return moment.contacts.constrained > 0; });
     ASSERT_NE(hit, moments.end());
     EXPECT_NEAR(trial.cloth.contacts->distances(hit->t, hit->y.x).minCoeff(), d, 1e-12) << response;
-    EXPECT_NEAR(hit->contacts.impulse[2], trial.cloth.ode.mass.sum() * (1 + e) * (1 + w), 1e-9) << response;
+    EXPECT_NEAR(hit->contacts.impulse[2], trial.cloth.ode.mass.sum() * (1 + back) * (1 + w), 1e-9) << response;
     const Eigen::Vector3d v = moments.back().y.v.row(1);
-    EXPECT_LE((v - Eigen::Vector3d(0.5, 0, w + e * (1 + w))).norm(), 1e-8) << response;
-    const double left = e * (1 + w) * (moments.back().t - hit->t);
+    EXPECT_LE((v - Eigen::Vector3d(0.5, 0, w + back * (1 + w))).norm(), 1e-8) << response;
+    const double left = back * (1 + w) * (moments.back().t - hit->t);
     EXPECT_NEAR(trial.cloth.contacts->distances(end, moments.back().y.x).minCoeff(), d + left, 1e-9) << response;
   }
 }

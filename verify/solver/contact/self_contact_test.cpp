@@ -135,8 +135,9 @@ TEST(SelfContact, KeepsBothMomentaToRoundOff) {
       Trial trial = plates(loose);
       trial.cloth.start.v.col(0).tail(64).setConstant(0.5);
       const solver::SplitOde& ode = trial.cloth.ode;
-      const std::vector<Moment> moments =
-          contact_scenes::run(trial, method, 0.01, {.loop_tolerance = 1e-14, .cg_tolerance = 1e-15});
+      solver::Options exact;
+      exact.loop_tolerance = 1e-14, exact.cg_tolerance = 1e-15;
+      const std::vector<Moment> moments = contact_scenes::run(trial, method, 0.01, exact);
       EXPECT_LE((momentum(ode, moments.back().y) - momentum(ode, moments.front().y)).norm(), 1e-12 * 0.012) << method;
       EXPECT_LE((angular_momentum(ode, moments.back().y) - angular_momentum(ode, moments.front().y)).norm(), 1e-12 * 0.012)
           << method;
