@@ -245,7 +245,7 @@ void Integrator::finish_contacts() {
   if (contacts_ && !method_.sub_steps && contacts_->finish(next_.y, history_[0].y)) history_[0].has_f = false;
 }
 
-/// Lets obstacles change the end of the step. Returns whether it stopped so much that the history is useless.
+/// Lets obstacles change the end of the step. Returns whether it stopped more kinetic energy than a history bears.
 bool Integrator::relocate() {
   relocated_ = {};
   State& y1 = next_.y;

@@ -249,15 +249,19 @@ void ContactResponse::impose(const Stage& stage, State& y) const {
 bool ContactResponse::update(const Stage& stage, State& y, const Vectors& r, const Eigen::VectorXd& bounds, double noise,
                              Changes changes) {
   if (!has_pairs()) return update_particles(stage, y, r, noise, changes);
-  rubbed_ = r;
-  rub_obstacles(stage.gamma, rubbed_);
   pushed_ = r;
-  pairs_->add_forces(rubbed_, pushed_);
+  pairs_->add_forces(pushed_);
   const bool changed = update_particles(stage, y, pushed_, noise, changes);
   rubbed_ = r;
   rub_obstacles(stage.gamma, rubbed_);
   find_supports(r, y.v);
-  if (!pairs_->update(y, rubbed_, bounds, noise, changes != Changes::captures, supports_)) return changed;
+  if (!pairs_->update(y, rubbed_, bounds, noise, changes != Changes::captures, supports_)) {
+    pushed_ = r;
+    pairs_->add_forces(pushed_);  // which are those of this solution only now
+    for (Touched& p : touched_)
+      if (p.status != Status::free) balance(p, stage, y, pushed_);
+    return changed;
+  }
   leave_supports();
   rebuild_filter();
   return true;
@@ -286,19 +290,25 @@ void ContactResponse::leave_supports() {
   }
 }
 
+/// Sets the forces on a constrained particle; returns the multipliers of its contacts.
+ContactResponse::PerContact ContactResponse::balance(Touched& p, const Stage& stage, const State& y, const Vectors& r) const {
+  const Eigen::Vector3d reaction = -r.row(p.particle).transpose(), v = y.v.row(p.particle), av = stage.av.row(p.particle);
+  PerContact lambda = p.inverse * reaction;
+  p.bound = friction_bound(p, lambda) / stage.gamma;
+  p.holding = p.tangent() * reaction / stage.gamma;
+  p.force = (ode_.mass[p.particle] * (v - av) - reaction) / stage.gamma;
+  return lambda;
+}
+
 bool ContactResponse::update_particles(const Stage& stage, const State& y, const Vectors& r, double noise, Changes changes) {
   const base::Stopwatch stopwatch(ode_.response_ms);
   bool changed = false;
   for (Touched& p : touched_) {
-    const Eigen::Vector3d reaction = -r.row(p.particle).transpose(), v = y.v.row(p.particle);
+    const Eigen::Vector3d v = y.v.row(p.particle);
     const Eigen::Vector3d x1 = y.x.row(p.particle).transpose() + (t0_ + h_ - stage.t) * v;
     bool differs = false;
     if (p.status != Status::free) {
-      const PerContact lambda = p.inverse * reaction;
-      p.bound = friction_bound(p, lambda) / stage.gamma;
-      p.holding = p.tangent() * reaction / stage.gamma;
-      const Eigen::Vector3d av = stage.av.row(p.particle);
-      p.force = (ode_.mass[p.particle] * (v - av) - reaction) / stage.gamma;
+      const PerContact lambda = balance(p, stage, y, r);
       differs = changes != Changes::captures && (release(p, lambda, noise) || (p.rubs && rub(p, v)));
     }
     if (!differs) differs = capture(p, x1);

@@ -140,6 +140,7 @@ class ContactResponse {
   double time_to_impact(const Touched& p) const;
   bool release(Touched& p, const PerContact& lambda, double noise);
   bool capture(Touched& p, const Eigen::Vector3d& x1);
+  PerContact balance(Touched& p, const Stage& stage, const State& y, const Vectors& r) const;
   void rub_obstacles(double gamma, Vectors& r) const;
   void remember_friction(Touched& p, const Past& was) const;
   bool rub(Touched& p, const Eigen::Vector3d& v);

@@ -57,9 +57,6 @@ class PairResponse::Factor {
     }
   }
 
-  /// λ with C (r + Cᵀ λ) = 0
-  Eigen::VectorXd multipliers(const Vectors& r) const { return cholesky_.solve(-along(r)); }
-
   /// C v
   Eigen::VectorXd along(const Vectors& v) const { return C_ * coordinates(v); }
 
@@ -359,17 +356,9 @@ Eigen::VectorXd PairResponse::speeds(const Vectors& v) const {
   return constrained([&](const Row& row, int c) { return row.speed(c, v); });
 }
 
-void PairResponse::add_forces(const Vectors& residual, Vectors& r) const {
-  if (!factor_) return;
-  Vectors rubbed = residual;
-  add_friction(rubbed);
-  const Eigen::VectorXd lambda = factor_->multipliers(rubbed);
-  Eigen::Index c = 0;
-  for (const auto [row, direction] : factor_->rows()) {
-    for (int k = 0; k < 4; ++k) r.row(rows_[row].pair.particles[k]) += lambda[c] * rows_[row].motion[direction].of[k];
-    ++c;
-  }
-  add_friction(r);
+void PairResponse::add_forces(Vectors& r) const {
+  for (const Row& row : rows_)
+    if (row.active) row.add(row.sticks ? row.lambda : Eigen::Vector3d(row.lambda[0], row.slides[0], row.slides[1]), r);
 }
 
 void PairResponse::add_friction(Vectors& r) const {

@@ -60,8 +60,8 @@ class PairResponse : public Projector {
   bool update(State& y, const Vectors& r, const Eigen::VectorXd& bounds, double noise, bool releases,
               std::vector<Support>& supports);
 
-  /// Adds to r what constrained rows give to the solution with this residual, and their friction.
-  void add_forces(const Vectors& residual, Vectors& r) const;
+  /// Adds the multipliers of constrained rows, and friction, to a residual.
+  void add_forces(Vectors& r) const;
 
   /// Adds the friction of pairs that slide to a residual.
   void add_friction(Vectors& r) const;
