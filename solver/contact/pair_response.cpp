@@ -49,6 +49,7 @@ class PairResponse::Factor {
 
   /// Adds W Cᵀ (C W Cᵀ)⁻¹ b to v; refined once, since rows may be nearly dependent.
   void add(const Eigen::VectorXd& b, Vectors& v) const {
+    if (rows_.empty()) return;
     Eigen::VectorXd left = b;
     for (int k = 0; k < 3; ++k) {
       const Eigen::VectorXd change = weights_.asDiagonal() * (C_.transpose() * cholesky_.solve(left)).eval();
@@ -63,7 +64,6 @@ class PairResponse::Factor {
  private:
   /// Factors the rows, and leaves out those of a small pivot: false if there are any.
   bool independent(const std::vector<Row>& rows) {
-    if (rows_.empty()) return true;
     std::vector<Eigen::Triplet<double>> entries;
     for (int r = 0; r < std::ssize(rows_); ++r) {
       const Row& row = rows[rows_[r].row];
@@ -72,6 +72,7 @@ class PairResponse::Factor {
           entries.emplace_back(r, 3 * row.pair.particles[k] + c, row.left[rows_[r].direction].of[k][c]);
     }
     C_.resize(std::ssize(rows_), weights_.size());
+    if (rows_.empty()) return true;
     C_.setFromTriplets(entries.begin(), entries.end());
     const Compressed weighted = C_ * weights_.asDiagonal();
     Eigen::SparseMatrix<double> S = weighted * C_.transpose();
