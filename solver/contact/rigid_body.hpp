@@ -11,7 +11,7 @@ struct RigidBody {
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
 };
 
-/// Of particles at x, whose masses mass(i) gives.
+/// Sums up particles at x, whose masses mass(i) gives.
 template <class Particles, class Mass>
 RigidBody rigid_body(const Particles& particles, const Mass& mass, const Vectors& x) {
   RigidBody body;
