@@ -8,6 +8,8 @@
 #include "model/collision/cloth_pairs.hpp"
 #include "model/garment_forces.hpp"
 #include "model/obstacles/reaction.hpp"
+#include "model/obstacles/relocation.hpp"
+#include "model/obstacles/repulsion.hpp"
 #include "model/phases.hpp"
 
 namespace drape::model {
@@ -19,14 +21,31 @@ int count_fixed(const std::vector<solver::Pin>& pins) {
   return count;
 }
 
-/// Lets the obstacles act, by constraints in the solver, or by forces, which it returns.
-std::shared_ptr<Reaction> respond(const ContactRule& rule, const std::shared_ptr<Contacts>& contacts, solver::SplitOde& ode) {
-  if (rule.response == ResponseKind::constraint) {
-    ode.contacts = [contacts](double t, double h, const solver::State& y, std::vector<solver::Contact>& found) {
-      contacts->find(t, h, y, found);
-    };
-    return {};
-  }
+/// The forces of obstacles, if that is how they act: at most one is not null.
+struct ContactForces {
+  std::shared_ptr<Reaction> reaction;
+  std::shared_ptr<Repulsion> repulsion;
+
+  bool any() const { return reaction || repulsion; }
+};
+
+std::shared_ptr<Repulsion> repel(const ContactRule& rule, const std::shared_ptr<Contacts>& contacts, GarmentForces& forces,
+                                 solver::SplitOde& ode) {
+  auto repulsion = std::make_shared<Repulsion>(contacts, rule, ode.mass);
+  for (solver::SplitOde::Force* const part : {&ode.force, &ode.explicit_force, &ode.unconstrained_force})
+    if (*part)
+      *part = [=, others = *part](double t, const Vectors& x, const Vectors& v, Vectors& f) {
+        others(t, x, v, f);
+        repulsion->add(t, x, v, f);
+      };
+  forces.also_visit([repulsion](double t, const Vectors& x, const Vectors& v, const JacobianEntries& entries) {
+    repulsion->visit(t, x, v, entries);
+  });
+  ode.without_energy.emplace_back(rule.response == ResponseKind::penalty ? "penalty" : "field");
+  return repulsion;
+}
+
+std::shared_ptr<Reaction> react(const ContactRule& rule, const std::shared_ptr<Contacts>& contacts, solver::SplitOde& ode) {
   ode.compliant_constraints = {};  // a reaction depends on the whole force
   ode.unconstrained_force = {};
   auto reaction = std::make_shared<Reaction>(contacts, rule, ode.mass);
@@ -45,6 +64,20 @@ std::shared_ptr<Reaction> respond(const ContactRule& rule, const std::shared_ptr
   return reaction;
 }
 
+/// Lets the obstacles act, by constraints in the solver, after steps, or by forces, which it returns.
+ContactForces respond(const ContactRule& rule, const std::shared_ptr<Contacts>& contacts, GarmentForces& forces,
+                      solver::SplitOde& ode) {
+  if (rule.response == ResponseKind::reaction) return {react(rule, contacts, ode), {}};
+  if (is_force(rule.response)) return {{}, repel(rule, contacts, forces, ode)};
+  if (relocates(rule.response))
+    ode.relocate = Relocation(contacts, rule);
+  else
+    ode.contacts = [contacts](double t, double h, const solver::State& y, std::vector<solver::Contact>& found) {
+      contacts->find(t, h, y, found);
+    };
+  return {};
+}
+
 bool moves(const solver::Pin& pin) { return !pin.prescribed().isZero(0); }
 
 /// Where pins move: there the whole force.
@@ -54,11 +87,11 @@ void keep_moved(const std::vector<solver::Pin>& pins, const Vectors& whole, Vect
 }
 
 /// Cloth::given.
-solver::SplitOde::Force given(const std::shared_ptr<GarmentForces>& forces, const std::shared_ptr<Reaction>& reaction,
+solver::SplitOde::Force given(const std::shared_ptr<GarmentForces>& forces, const ContactForces& contact,
                               const solver::SplitOde& ode) {
   const bool moved = std::ranges::any_of(ode.pins, moves), active = forces->has_active();
   std::int64_t& evaluations = ode.work->counter("guard_forces", "evaluations of forces by the energy guard");
-  if (!moved && !active && !reaction) return {};
+  if (!moved && !active && !contact.any()) return {};
   return [=, &evaluations, work = ode.work, pins = ode.pins, whole = Vectors(), total = Vectors()](
              double t, const Vectors& x, const Vectors& v, Vectors& f) mutable {
     ++evaluations;
@@ -66,11 +99,12 @@ solver::SplitOde::Force given(const std::shared_ptr<GarmentForces>& forces, cons
       forces->uncounted_force(ForcePart::active, t, x, v, f);
     else
       f.setZero(x.rows(), 3);
-    const bool reacts = reaction && reaction->acts(t, x);
-    if (!moved && !reacts) return;
+    const bool reacts = contact.reaction && contact.reaction->acts(t, x);
+    if (!moved && !reacts && !contact.repulsion) return;
     forces->uncounted_force(ForcePart::whole, t, x, v, whole);
     total = whole;
-    if (reacts) reaction->add(v, whole, total);
+    if (reacts) contact.reaction->add(v, whole, total);
+    if (contact.repulsion) contact.repulsion->add(t, x, v, total);
     f += total - whole;
     if (moved) keep_moved(pins, total, f);
   };
@@ -131,14 +165,15 @@ Cloth compile(const Scene& scene, std::shared_ptr<const Garment> garment, solver
                           SparseMatrix& J) mutable {
     forces->newton_matrix(t, x, v, gamma, part == solver::Jacobian::tension ? tension : convex, J);
   };
-  std::shared_ptr<Reaction> reaction;
+  ContactForces contact;
   if (!scene.obstacles.empty()) {
     cloth.contacts = std::make_shared<Contacts>(contacts(scene, *ode.work));
-    reaction = respond(scene.contact, cloth.contacts, ode);
+    contact = respond(scene.contact, cloth.contacts, *forces, ode);
   }
   if (scene.contact.thickness > 0)
-    ode.pairs = std::make_shared<ClothPairs>(ClothSurface(*cloth.garment), scene.contact.thickness, *ode.work);
-  cloth.given = given(forces, reaction, ode);
+    ode.pairs = std::make_shared<ClothPairs>(ClothSurface(*cloth.garment), scene.contact.thickness, scene.contact.self_friction,
+                                             *ode.work);
+  cloth.given = given(forces, contact, ode);
   solver::prescribe(ode.pins, cloth.start.v);
   cloth.plan.obstacles = static_cast<int>(scene.obstacles.size());
   cloth.plan.particles = ode.particles();

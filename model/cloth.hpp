@@ -31,8 +31,8 @@ struct Cloth {
   std::shared_ptr<Contacts> contacts;  ///< null without obstacles
 
   /// The force [N] whose work along the motion is what the sheet is given beside its energies and by damping: of forces that
-  /// are neither a gradient nor purely dissipative, of reaction constraints, and minus the whole force where pins move. Absent
-  /// if there is nothing of it.
+  /// are neither a gradient nor purely dissipative, of obstacles that act by forces, and minus the whole force where pins move.
+  /// Absent if there is nothing of it.
   solver::SplitOde::Force given;
 };
 

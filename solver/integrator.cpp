@@ -142,10 +142,11 @@ bool Integrator::attempt(double h) {
   follow_stiffness();
   begin_contacts(h);
   method_.step(step_);
-  const bool hard = hit_hard();
+  bool hard = hit_hard();
   if (hard) step_without_history();
   StageResult& result = step_.result;
   if (result.outcome == Outcome::success && !finite(next_.y)) result.outcome = Outcome::not_finite;
+  if (result.outcome == Outcome::success && step_.ode.relocate) hard = relocate() || hard;
   if (result.outcome == Outcome::success && separation_) separate();
   if (result.outcome == Outcome::success && !hard) {
     predict(h);
@@ -220,8 +221,11 @@ void Integrator::separate() {
   std::span<const Contact> possible;
   if (contacts_) possible = contacts_->possible();
   if (impacts_) possible = impacts_->possible();
+  const Eigen::Vector3d before = next_.y.v.transpose() * step_.ode.mass;
   if (!separation_->separate(state(), step_.h, {constrains ? least : thickness, least}, possible, next_.y))
     step_.result.outcome = Outcome::not_converged;
+  separated_.setZero();
+  if (step_.ode.pins.empty()) separated_ = next_.y.v.transpose() * step_.ode.mass - before;
 }
 
 /// Whether the step met an obstacle so hard that the neighbours' velocities jump as well, which makes the history useless.
@@ -239,6 +243,25 @@ void Integrator::step_without_history() {
 /// Discards the force of the history's newest point if contacts changed its velocities. Sub-steps finish theirs.
 void Integrator::finish_contacts() {
   if (contacts_ && !method_.sub_steps && contacts_->finish(next_.y, history_[0].y)) history_[0].has_f = false;
+}
+
+/// Lets obstacles change the end of the step. Returns whether it stopped more kinetic energy than a history bears.
+bool Integrator::relocate() {
+  relocated_ = {};
+  State& y1 = next_.y;
+  found_ = y1;
+  if (!step_.ode.relocate(step_.t, step_.h, state(), y1)) return false;
+  Vectors moved = y1.x - found_.x, change = y1.v - found_.v;
+  filter(step_.ode.pins, moved);
+  filter(step_.ode.pins, change);
+  y1.x = found_.x + moved;
+  y1.v = found_.v + change;
+  next_.has_f = false;
+  for (int i = 0; i < step_.ode.particles(); ++i)
+    relocated_.constrained += moved.row(i).isZero(0) && change.row(i).isZero(0) ? 0 : 1;
+  relocated_.impulse = change.transpose() * step_.ode.mass;
+  relocated_.work = kinetic_energy(step_.ode, y1.v) - kinetic_energy(step_.ode, found_.v);
+  return kinetic_energy(step_.ode, change) > hard_impact * kinetic_energy(step_.ode, found_.v);
 }
 
 /// Extrapolates the history to the end of the step: v into av, and x into ax if the error estimate needs it.
@@ -294,8 +317,9 @@ void Integrator::remember(double h, bool restart) {
 }
 
 ContactReport Integrator::contacts() const {
-  if (contacts_) return {contacts_->constrained(), contacts_->impulse(), contacts_->work()};
-  if (impacts_) return {impacts_->constrained(), impacts_->impulse(), impacts_->work()};
+  if (step_.ode.relocate) return relocated_;
+  if (contacts_) return {contacts_->constrained(), contacts_->impulse() + separated_, contacts_->work()};
+  if (impacts_) return {impacts_->constrained(), impacts_->impulse() + separated_, impacts_->work()};
   return {};
 }
 

@@ -59,6 +59,7 @@ class Integrator {
   void follow_stiffness();
   void begin_contacts(double h);
   bool hit_hard() const;
+  bool relocate();
   void step_without_history();
   void separate();
   void finish_contacts();
@@ -82,6 +83,9 @@ class Integrator {
   SubStepping sub_stepping_;
   StepError step_error_;
   std::any kept_;
+  State found_;                                          ///< the end of the step before a response changes it
+  ContactReport relocated_;                              ///< what that did
+  Eigen::Vector3d separated_ = Eigen::Vector3d::Zero();  ///< impulse of obstacles under pairs that were pushed apart [N s]
   Step step_;
   const bool extrapolates_;  ///< whether the history is longer than the method needs
   double tolerance_;

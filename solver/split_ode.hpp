@@ -43,6 +43,7 @@ struct Contact {
   double least = 0;        ///< [m]
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< w of the obstacle's surface, mean over the step [m/s]
   double friction = 0;                                 ///< η, Coulomb's coefficient
+  bool alters = false;  ///< whether the particle stops at once and goes to the border by dx/dt = v + c (ContactResponse)
 };
 
 /// An energy ½ C²/α of a function C of the positions of two or three particles, as methods need it that move positions towards
@@ -106,6 +107,10 @@ struct SplitOde {
 
   /// Finds the possible contacts of a step from t to t + h, ordered by particle; absent: there are no obstacles.
   std::function<void(double t, double h, const State& y, std::vector<Contact>& found)> contacts;
+
+  /// A response to obstacles after a step from (t, y0) to (t + h, y1): changes y1; false if nothing touches. Pins are put right
+  /// by the caller. Absent: there is none.
+  std::function<bool(double t, double h, const State& y0, State& y1)> relocate;
 
   std::shared_ptr<PairSearch> pairs;  ///< finds where the cloth meets itself; null: it passes through itself
 

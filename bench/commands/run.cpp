@@ -90,6 +90,9 @@ Group run_group(const RunArguments& a) {
     if (!scene.obstacles.empty() && !spec.method->meets_obstacles)
       throw std::invalid_argument(
           fmt::format("method '{}': expected one of {} in a scene with obstacles", name, for_obstacles()));
+    if (alters_positions(scene) && !spec.method->implicit())
+      throw std::invalid_argument(
+          fmt::format("method '{}': expected one with implicit stages for contact.response = \"alteration\"", name));
     if (a.options.passes > 0 && spec.method->nonlinear() && spec.options.stage->accelerated)
       throw std::invalid_argument(fmt::format("--passes: method '{}': expected one of the stage solvers {}, not {}", name,
                                               ending_after_passes(), spec.options.stage->name));

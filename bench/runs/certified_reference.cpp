@@ -19,6 +19,13 @@ using solver::State;
 
 constexpr double reference_tolerances[] = {1e-9, 1e-10, 1e-11, 1e-12};  ///< of references
 
+/// Whether obstacles respond to what is inside at the end of a step, so that no ODE tells the motion: its limit for short steps
+/// is that of inelastic constraints.
+bool switches(const model::Scene& scene) {
+  const model::ResponseKind response = scene.contact.response;
+  return !scene.obstacles.empty() && (model::relocates(response) || response == model::ResponseKind::alteration);
+}
+
 /// The loosest of them that promises an uncertainty, as it falls with the tolerance; at least the next.
 double tightened(double tolerance, double factor) {
   for (const double next : reference_tolerances)
@@ -56,6 +63,13 @@ reference::Reference References::certified(const model::Scene& scene, const mode
                                            const std::vector<double>& times, double uncertainty) {
   if (model::phases(scene).size() > 1)
     throw reference::ReferenceError(fmt::format("{}: a scene of several phases or paths has none", scene.name), "PHASES", 0);
+  if (scene.contact.response == model::ResponseKind::reflect && !scene.obstacles.empty())
+    throw reference::ReferenceError(fmt::format("{}: contact.response = \"reflect\" has none", scene.name), "REFLECTS", 0);
+  if (switches(scene)) {
+    model::Scene inelastic = scene;
+    inelastic.contact.response = model::ResponseKind::constraint;
+    return certified(inelastic, model::compile(inelastic), times, uncertainty);
+  }
   const double size = model::size(scene);
   reference::Reference reference = tight(scene, cloth, times, uncertainty * size);
   if (cloth.ode.contacts) return reference;  // of first order: its uncertainty decides what is shown

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
 #include "bench/runs/run.hpp"
 
@@ -18,5 +19,14 @@ struct Costs {
 
 /// The costs of the first steps of a run, without compiling the scene.
 Costs costs(const RunSpec& spec, std::size_t most_steps);
+
+/// Costs a simulated second [ms/s]: medians of interleaved repetitions.
+struct MedianCosts {
+  Costs median;
+  double spread = 0;  ///< half the range of the total
+};
+
+/// Those of the first steps of each run of a group. `steps`: how many, more than 0.
+std::vector<MedianCosts> median_costs(const Group& group, const std::vector<std::size_t>& steps, int repetitions);
 
 }  // namespace drape::bench

@@ -73,8 +73,7 @@ EnergyGuard::EnergyGuard(const model::Scene& scene, const model::Cloth& cloth)
       fall_(fall_of(scene.sheet.gravity, weight_)),
       time_(scene.end - cloth.begin),
       most_given_(std::max(0.0, start_)),
-      work_(cloth.given, cloth.begin, start_of(cloth),
-            !scene.obstacles.empty() && scene.contact.response == model::ResponseKind::reaction) {}
+      work_(cloth.given, cloth.begin, start_of(cloth), !scene.obstacles.empty() && model::is_force(scene.contact.response)) {}
 
 double EnergyGuard::kinetic_and_elastic(double t, const State& y) const {
   const double gravity = -weight_.cwiseProduct(y.x).sum();

@@ -93,8 +93,13 @@ void choose_method(RunSpec& spec, const std::string& name) {
     throw std::invalid_argument(fmt::format("method '{}': expected {}", base::quoted(name), expected(method)));
 }
 
+bool alters_positions(const model::Scene& scene) {
+  return !scene.obstacles.empty() && scene.contact.response == model::ResponseKind::alteration;
+}
+
 std::string reason_against(const solver::Method& method, const model::Scene& scene) {
   if (!scene.obstacles.empty() && !method.meets_obstacles) return "meets no obstacles";
+  if (alters_positions(scene) && !method.implicit()) return "has no implicit equation to alter positions in";
   if (method.needs_energies)
     if (const auto forces = model::forces_without_energy(scene); !forces.empty())
       return fmt::format("needs mean forces of {}", fmt::join(forces, ", "));

@@ -26,6 +26,9 @@ struct RunSpec {
 /// from.
 void choose_method(RunSpec& spec, const std::string& name);
 
+/// Whether obstacles answer by altering positions in an implicit equation, which explicit methods do not have.
+bool alters_positions(const model::Scene& scene);
+
 /// Why a method cannot run on a scene, in a few words; empty if it can.
 std::string reason_against(const solver::Method& method, const model::Scene& scene);
 

@@ -122,7 +122,9 @@ Json equations(const model::Cloth& cloth) {
            {"forces", Json::object()}};
   for (const model::TermKind& kind : model::term_kinds())
     if (std::ranges::count(cloth.plan.terms, kind.name) > 0) all["forces"][std::string(kind.name)] = kind.description;
-  if (cloth.contacts) all["contact"] = "4.3 (reaction) and 4.4 (constraint)";
+  if (cloth.contacts)
+    all["contact"] =
+        "4.1 and 4.2 (penalty, field, reposition, reflect, impulse, alteration), 4.3 (reaction) and 4.4 (constraint)";
   return all;
 }
 

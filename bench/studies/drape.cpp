@@ -31,7 +31,7 @@ using results::Role;
 using solver::Vectors;
 
 constexpr double sample_radius = 0.15, disc_radius = 0.09;  // [m], of Cusick's tester and of the scene
-constexpr double longest = 10;                              // [s]
+constexpr double longest_fall = 10;                         // [s]
 constexpr double at_rest = 1e-4;                            // [m/s]
 constexpr double unevenness = 1e-3;                         // [m], without which the sample would fall evenly
 constexpr int directions = 720;
@@ -122,7 +122,7 @@ Drape let_fall(const Fabric& fabric, const DrapeCase& one) {
     if (integrator.step(one.step).outcome != solver::Outcome::success) return result;
     result.time += one.step;
     result.speed = integrator.state().v.rowwise().norm().maxCoeff();
-  } while (result.time < longest && !(result.speed < at_rest));
+  } while (result.time < longest_fall && !(result.speed < at_rest));
   result.shadow = shadow_of(grid, integrator.state().x);
   result.coefficient = coefficient_of(result.shadow);
   result.folds = folds_of(result.shadow);

@@ -260,26 +260,6 @@ class GarmentReference {
   double size_;  ///< [m]
 };
 
-/// Sets the times of the parts, medians of interleaved repetitions, a simulated second.
-void time_parts(const Group& group, const std::vector<std::size_t>& counts, int repetitions, std::vector<GarmentRun>& rows) {
-  std::vector<std::vector<Costs>> all(group.size());
-  for (int repetition = 0; repetition < repetitions; ++repetition)
-    for (std::size_t k = 0; k < group.size(); ++k) all[k].push_back(costs(group[k], counts[k]));
-  for (std::size_t k = 0; k < group.size(); ++k) {
-    const double seconds = static_cast<double>(counts[k]) * group[k].step;
-    std::vector<double> totals;
-    for (const Costs& one : all[k]) totals.push_back(one.total() / seconds);
-    const auto median = [&](double Costs::*part) {
-      std::vector<double> times;
-      for (const Costs& one : all[k]) times.push_back(one.*part / seconds);
-      return base::quantile(times, 0.5);
-    };
-    rows[k].forces = median(&Costs::forces), rows[k].detection = median(&Costs::detection);
-    rows[k].response = median(&Costs::response), rows[k].rest = median(&Costs::rest);
-    rows[k].spread = (std::ranges::max(totals) - std::ranges::min(totals)) / 2;
-  }
-}
-
 /// The largest step with which nothing is inside at the end: from the usual one upwards while that is so, else downwards until
 /// it is. `ends_well`: whether it is so of a step.
 std::optional<double> largest_step(const std::function<bool(double)>& ends_well) {
@@ -325,7 +305,12 @@ std::vector<GarmentRun> run_scene(const std::string& name, bool quick, Checkpoin
   }
   checkpoint.show("timing " + name);
   return checkpoint.once("costs " + name, [&] {
-    time_parts(group, counts, quick ? 1 : 3, rows);
+    const std::vector<MedianCosts> times = median_costs(group, counts, quick ? 1 : 3);
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      const Costs& median = times[k].median;
+      rows[k].forces = median.forces, rows[k].detection = median.detection;
+      rows[k].response = median.response, rows[k].rest = median.rest, rows[k].spread = times[k].spread;
+    }
     return rows;
   });
 }

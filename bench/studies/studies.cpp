@@ -49,6 +49,10 @@ std::span<const Study> studies() {
       {.name = "figure-4.3",
        .description = "CG iterations and contacts over time of a sheet that swings against a box; what contact costs",
        .answer = figure_4_3},
+      {.name = "contact",
+       .description =
+           "cloth that meets itself and bodies: pairs, CG in flight and at rest, times, balances, intersections, largest steps",
+       .answer = contact},
       {.name = "conditioning",
        .description = "condition of a stage's matrix and iterations against the bound (3.7); the dense inverse against solvers",
        .answer = conditioning},

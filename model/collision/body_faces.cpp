@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 
 #include "model/collision/box_tree.hpp"
+#include "model/collision/exact_intersection.hpp"
 #include "model/collision/face_distance.hpp"
 
 namespace drape::model {
@@ -36,18 +37,30 @@ BoxTree tree_of(const std::vector<Corners>& triangles, double margin) {
   return tree;
 }
 
+/// Number of pairs of a triangle of the cloth and one of a body that are so; `reach`: how far apart they may be then [m].
+template <class IsSo>
+int count_pairs(const ClothSurface& surface, std::span<const PosedObstacle> bodies, double t, const Vectors& x, double reach,
+                const IsSo& is_so) {
+  const std::vector<Corners> cloth = triangles_of(surface, x);
+  const BoxTree tree = tree_of(cloth, reach);
+  int count = 0;
+  for (const PosedObstacle& body : bodies) {
+    const std::vector<Corners> faces = triangles_of(body.at(t));
+    tree.overlapping_pairs(tree_of(faces, 0), [&](int i, int j) { count += is_so(cloth[i], faces[j]) ? 1 : 0; });
+  }
+  return count;
+}
+
 }  // namespace
 
 int face_pairs(const ClothSurface& surface, std::span<const PosedObstacle> bodies, double t, const Vectors& x,
                double distance) {
-  const std::vector<Corners> cloth = triangles_of(surface, x);
-  const BoxTree tree = tree_of(cloth, distance);
-  int count = 0;
-  for (const PosedObstacle& body : bodies) {
-    const std::vector<Corners> faces = triangles_of(body.at(t));
-    tree.overlapping_pairs(tree_of(faces, 0), [&](int i, int j) { count += nearer(cloth[i], faces[j], distance) ? 1 : 0; });
-  }
-  return count;
+  return count_pairs(surface, bodies, t, x, distance,
+                     [&](const Corners& one, const Corners& other) { return nearer(one, other, distance); });
+}
+
+int body_intersections(const ClothSurface& surface, std::span<const PosedObstacle> bodies, double t, const Vectors& x) {
+  return count_pairs(surface, bodies, t, x, 0, intersect);
 }
 
 }  // namespace drape::model

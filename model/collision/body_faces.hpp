@@ -12,4 +12,7 @@ namespace drape::model {
 /// first corner.
 int face_pairs(const ClothSurface& surface, std::span<const PosedObstacle> bodies, double t, const Vectors& x, double distance);
 
+/// Number of such pairs that have a point in common, as intersect() has it.
+int body_intersections(const ClothSurface& surface, std::span<const PosedObstacle> bodies, double t, const Vectors& x);
+
 }  // namespace drape::model

@@ -98,11 +98,12 @@ void SelfContacts::find(const Vectors& x0, const Vectors& x1, double distance, s
     const std::optional<double> part = first_approach(kind, begin, end, distance);
     if (!part) return;
     const Proximity nearest = proximity(kind, particles, begin);
-    const Approach approach{kind, nearest, *part > 0 ? proximity(kind, particles, points_between(begin, end, *part)) : nearest,
-                            *part};
+    Approach approach{kind, nearest, nearest, *part};
+    if (*part > 0) approach.touch = proximity(kind, particles, points_between(begin, end, *part));
+    const Proximity last = proximity(kind, particles, end);
+    if (last.is_inside() && last.normal.dot(approach.touch.normal) > 0) approach.touch = last;
     if (kind == PairKind::edge_edge && !may_end && !approach.touch.is_inside()) return;
-    if (approach.begin.distance < distance && proximity(kind, end).distance >= distance &&
-        !first_approach(kind, begin, end, 0.999 * approach.begin.distance))
+    if (nearest.distance < distance && last.distance >= distance && !first_approach(kind, begin, end, 0.999 * nearest.distance))
       return;
     found.push_back(approach);
   });

@@ -16,8 +16,8 @@ namespace drape::model {
 struct Approach {
   PairKind kind;
   Proximity begin;  ///< where the step begins
-  Proximity touch;  ///< where the distance has fallen as far as was asked
-  double part;      ///< of the step until then
+  Proximity touch;  ///< where the step ends if that is on the same side, else where the distance has fallen as far as was asked
+  double part;      ///< of the step until the distance has fallen as far
 };
 
 /// Finds where a cloth comes near itself: pairs of a vertex and a face, or of two edges, that have no node in common. Two edges

@@ -52,7 +52,8 @@ inline constexpr Each<&Value::flag> flag;
 inline constexpr Each<&Value::number> number;
 inline constexpr Each<&Value::positive> positive;
 inline constexpr Each<&Value::non_negative> non_negative;
-inline constexpr Each<&Value::part> part;
+inline constexpr Each<&Value::part_or_none> part_or_none;
+inline constexpr Each<&Value::up_to_two> up_to_two;
 template <const auto& words>
 inline constexpr OneOf<words> one_of;
 }  // namespace check

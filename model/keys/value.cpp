@@ -71,6 +71,18 @@ double Value::part() const {
   return value;
 }
 
+double Value::part_or_none() const {
+  const double value = number();
+  if (!(value >= 0 && value <= 1)) fail("a number from 0 to 1");
+  return value;
+}
+
+double Value::up_to_two() const {
+  const double value = positive();
+  if (value > 2) fail("a number above 0 and at most 2");
+  return value;
+}
+
 int Value::count() const {
   constexpr std::int64_t most = 10'000'000;
   const auto value = node_.is_integer() ? node_.value<std::int64_t>() : std::nullopt;

@@ -33,6 +33,8 @@ class Value {
   double positive() const;                          ///< > 0
   double non_negative() const;                      ///< ≥ 0
   double part() const;                              ///< > 0 and ≤ 1
+  double part_or_none() const;                      ///< ≥ 0 and ≤ 1
+  double up_to_two() const;                         ///< > 0 and ≤ 2
   int count() const;                                ///< a whole number ≥ 1
   std::vector<Value> list(std::size_t size) const;  ///< an array of `size` values
   std::vector<Value> list() const;                  ///< an array

@@ -26,6 +26,7 @@ Contacts::Contacts(std::span<const ObstacleRule> obstacles, const ContactRule& r
     : obstacles_(all_parts(obstacles)),
       distance_(rule.distance),
       relaxation_(rule.relaxation),
+      alters_(rule.response == ResponseKind::alteration),
       moment_(pose_step * rule.reaction_time),
       gravity_(gravity),
       answers_(obstacles_.size(), std::vector<Answer>(particles)),
@@ -72,7 +73,7 @@ void Contacts::find(double t, double h, const solver::State& y, std::vector<solv
       last = {p, touch ? touch->nearest : obstacle.nearest(p), deformed, true};
       ++queries_;
       const double gap = last.nearest.distance - distance_;
-      if (!(gap <= reach)) continue;
+      if (!(gap <= reach) || (alters_ && gap >= 0)) continue;
       const Eigen::Vector3d rigid = p - gap * last.nearest.normal;
       const auto [border, border_at_end, outwards] =
           touch ? deforming->border(p, touch->at, distance_) : Border{rigid, rigid, last.nearest.normal};
@@ -83,13 +84,14 @@ void Contacts::find(double t, double h, const solver::State& y, std::vector<solv
                        .gap = gap,
                        .least = at_end.dot(normal) + (1 - relaxation_) * std::min(gap, 0.0),
                        .velocity = (at_end - begin.to_world(border)) / h,
-                       .friction = obstacle.friction()});
+                       .friction = obstacle.friction(),
+                       .alters = alters_});
     }
   }
   std::ranges::stable_sort(found, {}, &solver::Contact::particle);
 }
 
-void Contacts::inside(double t, const Vectors& x, std::vector<Depth>& found) {
+void Contacts::near(double t, const Vectors& x, double reach, std::vector<Depth>& found) {
   found.clear();
   for (std::size_t k = 0; k < obstacles_.size(); ++k) {
     const Obstacle& obstacle = obstacles_[k];
@@ -102,7 +104,7 @@ void Contacts::inside(double t, const Vectors& x, std::vector<Depth>& found) {
       if (deforming) touch = deforming->begin.touch(p);
       const Nearest nearest = touch ? touch->nearest : obstacle.nearest(p);
       ++queries_;
-      if (nearest.distance >= distance_) continue;
+      if (nearest.distance >= reach) continue;
       const Eigen::Vector3d surface = p - nearest.distance * nearest.normal;
       Eigen::Vector3d velocity = (later.to_world(surface) - pose.to_world(surface)) / moment_;
       if (touch) velocity += pose.rotation * deforming->begin.velocity(touch->at);

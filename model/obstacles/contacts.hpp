@@ -14,22 +14,44 @@ namespace drape::model {
 enum class ResponseKind {
   constraint,  ///< velocities of colliding particles are constrained in the step's linear systems [Etzmuß 2002, 4.4]
   reaction,    ///< forces on colliding particles are replaced by a damped spring [Etzmuß 2002, 4.3]
+  penalty,     ///< a steep potential around obstacles (Repulsion)
+  field,       ///< an exponential, damped field around obstacles (Repulsion)
+  reposition,  ///< after the step particles are moved to the border, where they stop (Relocation)
+  reflect,     ///< ... or are reflected (Relocation)
+  impulse,     ///< ... or get the velocity that counteracts the force on them (Relocation)
+  alteration,  ///< what is inside when a step begins stops, and its position is altered in the implicit equation
+               ///< [Baraff, Witkin 1998; Etzmuß 2002, 4.2]
 };
 
 /// How particles and obstacles meet.
 struct ContactRule {
   double distance = 5e-3;   ///< d: what is nearer than this is in the collision area [m]
-  double relaxation = 0.5;  ///< ω: part of its depth in the collision area that a particle loses in a step (4.4)
+  double relaxation = 0.5;  ///< ω: part of its depth in the collision area that a particle loses in a step (4.4), at most 2
   ResponseKind response = ResponseKind::constraint;
   double thickness = 0;         ///< distance between layers of cloth that touch [m]; 0: cloth passes through itself
+  double self_friction = 0;     ///< μ between layers of cloth
   double reaction_time = 0.02;  ///< τ [s]: the springs of reaction constraints have k = m/τ² and d = 2m/τ
+  double push = 9.81;           ///< c [m/s²]: force of penalty and field on a unit of mass at the border
+  double exponent = 10;         ///< n of penalty
+  double range = 1e-3;          ///< e of field [m]
+  double restitution = 0.5;     ///< e of reflect
 };
 
-/// A particle in the collision area of an obstacle.
+/// Whether a response changes positions and velocities after the step.
+constexpr bool relocates(ResponseKind kind) {
+  return kind == ResponseKind::reposition || kind == ResponseKind::reflect || kind == ResponseKind::impulse;
+}
+
+/// Whether a response is a force of the ODE.
+constexpr bool is_force(ResponseKind kind) {
+  return kind == ResponseKind::reaction || kind == ResponseKind::penalty || kind == ResponseKind::field;
+}
+
+/// A particle near an obstacle.
 struct Depth {
   int particle;
   Eigen::Vector3d normal;    ///< n, unit
-  double depth;              ///< distance from the border of the area [m], positive
+  double depth;              ///< distance from the border of the area [m], negative outside
   Eigen::Vector3d velocity;  ///< w of the obstacle's surface [m/s]
   double friction;           ///< η
 };
@@ -53,8 +75,8 @@ class Contacts {
   /// Appends the contacts, ordered by particle.
   void find(double t, double h, const solver::State& y, std::vector<solver::Contact>& found);
 
-  /// Sets `found` to the particles that are in a collision area.
-  void inside(double t, const Vectors& x, std::vector<Depth>& found);
+  /// Sets `found` to the particles that are less than `reach` [m] away from an obstacle.
+  void near(double t, const Vectors& x, double reach, std::vector<Depth>& found);
 
   /// Distance of each particle from the nearest obstacle, N, negative inside [m].
   Eigen::VectorXd distances(double t, const Vectors& x) const;
@@ -91,6 +113,7 @@ class Contacts {
   std::vector<Obstacle> obstacles_;
   std::vector<std::optional<Deforming>> deforming_;  ///< for each obstacle
   double distance_, relaxation_;
+  bool alters_;    ///< only what is in the collision area when a step begins is a contact, and its position is altered
   double moment_;  ///< [s]: obstacles move uniformly between key frames
   double gravity_;
   std::vector<std::vector<Answer>> answers_;  ///< for each obstacle and particle

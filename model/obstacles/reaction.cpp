@@ -14,7 +14,7 @@ Reaction::Reaction(std::shared_ptr<Contacts> contacts, const ContactRule& rule, 
     : contacts_(std::move(contacts)), rule_(rule), mass_(std::move(mass)) {}
 
 bool Reaction::acts(double t, const Vectors& x) {
-  contacts_->inside(t, x, inside_);
+  contacts_->near(t, x, rule_.distance, inside_);
   return !inside_.empty();
 }
 

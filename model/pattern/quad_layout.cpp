@@ -50,9 +50,9 @@ struct Choice {
 };
 
 /// What a panel's corners are chosen by.
-class Corners {
+class QuadCorners {
  public:
-  Corners(const PatternPanel& panel, const std::set<std::size_t>& darts) {
+  QuadCorners(const PatternPanel& panel, const std::set<std::size_t>& darts) {
     const std::size_t count = panel.edges.size();
     for (std::size_t edge = 0; edge < count; ++edge) {
       const bool of_dart = darts.contains(edge), behind_dart = darts.contains((edge + count - 1) % count);
@@ -91,7 +91,7 @@ class Corners {
 };
 
 /// All choices, the best first.
-std::vector<Choice> choices(const Corners& corners) {
+std::vector<Choice> choices(const QuadCorners& corners) {
   const std::vector<std::size_t>& of = corners.candidates();
   std::vector<Choice> all;
   for (std::size_t i = 0; i < of.size(); ++i)
@@ -132,7 +132,7 @@ bool can_be_filled(const PatternPanel& panel, const FourSides& sides) try {
 class Sides {
  public:
   Sides(const SewingPattern& pattern, std::size_t which) : panel_(pattern.panels[which]) {
-    const Corners corners(panel_, darts(pattern, which));
+    const QuadCorners corners(panel_, darts(pattern, which));
     if (corners.candidates().size() < 4)
       throw SceneError(
           fmt::format("{}: expected four corners beside darts, so that it can be filled with quadrilaterals, not {}",

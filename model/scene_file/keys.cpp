@@ -26,7 +26,8 @@ constexpr std::string_view friction_kinds[] = {"dahl", "jenkin"};
 constexpr std::string_view stretch_laws[] = {"linear", "tables"};
 constexpr std::string_view rest_shapes[] = {"flat", "start"};
 constexpr std::string_view planes[] = {"horizontal", "vertical"};
-constexpr std::string_view responses[] = {"constraint", "reaction"};
+constexpr std::string_view responses[] = {"constraint", "reaction", "penalty", "field",
+                                          "reposition", "reflect",  "impulse", "alteration"};
 
 // --- Lists of tables: each of their entries is compared with all particles ---------------------------------------------------
 
@@ -419,14 +420,24 @@ std::span<const SceneKey> scene_key_table() {
 
       {"contact.distance", "m", "d: what is nearer to an obstacle than this is in its collision area",
        in_contact<&ContactRule::distance>, check::positive},
-      {"contact.relaxation", "1", "ω: part of its depth in the collision area that a particle loses in a step",
-       in_contact<&ContactRule::relaxation>, check::part},
+      {"contact.relaxation", "1", "ω: part of its depth in the collision area that a particle loses in a step; from 1 to 2 it is thrown out and may bounce",
+       in_contact<&ContactRule::relaxation>, check::up_to_two},
       {"contact.thickness", "m", "distance that cloth keeps from itself; 0: it passes through itself",
        in_contact<&ContactRule::thickness>, check::non_negative},
-      {"contact.response", "", "\"constraint\" (of velocities in the linear systems) or \"reaction\" (damped springs instead of forces)",
+      {"contact.self_friction", "1", "μ between layers of cloth that keep a thickness", in_contact<&ContactRule::self_friction>,
+       check::non_negative},
+      {"contact.response", "", "\"constraint\" (of velocities in the linear systems), \"alteration\" (of what is inside when a step begins), forces: \"reaction\" (damped springs instead of others), \"penalty\" (a steep potential), \"field\" (exponential, damped), or changes after a step: \"reposition\" (to the border, at rest), \"reflect\", \"impulse\" (against the force)",
        in_contact<&ContactRule::response>, check::one_of<responses>},
       {"contact.reaction_time", "s", "τ: the springs of reactions have k = m/τ² and d = 2m/τ",
        in_contact<&ContactRule::reaction_time>, check::positive},
+      {"contact.push", "m/s²", "c: force of penalty and field on a unit of mass at distance d from an obstacle",
+       in_contact<&ContactRule::push>, check::positive},
+      {"contact.exponent", "1", "n: the penalty is m c (d/r)ⁿ at distance r from an obstacle",
+       in_contact<&ContactRule::exponent>, check::positive},
+      {"contact.range", "m", "e: the field is m c exp((d − r)/e), with damping that is critical in a rest at distance d",
+       in_contact<&ContactRule::range>, check::positive},
+      {"contact.restitution", "1", "e: part of the normal velocity with which \"reflect\" sends particles back",
+       in_contact<&ContactRule::restitution>, check::part_or_none},
 
       {"start.plane", "", "\"horizontal\" (v along y) or \"vertical\" (v along z)", in_start<&Start::plane>, check::one_of<planes>},
       {"start.stretch", "1", "factors along weft and warp at t = 0", in_start<&Start::stretch>, check::positive},

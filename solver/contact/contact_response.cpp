@@ -169,6 +169,11 @@ void ContactResponse::configure(Touched& p) {
     p.inverse = base::pseudo_inverse(p.normals);
   p.velocity = p.inverse.transpose() * speed;
   p.obstacle = p.inverse.transpose() * recede + p.tangent() * mean;
+  p.altered = contacts_[p.begin].alters;
+  if (p.altered) {
+    p.alteration = p.inverse.transpose() * (speed - recede);
+    p.velocity -= p.alteration;
+  }
   if (p.status == Status::free) p.status = first_status(p);
   if (p.status == Status::sticks) {
     p.velocity += p.tangent() * (p.obstacle + time_to_impact(p) / h_ * (v0 - p.obstacle));
@@ -231,7 +236,10 @@ void ContactResponse::impose(const Stage& stage, State& y) const {
     v += p.velocity - constrained * v;
     const Eigen::Vector3d x0 = y0_->x.row(p.particle), ax = stage.ax.row(p.particle);
     x = ax + stage.gamma * v;
-    x += constrained * (x0 + (stage.t - t0_) * v - x);
+    if (p.altered)
+      x += stage.gamma * p.alteration;
+    else
+      x += constrained * (x0 + (stage.t - t0_) * v - x);
     y.v.row(p.particle) = v;
     y.x.row(p.particle) = x;
   }
@@ -241,13 +249,19 @@ void ContactResponse::impose(const Stage& stage, State& y) const {
 bool ContactResponse::update(const Stage& stage, State& y, const Vectors& r, const Eigen::VectorXd& bounds, double noise,
                              Changes changes) {
   if (!has_pairs()) return update_particles(stage, y, r, noise, changes);
+  pushed_ = r;
+  pairs_->add_forces(pushed_);
+  const bool changed = update_particles(stage, y, pushed_, noise, changes);
   rubbed_ = r;
-  pairs_->add_forces(rubbed_);
-  const bool changed = update_particles(stage, y, rubbed_, noise, changes);
-  rubbed_ = r;
-  add_friction(stage.gamma, rubbed_);
+  rub_obstacles(stage.gamma, rubbed_);
   find_supports(r, y.v);
-  if (!pairs_->update(y, rubbed_, bounds, noise, changes != Changes::captures, supports_)) return changed;
+  if (!pairs_->update(y, rubbed_, bounds, noise, changes != Changes::captures, supports_)) {
+    pushed_ = r;
+    pairs_->add_forces(pushed_);  // which are those of this solution only now
+    for (Touched& p : touched_)
+      if (p.status != Status::free) balance(p, stage, y, pushed_);
+    return changed;
+  }
   leave_supports();
   rebuild_filter();
   return true;
@@ -276,19 +290,25 @@ void ContactResponse::leave_supports() {
   }
 }
 
+/// Sets the forces on a constrained particle; returns the multipliers of its contacts.
+ContactResponse::PerContact ContactResponse::balance(Touched& p, const Stage& stage, const State& y, const Vectors& r) const {
+  const Eigen::Vector3d reaction = -r.row(p.particle).transpose(), v = y.v.row(p.particle), av = stage.av.row(p.particle);
+  PerContact lambda = p.inverse * reaction;
+  p.bound = friction_bound(p, lambda) / stage.gamma;
+  p.holding = p.tangent() * reaction / stage.gamma;
+  p.force = (ode_.mass[p.particle] * (v - av) - reaction) / stage.gamma;
+  return lambda;
+}
+
 bool ContactResponse::update_particles(const Stage& stage, const State& y, const Vectors& r, double noise, Changes changes) {
   const base::Stopwatch stopwatch(ode_.response_ms);
   bool changed = false;
   for (Touched& p : touched_) {
-    const Eigen::Vector3d reaction = -r.row(p.particle).transpose(), v = y.v.row(p.particle);
+    const Eigen::Vector3d v = y.v.row(p.particle);
     const Eigen::Vector3d x1 = y.x.row(p.particle).transpose() + (t0_ + h_ - stage.t) * v;
     bool differs = false;
     if (p.status != Status::free) {
-      const PerContact lambda = p.inverse * reaction;
-      p.bound = friction_bound(p, lambda) / stage.gamma;
-      p.holding = p.tangent() * reaction / stage.gamma;
-      const Eigen::Vector3d av = stage.av.row(p.particle);
-      p.force = (ode_.mass[p.particle] * (v - av) - reaction) / stage.gamma;
+      const PerContact lambda = balance(p, stage, y, r);
       differs = changes != Changes::captures && (release(p, lambda, noise) || (p.rubs && rub(p, v)));
     }
     if (!differs) differs = capture(p, x1);
@@ -358,6 +378,11 @@ bool ContactResponse::rub(Touched& p, const Eigen::Vector3d& v) {
 
 void ContactResponse::add_friction(double gamma, Vectors& r) const {
   const base::Stopwatch stopwatch(ode_.response_ms);
+  rub_obstacles(gamma, r);
+  if (pairs_) pairs_->add_friction(r);
+}
+
+void ContactResponse::rub_obstacles(double gamma, Vectors& r) const {
   for (const Touched& p : touched_) r.row(p.particle) += gamma * p.friction;
 }
 
@@ -383,7 +408,12 @@ double ContactResponse::stopped_energy() const {
 
 bool ContactResponse::finish(State& y1, State& y0) {
   const base::Stopwatch stopwatch(ode_.response_ms);
-  bool changed = pairs_ && pairs_->finish(y1, y0);
+  bool changed = false;
+  if (pairs_) {
+    const Eigen::Vector3d before = y1.v.transpose() * ode_.mass;
+    changed = pairs_->finish(y1, y0);
+    if (ode_.pins.empty()) impulse_ += y1.v.transpose() * ode_.mass - before;  // what stands on supports stops by them
+  }
   for (Touched& p : touched_) {
     if (p.status == Status::free) continue;
     ++constrained_particles_;

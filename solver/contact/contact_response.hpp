@@ -21,9 +21,13 @@ namespace drape::solver {
 /// before, except for new contacts and for particles that it would reverse, which stick. These are decided once the set of
 /// constrained particles has been found, since multipliers of another set may be many times the right ones.
 ///
-/// Constrained directions follow x0 + (t − t0) v in every method, so that one with history ends on the border as Euler does.
-/// After the step they move with the obstacle, and where they are new the history is adapted, since motion is not smooth at
-/// impacts.
+/// Contacts that alter positions are those of [Baraff, Witkin 1998]: the normal velocity becomes the obstacle's w at once, and
+/// dx/dt = v + c with the c that leads a step of Euler to `least`, in the implicit equation x = ax + γ (v + c). One-step
+/// methods get there; with history, which does not know of c, x goes elsewhere.
+///
+/// Other constrained directions follow x0 + (t − t0) v in every method, so that one with history ends on the border as Euler
+/// does. After the step they move with the obstacle, and where they are new the history is adapted, since motion is not smooth
+/// at impacts.
 class ContactResponse {
  public:
   explicit ContactResponse(const SplitOde& ode);
@@ -103,6 +107,8 @@ class ContactResponse {
     Rows inverse;                                        ///< pseudo-inverse of these
     Eigen::Matrix3d free;                                ///< projector on what pins and constraints leave
     Eigen::Vector3d velocity;                            ///< v in the constrained directions [m/s]
+    bool altered = false;                                ///< whether its contacts alter positions
+    Eigen::Vector3d alteration;                          ///< c [m/s]
     Eigen::Vector3d obstacle;                            ///< w [m/s]
     bool rubs = false;                                   ///< whether its friction is decided
     Eigen::Vector3d friction = Eigen::Vector3d::Zero();  ///< [N]
@@ -134,6 +140,8 @@ class ContactResponse {
   double time_to_impact(const Touched& p) const;
   bool release(Touched& p, const PerContact& lambda, double noise);
   bool capture(Touched& p, const Eigen::Vector3d& x1);
+  PerContact balance(Touched& p, const Stage& stage, const State& y, const Vectors& r) const;
+  void rub_obstacles(double gamma, Vectors& r) const;
   void remember_friction(Touched& p, const Past& was) const;
   bool rub(Touched& p, const Eigen::Vector3d& v);
   void rewrite_history(const Eigen::Matrix3d& directions, const Eigen::Vector3d& a, int particle, const State& y1,
@@ -158,7 +166,7 @@ class ContactResponse {
   std::vector<Past> past_;
   Filter pinned_, filter_;
   std::optional<PairResponse> pairs_;  ///< if the cloth meets itself
-  Vectors rubbed_;                     ///< the residual with other forces of contacts
+  Vectors rubbed_, pushed_;            ///< the residual with friction of obstacles, and with forces of pairs
   std::vector<PairResponse::Support> supports_;
   Eigen::Vector3d impulse_ = Eigen::Vector3d::Zero();
   double work_ = 0;

@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "solver/contact/pair_motion.hpp"
 #include "solver/contact/pair_search.hpp"
 #include "solver/filter.hpp"
 #include "solver/split_ode.hpp"
@@ -14,12 +15,14 @@ namespace drape::solver {
 /// rows C are removed from the step's linear systems by P = I − Cᵀ (C Cᵀ)⁻¹ C  [Etzmuß 2002, 4.4; (4.3) for rows that are not
 /// orthonormal].
 ///
-/// A pair that would come nearer than the thickness has a row: at the end of the step Σ w <x, n> ≥ least, with the nearest
-/// points and the normal of its beginning, so that impulses keep momentum and angular momentum. Which rows are constrained is
-/// found together with the solution by projected gradients [Moré, Toraldo 1991]: velocities move along the residual, over
-/// bounds of the matrix, and back to where no row is violated, by Gauss and Seidel's iteration over the rows. Rows that push
-/// there are constrained in the next linear system, at the velocities that they have there: so rows that depend on each other
-/// agree.
+/// A pair that would come nearer than the thickness has a row: at the end of the step Σ w <x, n> ≥ thickness, with the nearest
+/// points and the normal where they meet, and without torque, so that impulses keep momentum and angular momentum. Where
+/// friction holds the pair, it has two more across the normal; where it slides, Coulomb's friction is a force of the system.
+/// The normal where the step begins may be another: that of a border, over which a particle slides in the step. Which rows are
+/// constrained is found together with the solution by projected gradients [Moré, Toraldo 1991]: velocities move along the
+/// residual, over bounds of the matrix, and back to where no row is violated, by Gauss and Seidel's iteration over the rows.
+/// Rows that push there are constrained in the next linear system, at the velocities that they have there: so rows that depend
+/// on each other agree.
 class PairResponse : public Projector {
  public:
   explicit PairResponse(const SplitOde& ode);
@@ -57,8 +60,11 @@ class PairResponse : public Projector {
   bool update(State& y, const Vectors& r, const Eigen::VectorXd& bounds, double noise, bool releases,
               std::vector<Support>& supports);
 
-  /// Adds the multipliers of constrained rows to a residual.
+  /// Adds the multipliers of constrained rows, and friction, to a residual.
   void add_forces(Vectors& r) const;
+
+  /// Adds the friction of pairs that slide to a residual.
+  void add_friction(Vectors& r) const;
 
   /// r = P r.
   void project(Vectors& r) const override;
@@ -76,31 +82,41 @@ class PairResponse : public Projector {
  private:
   struct Row {
     PairContact pair;
-    std::array<Eigen::Vector3d, 4> direction;  ///< w n in the directions that are left free
-    double least = 0;                          ///< Σ w <v, n> over the step [m/s]
-    double target = 0;                         ///< the same while constrained [m/s]
-    double lambda = 0;                         ///< multiplier [N s]
-    bool active = false;                       ///< whether it is constrained
-    bool before = false;                       ///< whether it was in the step before
+    PairContact::Points points;
+    PairMotion motion;                                 ///< along the distance and across it
+    PairMotion left;                                   ///< of it what pins and obstacles leave free
+    double least = 0;                                  ///< of the speed along the normal over the step [m/s]
+    Eigen::Vector3d start;                             ///< what the motion gives of positions when the step begins [m]
+    Eigen::Vector3d target = Eigen::Vector3d::Zero();  ///< speeds while constrained [m/s]
+    Eigen::Vector3d lambda = Eigen::Vector3d::Zero();  ///< multiplier, and friction across it [N s]
+    Eigen::Vector2d slides = Eigen::Vector2d::Zero();  ///< friction that the system takes as given [N s]
+    bool active = false;                               ///< whether it is constrained
+    bool sticks = false;                               ///< whether it is across the normal, too
+    bool before = false;                               ///< whether it was active in the step before
 
-    double speed(const Vectors& v) const { return pair.begin.along_normal(pair.particles, v); }
+    double speed(int direction, const Vectors& v) const { return motion[direction].along(pair.particles, v); }
+    int constrained() const { return !active ? 0 : sticks ? 3 : 1; }  ///< directions, from the first
+    void add(const Eigen::Vector3d& impulses, Vectors& r) const;
   };
   class Factor;
 
   /// A row as the sweeps over all of them need it.
   struct Push {
-    std::array<int, 4> particles;
-    PairContact::Points points;
-    double least, lambda;                     ///< those of the row
-    std::array<Eigen::Vector3d, 4> way = {};  ///< changes of velocities for a unit of impulse [1/kg]
-    double gain = 0;                          ///< change of the speed [1/kg]
+    Row* row;
+    std::array<std::array<Eigen::Vector3d, 4>, 3> way;  ///< changes of velocities for a unit of impulse [1/kg]
+    Eigen::Vector3d gain = Eigen::Vector3d::Zero();     ///< change of the speed [1/kg]
 
-    void give(double impulse, Vectors& v) const;
+    double give(int direction, double impulse, Vectors& v);
+    double push(Vectors& v);
+    double stop_sliding(Vectors& v);
   };
 
-  Row row_of(const PairContact& pair) const;
+  PairMotion motion_at(const Row& row, const Vectors& x) const;
+  Row row_of(const PairContact& pair, const PairContact::Points& points) const;
+  void leave(Row& row) const;
   void settle(const Eigen::VectorXd& mass, double noise, std::vector<Support>& supports);
   void activate(bool releases);
+  bool rub(const Vectors& v, double noise);
   void factorise();
   void stop(State& y1);
   template <class Value>
@@ -110,6 +126,8 @@ class PairResponse : public Projector {
   const SplitOde& ode_;
   std::vector<Eigen::Matrix3d> allowed_, free_;  ///< projectors for each particle: on what pins leave, and obstacles
   std::vector<Eigen::Matrix3d> loose_;           ///< with the normals of supports
+  std::vector<char> pinned_;                     ///< for each particle
+  double friction_;                              ///< μ
   double t0_ = 0, h_ = 0;
   const State* y0_ = nullptr;
   std::vector<Row> rows_;

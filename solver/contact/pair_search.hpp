@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <tuple>
 #include <vector>
 
 #include "solver/state.hpp"
@@ -15,6 +16,9 @@ struct PairContact {
     Eigen::Vector3d normal;   ///< unit, along it
     double distance;          ///< [m]
 
+    /// Whether both lie inside: not on the border of the face, nor at the end of an edge.
+    bool is_inside() const { return (weights.array() != 0).all(); }
+
     /// Σ w <v, n>: how fast the distance grows, or what it is along n if v are positions.
     double along_normal(const std::array<int, 4>& of, const Vectors& v) const {
       return (weights[0] * v.row(of[0]) + weights[1] * v.row(of[1]) + weights[2] * v.row(of[2]) + weights[3] * v.row(of[3]))
@@ -23,9 +27,17 @@ struct PairContact {
   };
   std::array<int, 4> particles;
   bool edges;    ///< whether it is one of two edges
-  Points begin;  ///< when the step begins
-  Points touch;  ///< when they have come as near as was asked for, or at the end if they only have come nearer
+  Points begin;  ///< when the step begins, or where renew() was asked for
+  Points touch;  ///< when the step ends, if that is on the same side, else when they have come as near as was asked for
+
+  /// The order of pairs in this program; those of one vertex follow each other.
+  auto order() const { return std::tie(edges, particles); }
 };
+
+/// For each of some ordered pairs whether it is one of a vertex that is nearest to the border of a face, while it is inside
+/// above a neighbour of that face. Such a pair asks for nothing that is missing, and its tilted normal would stop a vertex that
+/// slides. `points`: PairContact::begin or touch.
+std::vector<char> on_borders(const std::vector<PairContact>& pairs, PairContact::Points PairContact::*points);
 
 /// Finds the pairs of a cloth that come near each other.
 class PairSearch {
@@ -35,11 +47,14 @@ class PairSearch {
   /// Distance that is to be kept [m].
   virtual double thickness() const = 0;
 
+  /// Coulomb's coefficient μ of friction between the two points of a pair.
+  virtual double friction() const = 0;
+
   /// Sets `found` to the pairs whose distance falls below `distance` [m] while particles move uniformly from x0 to x1; those
-  /// that begin nearer only if they do not end farther apart than they began.
+  /// that begin nearer only if they do not end farther apart than they began. Ordered, and without those of on_borders().
   virtual void find(const Vectors& x0, const Vectors& x1, double distance, std::vector<PairContact>& found) = 0;
 
-  /// Sets the nearest points of these pairs where particles are at x, as at the beginning of a step.
+  /// Sets `begin` of these pairs to the nearest points where particles are at x.
   virtual void renew(const Vectors& x, std::vector<PairContact>& pairs) const = 0;
 };
 

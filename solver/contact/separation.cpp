@@ -6,6 +6,7 @@
 #include "solver/base/decompositions.hpp"
 #include "solver/base/disjoint_sets.hpp"
 #include "solver/base/stopwatch.hpp"
+#include "solver/contact/rigid_body.hpp"
 #include "solver/filter.hpp"
 
 namespace drape::solver {
@@ -19,29 +20,8 @@ constexpr int pushing_rounds = 20;  ///< of impulses; pairs that need more move 
 constexpr int most_rounds = 100;
 constexpr int pushing_sweeps = 30;  ///< over all pairs in a round
 constexpr double regained = 0.05;   ///< part of what is missing of the distance that pairs gain in a step
+constexpr double turning = 0.05;    ///< over that of free particles: a pair of less gain would be turned as a whole
 constexpr double enough = 1e-3;     ///< part of the distance by which a sweep moves nothing any more
-
-/// Mass, centre and moments of inertia of some particles.
-struct Body {
-  double mass = 0;
-  Vector3d centre = Vector3d::Zero();
-  Matrix3d inertia = Matrix3d::Zero();
-};
-
-template <class Particles, class Mass>
-Body body_of(const Particles& particles, const Mass& mass, const Vectors& x) {
-  Body body;
-  for (const int i : particles) {
-    body.mass += mass(i);
-    body.centre += mass(i) * x.row(i).transpose();
-  }
-  body.centre /= body.mass;
-  for (const int i : particles) {
-    const Vector3d arm = x.row(i).transpose() - body.centre;
-    body.inertia += mass(i) * (arm.squaredNorm() * Matrix3d::Identity() - arm * arm.transpose());
-  }
-  return body;
-}
 
 }  // namespace
 
@@ -56,28 +36,46 @@ Separation::Separation(const SplitOde& ode)
   for (const Pin& pin : ode.pins) lightness_[pin.particle] = 0;
 }
 
-void Separation::Push::give(double impulse, Vectors& x) {
-  given += impulse;
-  for (int k = 0; k < 4; ++k) x.row(particles[k]) += impulse * way[k];
+/// Returns by how much it changes the motion.
+double Separation::Push::give(int direction, double impulse, Vectors& x) {
+  given[direction] += impulse;
+  for (int k = 0; k < 4; ++k) x.row(particles[k]) += impulse * way[direction][k];
+  return std::abs(impulse) * gain[direction];
+}
+
+double Separation::Push::push(Vectors& x) {
+  const double missing = aim - points.along_normal(particles, x);
+  return give(0, std::max(missing / gain[0], -given[0]), x);
+}
+
+/// Friction that would undo how the pair slides in the step, within Coulomb's cone.
+void Separation::Push::rub(double friction, Vectors& x) {
+  const double most = friction * given[0], across = std::max(gain[1], gain[2]);
+  if (across < turning * free) return;
+  const auto stop = [&](int c) { return given[c] - (motion[c].along(particles, x) - before[c]) / across; };
+  Eigen::Vector2d stops(stop(1), stop(2));
+  if (const double size = stops.norm(); size > most) stops *= most / size;
+  for (const int c : {1, 2}) give(c, stops[c - 1] - given[c], x);
 }
 
 /// Impulses that change x1 by h times the change of v1 keep angular momentum if they have no torque about x1 − h v1.
-Separation::Push Separation::push_of(const PairContact& pair, double distance, const Vectors& arms) const {
+Separation::Push Separation::push_of(const PairContact& pair, double distance, const Vectors& x0, const Vectors& arms) const {
   const bool near = pair.begin.distance < distance;
-  Push push{pair.particles, near ? pair.begin : pair.touch, distance * (1 + enough)};
+  Push push;
+  push.particles = pair.particles;
+  push.points = pair.touch;
+  push.aim = distance * (1 + enough);
   if (near) push.aim = pair.begin.distance + regained * (distance - pair.begin.distance);
-  const auto impulse = [&](int k) -> Vector3d { return push.points.weights[k] * push.points.normal; };
-  for (int k = 0; k < 4; ++k) push.way[k] = lightness_[pair.particles[k]] * impulse(k);
-  if (std::ranges::none_of(pair.particles, [&](int i) { return lightness_[i] == 0; })) {
-    const auto mass = [&](int i) { return ode_.mass[i]; };
-    const Body body = body_of(pair.particles, mass, arms);
-    const auto arm = [&](int k) -> Vector3d { return arms.row(pair.particles[k]).transpose() - body.centre; };
-    Vector3d torque = Vector3d::Zero();  // about the centre; the sum of impulses is 0
-    for (int k = 0; k < 4; ++k) torque += arm(k).cross(impulse(k));
-    const Vector3d turn = base::pseudo_inverse(body.inertia) * torque;
-    for (int k = 0; k < 4; ++k) push.way[k] -= turn.cross(arm(k));
+  const bool pinned = std::ranges::any_of(pair.particles, [&](int i) { return lightness_[i] == 0; });
+  push.motion = pinned ? held_motion_of(push.points) : motion_of(push.points, pair.particles, ode_.mass, arms);
+  for (int k = 0; k < 4; ++k) push.free += lightness_[pair.particles[k]] * push.points.weights[k] * push.points.weights[k];
+  for (int c = 0; c < 3; ++c) {
+    push.before[c] = push.motion[c].along(pair.particles, x0);
+    for (int k = 0; k < 4; ++k) {
+      push.way[c][k] = lightness_[pair.particles[k]] * push.motion[c].of[k];
+      push.gain[c] += push.motion[c].of[k].dot(push.way[c][k]);
+    }
   }
-  for (int k = 0; k < 4; ++k) push.gain += impulse(k).dot(push.way[k]);
   return push;
 }
 
@@ -99,23 +97,25 @@ void Separation::push_out(Vectors& x1) {
 }
 
 /// By Gauss and Seidel's iteration over all pairs; impulses that are not needed any more are taken back.
-void Separation::push_apart(const Vectors& arms, double distance, Vectors& x1) {
+void Separation::push_apart(const Vectors& x0, const Vectors& arms, double distance, Vectors& x1) {
+  const double friction = ode_.pairs->friction();
   pushes_.clear();
   for (const PairContact& pair : found_) {
-    const Push push = push_of(pair, distance, arms);
-    if (push.gain > 0) pushes_.push_back(push);
+    const Push push = push_of(pair, distance, x0, arms);
+    if (push.gain[0] > turning * push.free) pushes_.push_back(push);
   }
   for (Bound& bound : bounds_) bound.given = 0;
   double most = distance;
   for (int sweep = 0; sweep < pushing_sweeps && most > enough * distance; ++sweep) {
     most = 0;
     for (Push& push : pushes_) {
-      const double impulse = std::max(push.missing(x1) / push.gain, -push.given);
-      push.give(impulse, x1);
-      most = std::max(most, std::abs(impulse) * push.gain);
+      most = std::max(most, push.push(x1));
     }
     push_out(x1);
   }
+  if (friction == 0) return;
+  for (Push& push : pushes_) push.rub(friction, x1);  // once: where it presses pairs together, more of it would never end
+  push_out(x1);
 }
 
 /// Moves sets of pairs that still meet as one body, which has their momentum and, for small angles, angular momentum.
@@ -130,7 +130,7 @@ void Separation::move_rigidly(const Vectors& x0, Vectors& x1) {
   for (const std::vector<int>& particles : bodies) {
     if (particles.size() < 2) continue;
     rigid_ += std::ssize(particles);
-    const Body body = body_of(particles, mass, x0);
+    const RigidBody body = rigid_body(particles, mass, x0);
     Vector3d way = Vector3d::Zero(), spin = Vector3d::Zero();
     for (const int i : particles) way += mass(i) / body.mass * (x1.row(i) - x0.row(i)).transpose();
     for (const int i : particles)
@@ -162,7 +162,7 @@ bool Separation::separate(const State& y0, double h, const Distances& distances,
     const base::Stopwatch stopwatch(ode_.response_ms);
     if (round < pushing_rounds) {
       pushed_ += std::ssize(found_);
-      push_apart(arms_, distance, x1_);
+      push_apart(y0.x, arms_, distance, x1_);
     } else {
       move_rigidly(y0.x, x1_);
     }

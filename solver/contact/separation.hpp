@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "solver/base/disjoint_sets.hpp"
+#include "solver/contact/pair_motion.hpp"
 #include "solver/contact/pair_search.hpp"
 #include "solver/split_ode.hpp"
 
@@ -30,23 +31,26 @@ class Separation {
   bool separate(const State& y0, double h, const Distances& distances, std::span<const Contact> contacts, State& y1);
 
  private:
-  /// How the particles of a pair move for a unit of impulse along its constraint, without what would turn or move the four as a
-  /// whole.
+  /// What impulses along the motion of a pair do.
   struct Push {
     std::array<int, 4> particles;
     PairContact::Points points;
-    double aim;  ///< distance that is wanted [m]
-    std::array<Eigen::Vector3d, 4> way = {};
-    double gain = 0;   ///< growth of the distance
-    double given = 0;  ///< impulse
+    double aim;                                              ///< distance that is wanted [m]
+    PairMotion motion;                                       ///< the impulses
+    Eigen::Vector3d before;                                  ///< what it gives of positions before the step [m]
+    std::array<std::array<Eigen::Vector3d, 4>, 3> way = {};  ///< of the particles for a unit of impulse
+    Eigen::Vector3d gain = Eigen::Vector3d::Zero();          ///< change of the motion
+    double free = 0;                                         ///< the same where impulses have a torque
+    Eigen::Vector3d given = Eigen::Vector3d::Zero();         ///< impulses
 
-    double missing(const Vectors& x) const { return aim - points.along_normal(particles, x); }  ///< of the distance [m]
-    void give(double impulse, Vectors& x);
+    double give(int direction, double impulse, Vectors& x);
+    double push(Vectors& x);
+    void rub(double friction, Vectors& x);
   };
 
-  Push push_of(const PairContact& pair, double distance, const Vectors& arms) const;
+  Push push_of(const PairContact& pair, double distance, const Vectors& x0, const Vectors& arms) const;
   void bound(std::span<const Contact> contacts, const Vectors& x1);
-  void push_apart(const Vectors& arms, double distance, Vectors& x1);
+  void push_apart(const Vectors& x0, const Vectors& arms, double distance, Vectors& x1);
   void push_out(Vectors& x1);
   void move_rigidly(const Vectors& x0, Vectors& x1);
 

@@ -19,7 +19,7 @@ StageResult StageSolver::fixed_point(const Stage& stage, const Vectors* f_explic
   const double cg_tolerance = linear || passes > 0
                                   ? options_.cg_tolerance
                                   : std::min(options_.cg_tolerance, tolerance / 2);  // else the loop could not end
-  const int changing_updates = linear ? 10 : 50;
+  const int changing_updates = !linear ? 50 : ode_.pairs ? 30 : 10;
   StageSystem::Scale size{};
   bool coarse = false;
   for (;; ++result.updates, ++work_.updates) {

@@ -45,6 +45,14 @@ TEST(ClearCloth, DoesNotBeginThroughItself) {
                     HasSubstr("of panel 'lower' and cell ["), HasSubstr("of panel 'upper' do")));
 }
 
+TEST(ClearCloth, IsThatOfScenesWhereClothMeetsItself) {
+  for (const char* name : {"sphere_drop", "cloth_stack", "twist", "curtain_drawn"}) {
+    const model::Scene scene = model::load_scene(name);
+    EXPECT_GT(scene.contact.thickness, 0) << name;
+    EXPECT_NO_THROW(model::require_clear_cloth(scene)) << name;
+  }
+}
+
 TEST(ClearCloth, IsThinnerThanItsTriangles) {
   const std::string sheet = "[grid]\nn = [4, 2]\nsize = [0.3, 0.1]\n[contact]\nthickness = ";  // altitudes of 0.1/√2 m
   EXPECT_EQ(complaint(sheet + "0.0353"), "");

@@ -78,5 +78,15 @@ TEST(BodyFaces, AreThoseAboveTheBox) {
   EXPECT_EQ(model::face_pairs(surface, {}, 0, sheet.x, 1), 0);
 }
 
+/// A sheet just above a box and one through its sides, between whose particles the box stands.
+TEST(BodyFaces, IntersectWhereTheBoxStandsBetweenParticles) {
+  const std::vector<PosedObstacle> bodies{{verify::obstacle("shape = 'box', size = [0.5, 0.5, 1]"), 3.0}};
+  for (const double height : {0.499, 0.501}) {
+    const FlatSquare sheet(2, height);
+    const int found = model::body_intersections(ClothSurface(sheet.faces, sheet.x), bodies, 0, sheet.x);
+    EXPECT_EQ(found > 0, height < 0.5) << height;
+  }
+}
+
 }  // namespace
 }  // namespace drape::verify::body_faces_test

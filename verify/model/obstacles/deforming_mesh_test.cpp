@@ -149,8 +149,8 @@ TEST_F(Shifted, HasTheContactsOfTheRigidMesh) {
     expect_same(found, expected);
     most = std::max(most, found.size());
     std::vector<model::Depth> inside, expected_inside;
-    vertices.inside(t, y.x, inside);
-    motion.inside(t, y.x, expected_inside);
+    vertices.near(t, y.x, 0.01, inside);
+    motion.near(t, y.x, 0.01, expected_inside);
     ASSERT_EQ(inside.size(), expected_inside.size());
     for (std::size_t k = 0; k < inside.size(); ++k) {
       EXPECT_NEAR(inside[k].depth, expected_inside[k].depth, 1e-14);
@@ -294,7 +294,7 @@ TEST_F(Pulsating, MovesWhatIsInsideByBoth) {
   const double t = 0.4, turned = t * M_PI / 4;
   solver::Vectors x(1, 3);
   x << 0.5, 0.4, 0.1;
-  contacts.inside(t, x, found);
+  contacts.near(t, x, 0.01, found);
   ASSERT_EQ(found.size(), 1U);
   const Vector3d surface = x.row(0).transpose() + (found[0].depth - 0.01) * found[0].normal;
   const Vector3d expected = 0.25 / size(t) * surface + M_PI / 4 * Vector3d::UnitZ().cross(surface);

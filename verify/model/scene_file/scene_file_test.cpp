@@ -97,6 +97,10 @@ distance = 2e-3
 relaxation = 1
 response = "reaction"
 reaction_time = 0.01
+push = 20
+exponent = 12
+range = 2e-3
+restitution = 0.25
 [start]
 plane = "vertical"
 stretch = [1.1, 1]
@@ -174,6 +178,10 @@ void expect_complete(const Scene& scene) {
   EXPECT_EQ(scene.contact.relaxation, 1);
   EXPECT_EQ(scene.contact.response, model::ResponseKind::reaction);
   EXPECT_EQ(scene.contact.reaction_time, 0.01);
+  EXPECT_EQ(scene.contact.push, 20);
+  EXPECT_EQ(scene.contact.exponent, 12);
+  EXPECT_EQ(scene.contact.range, 2e-3);
+  EXPECT_EQ(scene.contact.restitution, 0.25);
   ASSERT_EQ(scene.pins.size(), 3u);
   EXPECT_EQ(scene.pins[0].where, "left edge");
   EXPECT_THAT(scene.pins[0].directions, ElementsAre(true, true, true));

@@ -1,0 +1,408 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <iterator>
+#include <numeric>
+#include <optional>
+#include <ranges>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "bench/runs/costs.hpp"
+#include "bench/runs/record.hpp"
+#include "bench/runs/timing.hpp"
+#include "bench/studies/contact/contact_watch.hpp"
+#include "bench/studies/draping.hpp"
+#include "bench/studies/step_means.hpp"
+#include "bench/studies/studies.hpp"
+#include "model/scene_file/scene_file.hpp"
+#include "results/columns.hpp"
+#include "results/verdict.hpp"
+
+namespace drape::bench {
+namespace {
+
+using results::ColumnOf;
+using results::Datum;
+using results::field;
+using results::Role;
+using results::RunRecord;
+using results::Standing;
+using results::StepRecord;
+using results::Verdict;
+
+constexpr double contact_step = 0.01;                                  // [s]
+constexpr double contact_steps[] = {0.04, 0.02, 0.01, 0.005, 0.0025};  // [s], of which the largest usable one is sought
+constexpr double resting = 1e-2;                                       // kinetic energy over the largest one
+
+/// Three sheets that fall onto each other and the floor. They begin stretched and swing while they fall: systems of sheets that
+/// only fall need no iterations.
+constexpr std::string_view stack = R"(
+name = "stack"
+grid = { n = 8, size = 0.2 }
+material = { density = 0.3, tension = 200, damping = 0.2, shear = 10, bend = 1e-5 }
+forces = { gravity = [0, 0, -9.81] }
+obstacles = [{ shape = "plane" }]
+contact = { distance = 0.005, thickness = 0.005 }
+start = { stretch = 1.02 }
+end = { time = 0.8 }
+panels = [
+  { name = "lower", start.position = [0, 0, 0.08] },
+  { name = "middle", start.position = [0.0071, 0.0043, 0.095] },
+  { name = "upper", start.position = [0.0031, 0.0133, 0.11] },
+]
+)";
+
+constexpr const char* contact_scenes[] = {"stack",         "sphere_drop", "cloth_stack", "twist",
+                                          "curtain_drawn", "box_swing",   "tablecloth",  "ball"};
+constexpr const char* contact_methods[] = {"imex-euler", "implicit-euler", "sbdf2", "bdf2", "midpoint", "verlet"};
+
+/// Values of contact.response; the others are compared with the first.
+constexpr std::string_view contact_responses[] = {"constraint", "alteration", "reaction", "penalty",
+                                                  "field",      "reposition", "reflect",  "impulse"};
+constexpr const char* response_scenes[] = {"box_swing", "tablecloth", "ball"};
+constexpr const char* response_methods[] = {"imex-euler", "implicit-euler", "sbdf2", "bdf2", "midpoint"};
+
+/// For tests a scene is coarse where it has a grid of its own, and short.
+model::Scene contact_scene(const std::string& name, bool quick, std::string_view response = contact_responses[0]) {
+  std::vector<model::Override> changes{{"contact.response", std::string(response)}};
+  if (name == "stack") return model::parse_scene(stack, name, changes);
+  if (quick) changes.push_back({"grid.n", "8"});
+  return model::load_scene(name, changes);
+}
+
+/// A run and what contacts did to it.
+struct WatchedRun {
+  RunRecord run;
+  ContactFindings found;
+
+  bool usable() const { return run.succeeded() && found.intersecting == 0 && found.in_bodies == 0; }
+};
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(WatchedRun, run, found)
+
+RunSpec contact_spec(const model::Scene& scene, std::string_view method, double step = contact_step) {
+  return {scene, "", &solver::method(method), step, solver::thesis_options()};
+}
+
+WatchedRun watched(const RunSpec& spec) {
+  ContactWatch watch;
+  Observer* const observers[] = {&watch};
+  RunRecord run = record(spec, observers);
+  return {std::move(run), watch.findings()};
+}
+
+/// Kinetic energy over the largest one.
+double motion_at_end(Steps steps) {
+  return steps.empty() ? 0
+                       : steps.back().kinetic_energy / std::ranges::max(steps, {}, &StepRecord::kinetic_energy).kinetic_energy;
+}
+
+/// The steps of a run: before anything touches, the last ones of a run that ends at rest, and those between.
+struct ContactParts {
+  Steps flight, impact, rest;
+};
+
+ContactParts parts_of(const WatchedRun& one) {
+  constexpr std::size_t most_at_rest = 20;
+  const Steps all = one.run.steps;
+  std::size_t first = 0;
+  while (first < all.size() && all[first].contacts == 0 && one.found.pairs[first] == 0) ++first;
+  const std::size_t touching = all.size() - first;
+  const std::size_t at_rest = motion_at_end(all) <= resting ? std::min(most_at_rest, touching) : 0;
+  return {all.first(first), all.subspan(first, touching - at_rest), all.last(at_rest)};
+}
+
+std::optional<double> iterations_of(Steps steps) {
+  if (steps.empty()) return {};
+  return iterations(steps);
+}
+
+/// A method on a scene.
+struct ContactRun {
+  std::string scene, method, outcome;
+  double pairs = 0, contacts = 0;  ///< means
+  int most_pairs = 0;
+  std::int64_t systems = 0, changes = 0, cg_iterations = 0;
+  std::optional<double> flight = {}, impact = {}, rest = {};  ///< CG iterations a step
+  double motion = 0;
+  ContactFindings found = {};
+  std::optional<double> largest_step = {};                                 ///< [s]
+  double forces = 0, detection = 0, response = 0, others = 0, spread = 0;  ///< [ms/s]
+};
+
+constexpr ColumnOf<ContactRun> contact_columns[] = {
+    {"scene", "scene", "", "built-in, or stack: three sheets that fall on each other", Role::key, field<&ContactRun::scene>},
+    {"method", "method", "", "time integrator, h = 0.01 s, with the thesis' solvers", Role::key, field<&ContactRun::method>},
+    {"pairs", "pairs", "1", "of the cloth with itself that are near, mean over steps", Role::quantity,
+     field<&ContactRun::pairs>},
+    {"most_pairs", "most", "1", "the most of them", Role::quantity, field<&ContactRun::most_pairs>},
+    {"contacts", "contacts", "1", "particles constrained by obstacles, mean over steps", Role::quantity,
+     field<&ContactRun::contacts>},
+    {"systems", "systems", "1", "linear systems: updates of the stage solver, and those that contacts add", Role::counter,
+     field<&ContactRun::systems>},
+    {"changes", "changes", "1", "of what is constrained, obstacles' and pairs'", Role::counter, field<&ContactRun::changes>},
+    {"cg_iterations", "CG", "1", "iterations of conjugate gradients", Role::counter, field<&ContactRun::cg_iterations>},
+    {"flight", "flight", "1", "CG iterations a step before the first contact", Role::counter, field<&ContactRun::flight>},
+    {"impact", "impact", "1", "CG iterations a step between flight and rest", Role::counter, field<&ContactRun::impact>},
+    {"rest", "rest", "1", "CG iterations a step in the last 20, if the cloth rests then", Role::counter,
+     field<&ContactRun::rest>},
+    {"motion", "motion", "1", "kinetic energy at the end over the largest one: the cloth rests below 0.01", Role::quantity,
+     field<&ContactRun::motion>},
+    {"forces", "forces", "ms/s", "wall time a simulated second: forces, their parts and derivatives", Role::time,
+     field<&ContactRun::forces>},
+    {"detection", "detection", "ms/s", "of contacts and pairs", Role::time, field<&ContactRun::detection>},
+    {"response", "response", "ms/s", "to contacts and pairs", Role::time, field<&ContactRun::response>},
+    {"others", "others", "ms/s", "linear systems and what the method does besides", Role::time, field<&ContactRun::others>},
+    {"spread", "±", "ms/s", "half the range of the sum in interleaved repetitions", Role::time, field<&ContactRun::spread>},
+    {"energy_rise", "energy rise", "1", "largest rise of the total energy while pins rest, over the energies", Role::quantity,
+     [](const ContactRun& row) { return results::to_datum(row.found.energy_rise); }},
+    {"momentum", "momentum", "1", "what its balance with forces and impulses is off, over the impulse of forces",
+     Role::quantity, [](const ContactRun& row) { return results::to_datum(row.found.momentum); }},
+    {"least", "least", "1", "least distance of the cloth from itself over its thickness, if it comes near", Role::quantity,
+     [](const ContactRun& row) { return results::to_datum(row.found.least); }},
+    {"intersecting", "intersecting", "1", "frames in which cloth intersects itself, by exact predicates", Role::quantity,
+     [](const ContactRun& row) { return results::to_datum(row.found.intersecting); }},
+    {"through_bodies", "bodies", "1", "frames in which it intersects obstacles, by exact predicates", Role::quantity,
+     [](const ContactRun& row) { return results::to_datum(row.found.through_bodies); }},
+    {"largest_step", "largest h", "s",
+     "of 0.04, 0.02, …, 0.0025: the run lasts to its end, cloth is never through itself, and no particle in an obstacle",
+     Role::quantity, field<&ContactRun::largest_step>},
+    {"outcome", "outcome", "", "how the run ended", Role::outcome, field<&ContactRun::outcome>},
+};
+
+ContactRun contact_row(const std::string& scene, std::string_view method, const WatchedRun& one) {
+  const RunRecord& run = one.run;
+  ContactRun row{scene, std::string(method), ending(run.outcome, run.last_good_time)};
+  const ContactParts parts = parts_of(one);
+  row.found = one.found;
+  if (!run.steps.empty()) {
+    const std::vector<int>& pairs = one.found.pairs;
+    row.pairs = std::accumulate(pairs.begin(), pairs.end(), 0.0) / static_cast<double>(pairs.size());
+    row.most_pairs = std::ranges::max(pairs);
+    row.contacts = mean(run.steps, &StepRecord::contacts);
+  }
+  row.systems = work_count(run, "updates"), row.cg_iterations = work_count(run, "cg_iterations");
+  row.changes = work_count(run, "contact_changes") + work_count(run, "pair_changes");
+  row.flight = iterations_of(parts.flight), row.impact = iterations_of(parts.impact), row.rest = iterations_of(parts.rest);
+  row.motion = motion_at_end(run.steps);
+  return row;
+}
+
+// --- Verdicts ----------------------------------------------------------------------------------------------------------------
+
+/// What a run comes to beside what it may be at most.
+struct ContactVerdict {
+  std::string scene, method, what;
+  std::optional<double> value;
+  double most;
+  Verdict verdict;
+};
+
+constexpr ColumnOf<ContactVerdict> verdict_columns[] = {
+    {"scene", "scene", "", "as above", Role::key, field<&ContactVerdict::scene>},
+    {"method", "method", "", "time integrator", Role::key, field<&ContactVerdict::method>},
+    {"what", "what", "", "is judged", Role::key, field<&ContactVerdict::what>},
+    {"value", "value", "1", "measured", Role::quantity, field<&ContactVerdict::value>},
+    {"bar", "bar", "1", "what it may be at most", Role::quantity, field<&ContactVerdict::most>},
+    {"verdict", "verdict", "", "whether it is", Role::verdict, field<&ContactVerdict::verdict>},
+};
+
+ContactVerdict intersections_of(const ContactRun& row) {
+  const int frames = row.found.intersecting + row.found.in_bodies;
+  Verdict verdict = results::check(frames == 0, "no intersection", "intersections");
+  if (frames == 0 && row.outcome != "success") verdict = {Standing::open, row.outcome};
+  return {row.scene, row.method, "frames in which cloth is through itself or a particle in an obstacle", frames, 0, verdict};
+}
+
+/// Resting against free flight, of a run in which there are both.
+ContactVerdict resting_cost(const ContactRun& row) {
+  ContactVerdict found{row.scene, row.method, "CG iterations a step, at rest over in flight", {}, most_iterations_at_rest, {}};
+  const auto open = [&](std::string why) {
+    found.verdict = {Standing::open, std::move(why)};
+    return found;
+  };
+  if (row.outcome != "success") return open(row.outcome);
+  if (!row.flight) return open("never free");
+  if (!row.rest) return open("does not rest");
+  if (*row.flight < 1) return open("flight needs no iterations");
+  found.value = *row.rest / *row.flight;
+  found.verdict = results::check(*found.value <= found.most, "below", "not below");
+  return found;
+}
+
+std::vector<ContactVerdict> judged(const std::vector<ContactRun>& rows) {
+  std::vector<ContactVerdict> all;
+  for (const ContactRun& row : rows) all.push_back(intersections_of(row));
+  for (const ContactRun& row : rows)
+    if (solver::method(row.method).implicit()) all.push_back(resting_cost(row));
+  return all;
+}
+
+// --- All scenes --------------------------------------------------------------------------------------------------------------
+
+/// A step of a run at 0.01 s.
+struct ContactMoment {
+  std::string run;
+  double t;  ///< [s]
+  int pairs, contacts, cg_iterations;
+};
+
+constexpr ColumnOf<ContactMoment> contact_moment_columns[] = {
+    {"run", "run", "", "scene and method", Role::key, field<&ContactMoment::run>},
+    {"t", "t", "s", "end of the step", Role::key, field<&ContactMoment::t>},
+    {"pairs", "pairs", "1", "of the cloth with itself that are near", Role::quantity, field<&ContactMoment::pairs>},
+    {"contacts", "contacts", "1", "particles constrained by obstacles", Role::quantity, field<&ContactMoment::contacts>},
+    {"cg_iterations", "CG", "1", "iterations of the step", Role::counter, field<&ContactMoment::cg_iterations>},
+};
+
+struct ContactStudy {
+  std::vector<ContactRun> rows;
+  std::vector<ContactMoment> moments;
+};
+
+void study_contact(const std::string& name, bool quick, Checkpoint& checkpoint, ContactStudy& study) {
+  const model::Scene scene = contact_scene(name, quick);
+  const auto kept = [&](std::string_view method, double h) {
+    const std::string id = fmt::format("{} {} h = {}", name, method, h);
+    return checkpoint.once(id, [&] {
+      checkpoint.show(id);
+      return watched(contact_spec(scene, method, h));
+    });
+  };
+  std::vector<ContactRun> rows;
+  Group group;
+  std::vector<std::size_t> counts;
+  for (const std::string_view method : contact_methods) {
+    const WatchedRun usual = kept(method, contact_step);
+    ContactRun& row = rows.emplace_back(contact_row(name, method, usual));
+    const auto largest = std::ranges::find_if(
+        contact_steps, [&](double h) { return h == contact_step ? usual.usable() : kept(method, h).usable(); });
+    if (largest != std::end(contact_steps)) row.largest_step = *largest;
+    const std::vector<StepRecord>& steps = usual.run.steps;
+    for (std::size_t k = 0; k < steps.size(); ++k)
+      study.moments.push_back(
+          {fmt::format("{}, {}", name, method), steps[k].t, usual.found.pairs[k], steps[k].contacts, steps[k].cg_iterations});
+    group.push_back(contact_spec(scene, method));
+    counts.push_back(std::max<std::size_t>(1, steps_to_time(usual.run)));
+    checkpoint.advance();
+  }
+  checkpoint.show("timing " + name);
+  const auto times = checkpoint.once("times " + name, [&] {
+    std::vector<std::array<double, 5>> found;
+    for (const auto& [median, spread] : median_costs(group, counts, quick ? 1 : 3))
+      found.push_back({median.forces, median.detection, median.response, median.rest, spread});
+    return found;
+  });
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    ContactRun& row = rows[k];
+    row.forces = times[k][0], row.detection = times[k][1], row.response = times[k][2];
+    row.others = times[k][3], row.spread = times[k][4];
+  }
+  std::ranges::move(rows, std::back_inserter(study.rows));
+}
+
+std::vector<results::Table> present_contact(const ContactStudy& study) {
+  results::Table moments =
+      results::make_table("contact-steps", "Contact: every step (in the file)", contact_moment_columns, study.moments);
+  moments.for_file = true;
+  draw(moments, results::Figure::curves, {{results::Part::curve, "run"}, {results::Part::x, "t"}, {results::Part::y, "pairs"}});
+  return {results::make_table("contact", "Contact of cloth with itself and with bodies", contact_columns, study.rows),
+          results::make_table("contact-verdicts", "What contact is judged by", verdict_columns, judged(study.rows)),
+          std::move(moments)};
+}
+
+// --- Responses ---------------------------------------------------------------------------------------------------------------
+
+/// A method with a response to obstacles.
+struct ResponseRun {
+  std::string scene, method, response, outcome;
+  std::int64_t systems = 0, cg_iterations = 0;
+  std::optional<double> rest = {};  ///< CG iterations a step
+  double clearance = 0, energy_rise = 0;
+  Verdict verdict = {};
+};
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ResponseRun, scene, method, response, outcome, systems, cg_iterations, rest, clearance,
+                                   energy_rise)
+
+constexpr ColumnOf<ResponseRun> response_columns[] = {
+    {"scene", "scene", "", "built-in", Role::key, field<&ResponseRun::scene>},
+    {"method", "method", "", "time integrator, h = 0.01 s, with the thesis' solvers", Role::key, field<&ResponseRun::method>},
+    {"response", "response", "", "contact.response", Role::key, field<&ResponseRun::response>},
+    {"systems", "systems", "1", "linear systems", Role::counter, field<&ResponseRun::systems>},
+    {"cg_iterations", "CG", "1", "iterations of conjugate gradients", Role::counter, field<&ResponseRun::cg_iterations>},
+    {"rest", "rest", "1", "CG iterations a step in the last 20, if the cloth rests then", Role::counter,
+     field<&ResponseRun::rest>},
+    {"clearance", "clearance", "m", "least distance of a particle from an obstacle", Role::quantity,
+     field<&ResponseRun::clearance>},
+    {"energy_rise", "energy rise", "1", "largest rise of the total energy, over the run's energies", Role::quantity,
+     field<&ResponseRun::energy_rise>},
+    {"outcome", "outcome", "", "how the run ended", Role::outcome, field<&ResponseRun::outcome>},
+    {"verdict", "verdict", "", "whether the constraint needs no more CG iterations at rest than this response", Role::verdict,
+     [](const ResponseRun& row) { return row.response == contact_responses[0] ? Datum() : results::to_datum(row.verdict); }},
+};
+
+ResponseRun response_row(const std::string& name, std::string_view method, std::string_view response, bool quick) {
+  const WatchedRun one = watched(contact_spec(contact_scene(name, quick, response), method));
+  const RunRecord& run = one.run;
+  return {name,
+          std::string(method),
+          std::string(response),
+          ending(run.outcome, run.last_good_time),
+          work_count(run, "updates"),
+          work_count(run, "cg_iterations"),
+          iterations_of(parts_of(one).rest),
+          run.contact->clearance,
+          run.contact->energy_rise};
+}
+
+Verdict beside_constraint(const ResponseRun& constraint, const ResponseRun& other) {
+  if (!constraint.rest || !other.rest) return {Standing::open, "does not rest"};
+  return results::check(*constraint.rest <= *other.rest, "constraint needs no more CG at rest",
+                        "constraint needs more CG at rest");
+}
+
+std::vector<ResponseRun> compare_responses(std::span<const char* const> scenes, bool quick, Checkpoint& checkpoint) {
+  std::vector<ResponseRun> rows;
+  for (const std::string scene : scenes)
+    for (const std::string_view method : response_methods) {
+      const auto constraint = rows.size();
+      for (const std::string_view response : contact_responses) {
+        const std::string id = fmt::format("{} {} {}", scene, method, response);
+        checkpoint.show(id);
+        rows.push_back(checkpoint.once(id, [&] { return response_row(scene, method, response, quick); }));
+        rows.back().verdict = beside_constraint(rows[constraint], rows.back());
+      }
+      checkpoint.advance();
+    }
+  return rows;
+}
+
+}  // namespace
+
+std::vector<Job> contact(const Question& question) {
+  const bool quick = question.quick;
+  const std::span scenes = std::span(contact_scenes).first(quick ? 1 : std::size(contact_scenes));
+  const std::span compared = std::span(response_scenes).first(quick ? 1 : std::size(response_scenes));
+  return {job(
+              "contact", static_cast<int>(scenes.size() * std::size(contact_methods)),
+              [=](Checkpoint& checkpoint) {
+                ContactStudy study;
+                for (const char* name : scenes) study_contact(name, quick, checkpoint, study);
+                return study;
+              },
+              present_contact),
+          job(
+              "contact-responses", static_cast<int>(compared.size() * std::size(response_methods)),
+              [=](Checkpoint& checkpoint) { return compare_responses(compared, quick, checkpoint); },
+              [](const std::vector<ResponseRun>& rows) {
+                return results::make_table("contact-responses", "Responses to obstacles: what resting costs", response_columns,
+                                           rows);
+              })};
+}
+
+}  // namespace drape::bench
