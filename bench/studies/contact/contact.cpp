@@ -69,7 +69,7 @@ constexpr std::string_view contact_responses[] = {"constraint", "alteration", "r
 constexpr const char* response_scenes[] = {"box_swing", "tablecloth", "ball"};
 constexpr const char* response_methods[] = {"sbdf2", "imex-euler", "implicit-euler", "bdf2", "midpoint"};
 
-/// Of the values of a table: all, or for tests the first ones.
+/// All values of a table, or for tests the first ones.
 template <std::size_t n>
 std::span<const char* const> some_of(const char* const (&all)[n], bool quick, std::size_t first) {
   return std::span(all).first(quick ? first : n);
