@@ -38,7 +38,8 @@ constexpr int repetitions_of_all = 3;  ///< the fewest times that show a spread
 Limits limits_of(const FieldSheet& sheet) {
   const double particles = static_cast<double>(sheet.n) * sheet.n;
   const double seconds = sheet.n >= large_sheet ? seconds_large : seconds_small;
-  return {.seconds = sheet.quick ? seconds_quick : seconds, .evaluations = static_cast<std::int64_t>(most_evaluated / particles)};
+  return {.seconds = sheet.quick ? seconds_quick : seconds,
+          .evaluations = static_cast<std::int64_t>(most_evaluated / particles)};
 }
 
 /// From coarse to fine. Explicit methods that keep their steps need far finer ones.
