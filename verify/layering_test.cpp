@@ -52,7 +52,7 @@ const std::vector<Room> rooms = {
     {"model/forces", {"model/forces/"}, {"model/forces/fused"}},
     {"model/jacobian", {"model/jacobian/"}, {"model/forces"}},
     {"model/keys", {"model/keys/"}, {"model/sheet"}},
-    {"model/obstacles", {"model/obstacles/"}, {"model/keys", "model/forces"}},
+    {"model/obstacles", {"model/obstacles/"}, {"model/keys"}},
     {"model/obstacles/shapes", {"model/obstacles/shapes/"}, {"model/obstacles"}},
     {"model's scenes",
      {"model/scene.", "model/garment.", "model/outline_mesh.", "model/trimmed_surface."},
