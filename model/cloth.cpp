@@ -172,9 +172,9 @@ Cloth compile(const Scene& scene, std::shared_ptr<const Garment> garment, solver
     cloth.contacts = std::make_shared<Contacts>(contacts(scene, *ode.work));
     contact = respond(scene.contact, cloth.contacts, *forces, ode);
   }
-  if (scene.contact.thickness > 0)
-    ode.pairs = std::make_shared<ClothPairs>(ClothSurface(*cloth.garment), scene.contact.thickness, scene.contact.self_friction,
-                                             *ode.work);
+  const std::span<const ObstacleRule> met = scene.contact.faces ? std::span(scene.obstacles) : std::span<const ObstacleRule>();
+  if (scene.contact.thickness > 0 || !met.empty())
+    ode.pairs = std::make_shared<ClothPairs>(ClothSurface(*cloth.garment), scene.contact, met, *ode.work);
   cloth.given = given(forces, contact, ode);
   solver::prescribe(ode.pins, cloth.start.v);
   cloth.plan.obstacles = static_cast<int>(scene.obstacles.size());

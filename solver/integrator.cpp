@@ -217,12 +217,11 @@ void Integrator::begin_contacts(double h) {
 /// have such stages.
 void Integrator::separate() {
   const bool constrains = contacts_ && !method_.sub_steps;
-  const double thickness = step_.ode.pairs->thickness(), least = least_part * thickness;
   std::span<const Contact> possible;
   if (contacts_) possible = contacts_->possible();
   if (impacts_) possible = impacts_->possible();
   const Eigen::Vector3d before = next_.y.v.transpose() * step_.ode.mass;
-  if (!separation_->separate(state(), step_.h, {constrains ? least : thickness, least}, possible, next_.y))
+  if (!separation_->separate(step_.t, state(), step_.h, {constrains ? least_part : 1, least_part}, possible, next_.y))
     step_.result.outcome = Outcome::not_converged;
   separated_.setZero();
   if (step_.ode.pins.empty()) separated_ = next_.y.v.transpose() * step_.ode.mass - before;

@@ -26,12 +26,16 @@ void measure(std::function<void(Arguments...)>& function, double& sum) {
 class MeasuredSearch : public solver::PairSearch {
  public:
   MeasuredSearch(std::shared_ptr<PairSearch> search, double& sum) : search_(std::move(search)), sum_(sum) {}
-  double thickness() const override { return search_->thickness(); }
-  double friction() const override { return search_->friction(); }
-  void find(const solver::Vectors& x0, const solver::Vectors& x1, double distance,
+  void begin(double t, double h) override {
+    const base::Stopwatch stopwatch(&sum_);
+    search_->begin(t, h);
+  }
+  const solver::BodyPoints& bodies() const override { return search_->bodies(); }
+  bool rubs() const override { return search_->rubs(); }
+  void find(const solver::Vectors& x0, const solver::Vectors& x1, double part,
             std::vector<solver::PairContact>& found) override {
     const base::Stopwatch stopwatch(&sum_);
-    search_->find(x0, x1, distance, found);
+    search_->find(x0, x1, part, found);
   }
   void renew(const solver::Vectors& x, std::vector<solver::PairContact>& pairs) const override { search_->renew(x, pairs); }
 

@@ -47,4 +47,20 @@ std::optional<double> first_approach(PairKind kind, const FourPoints& x0, const 
   return part;
 }
 
+std::optional<Approach> approach(PairKind kind, const std::array<int, 4>& particles, const Vectors& x0, const Vectors& x1,
+                                 double distance, bool may_end) {
+  const FourPoints begin = points_of(particles, x0), end = points_of(particles, x1);
+  const std::optional<double> part = first_approach(kind, begin, end, distance);
+  if (!part) return {};
+  const Proximity nearest = proximity(kind, particles, begin);
+  Approach found{kind, nearest, nearest, *part};
+  if (*part > 0) found.touch = proximity(kind, particles, points_between(begin, end, *part));
+  const Proximity last = proximity(kind, particles, end);
+  if (last.is_inside() && last.normal.dot(found.touch.normal) > 0) found.touch = last;
+  if (kind == PairKind::edge_edge && !may_end && !found.touch.is_inside()) return {};
+  if (nearest.distance < distance && last.distance >= distance && !first_approach(kind, begin, end, 0.999 * nearest.distance))
+    return {};
+  return found;
+}
+
 }  // namespace drape::model

@@ -1,10 +1,8 @@
 #include "model/collision/self_contacts.hpp"
 
 #include <algorithm>
-#include <optional>
 #include <utility>
 
-#include "model/collision/approach.hpp"
 #include "model/collision/exact_intersection.hpp"
 #include "model/collision/face_distance.hpp"
 
@@ -96,18 +94,7 @@ void SelfContacts::find(const Vectors& x0, const Vectors& x1, double distance, s
   way_.rowwise() -= common;
   each_pair(x0, reached(distance), [&](PairKind kind, const std::array<int, 4>& particles, bool may_end) {
     ++pairs_;
-    const FourPoints begin = points_of(particles, x0), end = points_of(particles, x1);
-    const std::optional<double> part = first_approach(kind, begin, end, distance);
-    if (!part) return;
-    const Proximity nearest = proximity(kind, particles, begin);
-    Approach approach{kind, nearest, nearest, *part};
-    if (*part > 0) approach.touch = proximity(kind, particles, points_between(begin, end, *part));
-    const Proximity last = proximity(kind, particles, end);
-    if (last.is_inside() && last.normal.dot(approach.touch.normal) > 0) approach.touch = last;
-    if (kind == PairKind::edge_edge && !may_end && !approach.touch.is_inside()) return;
-    if (nearest.distance < distance && last.distance >= distance && !first_approach(kind, begin, end, 0.999 * nearest.distance))
-      return;
-    found.push_back(approach);
+    if (const auto met = approach(kind, particles, x0, x1, distance, may_end)) found.push_back(*met);
   });
 }
 

@@ -5,20 +5,12 @@
 #include <cstdint>
 #include <vector>
 
+#include "model/collision/approach.hpp"
 #include "model/collision/box_tree.hpp"
 #include "model/collision/cloth_surface.hpp"
-#include "model/collision/proximity.hpp"
 #include "solver/counters.hpp"
 
 namespace drape::model {
-
-/// A pair that comes near in a step.
-struct Approach {
-  PairKind kind;
-  Proximity begin;  ///< where the step begins
-  Proximity touch;  ///< where the step ends if that is on the same side, else where the distance has fallen as far as was asked
-  double part;      ///< of the step until the distance has fallen as far
-};
 
 /// Finds where a cloth comes near itself: pairs of a vertex and a face, or of two edges, that have no joined nodes. Two edges
 /// count where they are nearest inside both; where one ends, a vertex and a face are as near, unless it is that of a chain.
@@ -29,9 +21,7 @@ class SelfContacts {
 
   const ClothSurface& surface() const { return surface_; }
 
-  /// Sets `found` to the pairs whose distance falls to `distance` [m] or below while nodes move uniformly from x0 to x1, N × 3,
-  /// as first_approach() has it. Those that begin nearer have part 0, and are left out if they end farther apart and do not
-  /// come nearer by a thousandth on the way. Two edges have to be nearest inside both at that time.
+  /// Sets `found` to the approaches to `distance` [m] while nodes move uniformly from x0 to x1, N × 3.
   void find(const Vectors& x0, const Vectors& x1, double distance, std::vector<Approach>& found);
 
   /// Sets `found` to the pairs nearer than `distance` [m] at x, N × 3.

@@ -30,6 +30,7 @@ struct ContactRule {
   ResponseKind response = ResponseKind::constraint;
   double thickness = 0;         ///< distance between layers of cloth that touch [m]; 0: cloth passes through itself
   double self_friction = 0;     ///< μ between layers of cloth
+  bool faces = false;           ///< whether edges and corners of obstacles are met between particles
   double reaction_time = 0.02;  ///< τ [s]: the springs of reaction constraints have k = m/τ² and d = 2m/τ
   double push = 9.81;           ///< c [m/s²]: force of penalty and field on a unit of mass at the border
   double exponent = 10;         ///< n of penalty

@@ -426,6 +426,8 @@ std::span<const SceneKey> scene_key_table() {
        in_contact<&ContactRule::thickness>, check::non_negative},
       {"contact.self_friction", "1", "μ between layers of cloth that keep a thickness", in_contact<&ContactRule::self_friction>,
        check::non_negative},
+      {"contact.faces", "", "whether cloth between its particles keeps contact.distance from edges and corners of obstacles, which else it only does at particles",
+       in_contact<&ContactRule::faces>, check::flag},
       {"contact.response", "", "\"constraint\" (of velocities in the linear systems), \"alteration\" (of what is inside when a step begins), forces: \"reaction\" (damped springs instead of others), \"penalty\" (a steep potential), \"field\" (exponential, damped), or changes after a step: \"reposition\" (to the border, at rest), \"reflect\", \"impulse\" (against the force)",
        in_contact<&ContactRule::response>, check::one_of<responses>},
       {"contact.reaction_time", "s", "τ: the springs of reactions have k = m/τ² and d = 2m/τ",

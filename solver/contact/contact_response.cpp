@@ -258,10 +258,12 @@ bool ContactResponse::update(const Stage& stage, State& y, const Vectors& r, con
   if (!pairs_->update(y, rubbed_, bounds, noise, changes != Changes::captures, supports_)) {
     pushed_ = r;
     pairs_->add_forces(pushed_);  // which are those of this solution only now
-    for (Touched& p : touched_)
-      if (p.status != Status::free) balance(p, stage, y, pushed_);
-    rub_obstacles(stage.gamma, pushed_);
-    pushed_ /= stage.gamma;  // for finish()
+    missing_ = rubbed_.colwise().sum() / stage.gamma;
+    for (Touched& p : touched_) {
+      if (p.status == Status::free) continue;
+      balance(p, stage, y, pushed_);
+      missing_ -= p.constrained() * (pushed_.row(p.particle).transpose() / stage.gamma + p.friction);
+    }
     return changed;
   }
   leave_supports();
@@ -416,14 +418,7 @@ bool ContactResponse::finish(State& y1, State& y0) {
     changed = pairs_->finish(y1, y0);
     if (ode_.pins.empty()) {
       impulse_ += y1.v.transpose() * ode_.mass - before;  // what stands on supports stops by them
-      if (has_pairs()) {
-        // Forces of pairs have no sum: what those of the last sweeps have more in the directions that obstacles leave free than
-        // the solution, obstacles bear less in the others.
-        Eigen::Vector3d missing = pushed_.colwise().sum();
-        for (const Touched& p : touched_)
-          if (p.status != Status::free) missing -= p.constrained() * pushed_.row(p.particle).transpose();
-        impulse_ -= h_ * missing;
-      }
+      if (has_pairs()) impulse_ -= h_ * missing_;
     }
   }
   for (Touched& p : touched_) {

@@ -168,6 +168,9 @@ class ContactResponse {
   std::optional<PairResponse> pairs_;  ///< if the cloth meets itself
   Vectors rubbed_, pushed_;            ///< the residual with friction of obstacles, and with forces of pairs
   std::vector<PairResponse::Support> supports_;
+  /// What obstacles and bodies bear less than the forces of contacts, which follow the last sweeps over pairs: all forces
+  /// without those of contacts and pairs have this sum with these [N].
+  Eigen::Vector3d missing_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d impulse_ = Eigen::Vector3d::Zero();
   double work_ = 0;
   std::int64_t &constrained_particles_, &changes_;

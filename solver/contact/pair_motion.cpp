@@ -1,10 +1,25 @@
 #include "solver/contact/pair_motion.hpp"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 
 #include "solver/contact/rigid_body.hpp"
 
 namespace drape::solver {
+
+ClothPart cloth_part(const PairContact& pair, const PairContact::Points& points, Eigen::Index count, const BodyPoints& bodies) {
+  ClothPart part{pair.particles, {}, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+  const int own = *std::ranges::min_element(pair.particles);
+  for (int k = 0; k < 4; ++k) {
+    const Eigen::Index point = pair.particles[k] - count;
+    if (point < 0) continue;
+    part.of_body[k] = true;
+    part.particles[k] = own;
+    part.body += points.weights[k] * bodies.begin.row(point).transpose();
+    part.way += points.weights[k] * (bodies.end.row(point) - bodies.begin.row(point)).transpose();
+  }
+  return part;
+}
 
 Eigen::Matrix3d axes_of(const Eigen::Vector3d& normal) {
   Eigen::Matrix3d axes;
@@ -12,11 +27,12 @@ Eigen::Matrix3d axes_of(const Eigen::Vector3d& normal) {
   return axes;
 }
 
-PairMotion held_motion_of(const PairContact::Points& points) {
+PairMotion held_motion_of(const PairContact::Points& points, const std::array<bool, 4>& of_body) {
   const Eigen::Matrix3d axes = axes_of(points.normal);
   PairMotion motion;
   for (int c = 0; c < 3; ++c)
-    for (int k = 0; k < 4; ++k) motion[c].of[k] = points.weights[k] * axes.col(c);
+    for (int k = 0; k < 4; ++k)
+      motion[c].of[k] = of_body[k] ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : points.weights[k] * axes.col(c);
   return motion;
 }
 

@@ -69,7 +69,7 @@ class PairResponse::Factor {
       const Row& row = rows[rows_[r].row];
       for (int k = 0; k < 4; ++k)
         for (int c = 0; c < 3; ++c)
-          entries.emplace_back(r, 3 * row.pair.particles[k] + c, row.left[rows_[r].direction].of[k][c]);
+          entries.emplace_back(r, 3 * row.cloth.particles[k] + c, row.left[rows_[r].direction].of[k][c]);
     }
     C_.resize(std::ssize(rows_), weights_.size());
     if (rows_.empty()) return true;
@@ -96,14 +96,14 @@ class PairResponse::Factor {
 void PairResponse::Row::add(const Eigen::Vector3d& impulses, Vectors& r) const {
   for (int k = 0; k < 4; ++k)
     for (int c = 0; c < 3; ++c)
-      if (impulses[c] != 0) r.row(pair.particles[k]) += impulses[c] * motion[c].of[k];
+      if (impulses[c] != 0) r.row(cloth.particles[k]) += impulses[c] * motion[c].of[k];
 }
 
 /// Returns by how much the multiplier changes.
 double PairResponse::Push::give(int direction, double impulse, Vectors& v) {
   if (impulse == 0) return 0;
   row->lambda[direction] += impulse;
-  for (int k = 0; k < 4; ++k) v.row(row->pair.particles[k]) += impulse * way[direction][k];
+  for (int k = 0; k < 4; ++k) v.row(row->cloth.particles[k]) += impulse * way[direction][k];
   return std::abs(impulse);
 }
 
@@ -114,14 +114,14 @@ double PairResponse::Push::push(Vectors& v) {
 double PairResponse::Push::stop_sliding(Vectors& v) {
   const double across = std::max(gain[1], gain[2]);
   if (across == 0) return 0;
-  const double first = give(1, -row->speed(1, v) / across, v);
-  return std::max(first, give(2, -row->speed(2, v) / across, v));
+  const double first = give(1, -row->slip(1, v) / across, v);
+  return std::max(first, give(2, -row->slip(2, v) / across, v));
 }
 
 PairResponse::PairResponse(const SplitOde& ode)
     : ode_(ode),
       allowed_(allowed_directions(ode)),
-      friction_(ode.pairs->friction()),
+      rubs_(ode.pairs->rubs()),
       constrained_pairs_(ode.work->counter("constrained_pairs", "pairs of the cloth constrained, summed over steps")),
       changes_(ode.work->counter("pair_changes", "changes of the set of constrained pairs")),
       sweeps_(ode.work->counter("pair_sweeps", "sweeps over all pairs that may be constrained")) {
@@ -140,8 +140,9 @@ void PairResponse::clear() {
 }
 
 PairMotion PairResponse::motion_at(const Row& row, const Vectors& x) const {
-  const std::array<int, 4>& particles = row.pair.particles;
-  if (std::ranges::any_of(particles, [&](int i) { return pinned_[i] != 0; })) return held_motion_of(row.points);
+  const std::array<int, 4>& particles = row.cloth.particles;
+  if (row.cloth.meets_body() || std::ranges::any_of(particles, [&](int i) { return pinned_[i] != 0; }))
+    return held_motion_of(row.points, row.cloth.of_body);
   return motion_of(row.points, particles, ode_.mass, x);
 }
 
@@ -149,18 +150,21 @@ PairResponse::Row PairResponse::row_of(const PairContact& pair, const PairContac
   Row row;
   row.pair = pair;
   row.points = points;
+  row.cloth = cloth_part(pair, points, ode_.particles(), ode_.pairs->bodies());
   row.motion = motion_at(row, y0_->x);
   leave(row);
   for (int c = 0; c < 3; ++c) row.start[c] = row.speed(c, y0_->x);
-  const double missing = ode_.pairs->thickness() - row.start[0];
-  row.least = (missing > 0 ? recovery : 1) * missing / h_;
+  row.given = axes_of(points.normal).transpose() * row.cloth.way / h_;
+  row.target.tail<2>() = -row.given.tail<2>();
+  const double missing = pair.keeps - row.start[0] - row.cloth.body.dot(points.normal);
+  row.least = (missing > 0 ? recovery : 1) * missing / h_ - row.given[0];
   return row;
 }
 
 /// Sets what pins and obstacles leave of a row.
 void PairResponse::leave(Row& row) const {
   for (int c = 0; c < 3; ++c)
-    for (int k = 0; k < 4; ++k) row.left[c].of[k] = free_[row.pair.particles[k]] * row.motion[c].of[k];
+    for (int k = 0; k < 4; ++k) row.left[c].of[k] = free_[row.cloth.particles[k]] * row.motion[c].of[k];
 }
 
 void PairResponse::begin(double t0, double h, const State& y0, bool again) {
@@ -168,6 +172,7 @@ void PairResponse::begin(double t0, double h, const State& y0, bool again) {
   t0_ = t0;
   h_ = h;
   y0_ = &y0;
+  ode_.pairs->begin(t0, h);
   found_.clear();
   for (const Row& row : rows_) found_.push_back(row.pair);
   u_ = y0.x + h * y0.v;
@@ -176,7 +181,7 @@ void PairResponse::begin(double t0, double h, const State& y0, bool again) {
   std::vector<Row> before = std::exchange(rows_, {});
   for (std::size_t k = 0; k < found_.size(); ++k) {
     const PairContact::Points &now = found_[k].begin, &last = before[k].points;
-    if (redundant[k] || now.distance > leaving * ode_.pairs->thickness() || now.normal.dot(last.normal) < turned) continue;
+    if (redundant[k] || now.distance > leaving * found_[k].keeps || now.normal.dot(last.normal) < turned) continue;
     Row row = row_of(found_[k], now);
     row.active = before[k].active;
     row.sticks = before[k].sticks;
@@ -217,7 +222,7 @@ void PairResponse::set_free(const Filter& obstacles) {
 
 bool PairResponse::find(const Stage& stage, const State& y) {
   u_ = y.x + (t0_ + h_ - stage.t) * y.v;
-  ode_.pairs->find(y0_->x, u_, worn * ode_.pairs->thickness(), found_);
+  ode_.pairs->find(y0_->x, u_, worn, found_);
   const base::Stopwatch stopwatch(ode_.response_ms);
   const auto before = std::ssize(rows_);
   const auto order = [](const Row& row) { return row.pair.order(); };
@@ -237,7 +242,7 @@ bool PairResponse::find(const Stage& stage, const State& y) {
 void PairResponse::settle(const Eigen::VectorXd& mass, double noise, std::vector<Support>& supports) {
   loose_ = free_;
   for (const Support& support : supports) loose_[support.particle] += support.normal * support.normal.transpose();
-  const int directions = friction_ > 0 ? 3 : 1;
+  const int directions = rubs_ ? 3 : 1;
   pushes_.clear();
   for (Row& row : rows_) {
     if (!row.sticks) row.lambda.tail<2>() = row.slides;
@@ -245,7 +250,7 @@ void PairResponse::settle(const Eigen::VectorXd& mass, double noise, std::vector
     for (int c = 0; c < directions; ++c) {
       double unheld = 0;
       for (int k = 0; k < 4; ++k) {
-        const int i = row.pair.particles[k];
+        const int i = row.cloth.particles[k];
         const Eigen::Vector3d& impulse = row.motion[c].of[k];
         push.way[c][k] = loose_[i] * impulse / mass[i];
         push.gain[c] += push.way[c][k].dot(impulse);
@@ -280,8 +285,8 @@ bool PairResponse::rub(const Vectors& v, double noise) {
   bool changed = false;
   for (Row& row : rows_) {
     if (!row.active) continue;
-    const double most = friction_ * row.lambda[0];
-    const Eigen::Vector2d holds = row.lambda.tail<2>(), slip(row.speed(1, v), row.speed(2, v));
+    const double most = row.pair.friction * row.lambda[0];
+    const Eigen::Vector2d holds = row.lambda.tail<2>(), slip(row.slip(1, v), row.slip(2, v));
     if (row.sticks) {
       if (holds.norm() <= most) continue;
       row.sticks = false;
@@ -294,7 +299,6 @@ bool PairResponse::rub(const Vectors& v, double noise) {
       if ((slows - row.slides).norm() <= noise + rubbing * most) continue;
       row.slides = slows;
     }
-    row.target.tail<2>().setZero();
     changed = true;
   }
   if (changed) factorise();
@@ -308,7 +312,7 @@ bool PairResponse::update(State& y, const Vectors& r, const Eigen::VectorXd& bou
   if (!releases) supports.clear();
   std::vector<char> moved(static_cast<std::size_t>(ode_.particles()), false);
   for (const Row& row : rows_)
-    for (const int i : row.pair.particles) moved[i] = true;
+    for (const int i : row.cloth.particles) moved[i] = true;
   std::erase_if(supports, [&](const Support& support) { return !moved[support.particle]; });
   u_ = y.v;
   double force = 0;
@@ -329,7 +333,7 @@ bool PairResponse::update(State& y, const Vectors& r, const Eigen::VectorXd& bou
   } else {
     supports.clear();
     // Friction once the rows that push do not change: before, multipliers may be many times the right ones.
-    if (friction_ == 0 || !releases || !rub(y.v, noise)) return false;
+    if (!rubs_ || !releases || !rub(y.v, noise)) return false;
   }
   ++changes_;
   return true;
@@ -363,7 +367,7 @@ void PairResponse::add_forces(Vectors& r) const {
 }
 
 void PairResponse::add_friction(Vectors& r) const {
-  if (friction_ == 0) return;
+  if (!rubs_) return;
   for (const Row& row : rows_) row.add({0, row.slides[0], row.slides[1]}, r);
 }
 
@@ -374,7 +378,7 @@ void PairResponse::project(Vectors& r) const {
 double PairResponse::stopped_energy() const {
   if (!impact()) return 0;
   Vectors stopped = Vectors::Zero(ode_.particles(), 3);
-  factor_->add(constrained([&](const Row& row, int c) { return row.before ? 0 : row.speed(c, y0_->v); }), stopped);
+  factor_->add(constrained([&](const Row& row, int c) { return row.before ? 0 : row.slip(c, y0_->v); }), stopped);
   return kinetic_energy(ode_, stopped);
 }
 
@@ -390,7 +394,7 @@ void PairResponse::stop(State& y1) {
   const Factor factor(at_end, ode_.mass.cwiseInverse());
   Eigen::VectorXd speed(std::ssize(factor.rows()));
   Eigen::Index k = 0;
-  for (const auto [row, direction] : factor.rows()) speed[k++] = at_end[row].speed(direction, y1.v);
+  for (const auto [row, direction] : factor.rows()) speed[k++] = at_end[row].slip(direction, y1.v);
   factor.add(-speed, y1.v);
 }
 
@@ -402,7 +406,7 @@ bool PairResponse::finish(State& y1, State& y0) {
   // The friction of an impact has an impulse too.
   std::vector<Row> impulsive = rows_;
   for (Row& row : impulsive)
-    row.sticks = row.sticks || (friction_ > 0 && !row.before && -h_ * row.speed(0, y0.v) > hard * ode_.pairs->thickness());
+    row.sticks = row.sticks || (row.pair.friction > 0 && !row.before && -h_ * row.slip(0, y0.v) > hard * row.pair.keeps);
   const Factor factor(impulsive, Eigen::VectorXd::Ones(ode_.particles()));
   const Vectors jump = y1.v - y0.v, way = y1.x - h_ * y1.v - y0.x;
   factor.add(factor.along(jump), y0.v);

@@ -83,8 +83,10 @@ class PairResponse : public Projector {
   struct Row {
     PairContact pair;
     PairContact::Points points;
+    ClothPart cloth;
     PairMotion motion;                                 ///< along the distance and across it
     PairMotion left;                                   ///< of it what pins and obstacles leave free
+    Eigen::Vector3d given;                             ///< how fast points of bodies move along it [m/s]
     double least = 0;                                  ///< of the speed along the normal over the step [m/s]
     Eigen::Vector3d start;                             ///< what the motion gives of positions when the step begins [m]
     Eigen::Vector3d target = Eigen::Vector3d::Zero();  ///< speeds while constrained [m/s]
@@ -94,7 +96,8 @@ class PairResponse : public Projector {
     bool sticks = false;                               ///< whether it is also across the normal
     bool before = false;                               ///< whether it was active in the step before
 
-    double speed(int direction, const Vectors& v) const { return motion[direction].along(pair.particles, v); }
+    double speed(int direction, const Vectors& v) const { return motion[direction].along(cloth.particles, v); }
+    double slip(int direction, const Vectors& v) const { return speed(direction, v) + given[direction]; }
     int constrained() const { return !active ? 0 : sticks ? 3 : 1; }  ///< directions, from the first
     void add(const Eigen::Vector3d& impulses, Vectors& r) const;
   };
@@ -127,7 +130,7 @@ class PairResponse : public Projector {
   std::vector<Eigen::Matrix3d> allowed_, free_;  ///< projectors for each particle: on what pins leave, and obstacles
   std::vector<Eigen::Matrix3d> loose_;           ///< with the normals of supports
   std::vector<char> pinned_;                     ///< for each particle
-  double friction_;                              ///< μ
+  bool rubs_;                                    ///< whether pairs do
   double t0_ = 0, h_ = 0;
   const State* y0_ = nullptr;
   std::vector<Row> rows_;

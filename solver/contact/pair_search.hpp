@@ -8,7 +8,8 @@
 
 namespace drape::solver {
 
-/// Two points of a cloth that come near each other: of a face and a vertex, or of two edges.
+/// Two points of a cloth, or of a cloth and a body, that come near each other: of a face and a vertex, or of two edges. Points
+/// of bodies are numbered after the particles of the cloth.
 struct PairContact {
   /// Nearest points of the pair.
   struct Points {
@@ -26,9 +27,11 @@ struct PairContact {
     }
   };
   std::array<int, 4> particles;
-  bool edges;    ///< whether it is one of two edges
-  Points begin;  ///< when the step begins, or where renew() was asked for
-  Points touch;  ///< when the step ends, if that is on the same side, else when they have come as near as was asked for
+  bool edges;       ///< whether it is one of two edges
+  Points begin;     ///< when the step begins, or where renew() was asked for
+  Points touch;     ///< when the step ends, if that is on the same side, else when they have come as near as was asked for
+  double keeps;     ///< distance that is to be kept [m]
+  double friction;  ///< Coulomb's coefficient μ
 
   /// The order of pairs in this program; those of one vertex follow each other.
   auto order() const { return std::tie(edges, particles); }
@@ -39,22 +42,31 @@ struct PairContact {
 /// slides. `points`: PairContact::begin or touch.
 std::vector<char> on_borders(const std::vector<PairContact>& pairs, PairContact::Points PairContact::*points);
 
-/// Finds the pairs of a cloth that come near each other.
+/// Points of bodies, M × 3 each [m].
+struct BodyPoints {
+  Vectors begin, end;  ///< of the step
+};
+
+/// Finds the pairs of a cloth that come near each other, or near bodies.
 class PairSearch {
  public:
   virtual ~PairSearch() = default;
 
-  /// Distance that is to be kept [m].
-  virtual double thickness() const = 0;
+  /// Sets where bodies are when a step begins, at t, and when it ends.
+  virtual void begin(double t, double h) = 0;
 
-  /// Coulomb's coefficient μ of friction between the two points of a pair.
-  virtual double friction() const = 0;
+  /// Where they are; they move uniformly.
+  virtual const BodyPoints& bodies() const = 0;
 
-  /// Sets `found` to the pairs whose distance falls below `distance` [m] while particles move uniformly from x0 to x1; those
-  /// that begin nearer only if they do not end farther apart than they began. Ordered, and without those of on_borders().
-  virtual void find(const Vectors& x0, const Vectors& x1, double distance, std::vector<PairContact>& found) = 0;
+  /// Whether pairs rub on each other.
+  virtual bool rubs() const = 0;
 
-  /// Sets `begin` of these pairs to the nearest points where particles are at x.
+  /// Sets `found` to the pairs whose distance falls below `part` of what they keep while particles move uniformly from x0 to
+  /// x1; those that begin nearer only if they do not end farther apart than they began. Ordered, and without those of
+  /// on_borders().
+  virtual void find(const Vectors& x0, const Vectors& x1, double part, std::vector<PairContact>& found) = 0;
+
+  /// Sets `begin` of these pairs to the nearest points where particles are at x and bodies where the step ends.
   virtual void renew(const Vectors& x, std::vector<PairContact>& pairs) const = 0;
 };
 

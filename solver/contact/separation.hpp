@@ -19,23 +19,24 @@ class Separation {
  public:
   explicit Separation(const SplitOde& ode);
 
-  /// Distances between pairs.
+  /// Parts of the distances that pairs keep.
   struct Distances {
-    double wanted;  ///< [m], by impulses as far as some rounds of them do it
-    double least;   ///< [m]
+    double wanted;  ///< by impulses as far as some rounds of them do it
+    double least;
   };
 
-  /// Changes y1 so that no pair comes nearer than the least distance on straight ways from y0, or nearer than it began, and no
-  /// particle goes deeper into the half-spaces of these contacts. False if that is not possible, as where pins force pairs
-  /// through each other.
-  bool separate(const State& y0, double h, const Distances& distances, std::span<const Contact> contacts, State& y1);
+  /// Changes y1, at t + h, so that no pair comes nearer than the least distance on straight ways from y0, or nearer than it
+  /// began, and no particle goes deeper into the half-spaces of these contacts. False if that is not possible, as where pins
+  /// force pairs through each other.
+  bool separate(double t, const State& y0, double h, const Distances& distances, std::span<const Contact> contacts, State& y1);
 
  private:
   /// What impulses along the motion of a pair do.
   struct Push {
-    std::array<int, 4> particles;
-    PairContact::Points points;
-    double aim;                                              ///< distance that is wanted [m]
+    ClothPart cloth;
+    PairContact::Points points;                              ///< without weights of bodies
+    double friction;                                         ///< μ
+    double aim;                                              ///< distance that is wanted, without what bodies are of it [m]
     PairMotion motion;                                       ///< the impulses
     Eigen::Vector3d before;                                  ///< what it gives of positions before the step [m]
     std::array<std::array<Eigen::Vector3d, 4>, 3> way = {};  ///< of the particles for a unit of impulse
@@ -45,12 +46,12 @@ class Separation {
 
     double give(int direction, double impulse, Vectors& x);
     double push(Vectors& x);
-    void rub(double friction, Vectors& x);
+    void rub(Vectors& x);
   };
 
-  Push push_of(const PairContact& pair, double distance, const Vectors& x0, const Vectors& arms) const;
+  Push push_of(const PairContact& pair, double part, const Vectors& x0, const Vectors& arms) const;
   void bound(std::span<const Contact> contacts, const Vectors& x1);
-  void push_apart(const Vectors& x0, const Vectors& arms, double distance, Vectors& x1);
+  void push_apart(const Vectors& x0, const Vectors& arms, double part, Vectors& x1);
   void push_out(Vectors& x1);
   void move_rigidly(const Vectors& x0, Vectors& x1);
 

@@ -265,17 +265,22 @@ struct Falling {
 /// Pairs of that vertex with that face.
 class VertexAndFace : public solver::PairSearch {
  public:
-  double thickness() const override { return 0.01; }
-  double friction() const override { return 0; }
-  void find(const Vectors& x0, const Vectors& x1, double distance, std::vector<solver::PairContact>& found) override {
+  void begin(double, double) override {}
+  const solver::BodyPoints& bodies() const override { return none_; }
+  bool rubs() const override { return false; }
+  void find(const Vectors& x0, const Vectors& x1, double part, std::vector<solver::PairContact>& found) override {
     found.clear();
-    if (height(x1) < distance && height(x1) < height(x0)) found.push_back({{3, 0, 1, 2}, false, points(x0), points(x1)});
+    if (height(x1) < part * keeps && height(x1) < height(x0))
+      found.push_back({{3, 0, 1, 2}, false, points(x0), points(x1), keeps, 0});
   }
   void renew(const Vectors& x, std::vector<solver::PairContact>& pairs) const override {
     for (solver::PairContact& pair : pairs) pair.begin = points(x);
   }
 
  private:
+  static constexpr double keeps = 0.01;  // [m]
+  solver::BodyPoints none_;
+
   static double height(const Vectors& x) { return x(3, 2) - (x(0, 2) + x(1, 2) + x(2, 2)) / 3; }
   static solver::PairContact::Points points(const Vectors& x) {
     return {{1, -1. / 3, -1. / 3, -1. / 3}, Vector3d::UnitZ(), height(x)};
@@ -299,7 +304,7 @@ State moved(const State& y0) { return {y0.x + 0.01 * y0.v, y0.v}; }
 TEST(Separation, PushesAPairApartAndKeepsMomenta) {
   const Falling trial = falling();
   State y1 = moved(trial.y0);
-  ASSERT_TRUE(solver::Separation(trial.ode).separate(trial.y0, 0.01, {0.01, 0.001}, {}, y1));
+  ASSERT_TRUE(solver::Separation(trial.ode).separate(0, trial.y0, 0.01, {1, 0.1}, {}, y1));
   EXPECT_NEAR(y1.x(3, 2) - y1.x.col(2).head(3).mean(), 0.01, 2e-5);
   EXPECT_LE((momentum(trial.ode, y1) - momentum(trial.ode, trial.y0)).norm(), 1e-15);
   EXPECT_LE((angular_momentum(trial.ode, y1) - angular_momentum(trial.ode, trial.y0)).norm(), 1e-15);
@@ -309,7 +314,7 @@ TEST(Separation, DoesNotMoveWhatIsPinnedNorPushIntoObstacles) {
   Falling trial = falling();
   for (const int i : {0, 1, 2}) trial.ode.pins.push_back({.particle = i});
   State y1 = moved(trial.y0);
-  ASSERT_TRUE(solver::Separation(trial.ode).separate(trial.y0, 0.01, {0.01, 0.001}, {}, y1));
+  ASSERT_TRUE(solver::Separation(trial.ode).separate(0, trial.y0, 0.01, {1, 0.1}, {}, y1));
   EXPECT_EQ(y1.x.topRows(3), trial.y0.x.topRows(3));
   EXPECT_NEAR(y1.x(3, 2), 0.01, 2e-5);
 
@@ -317,7 +322,7 @@ TEST(Separation, DoesNotMoveWhatIsPinnedNorPushIntoObstacles) {
   std::vector<solver::Contact> floor;
   for (const int i : {0, 1, 2}) floor.push_back({.particle = i, .normal = Vector3d::UnitZ(), .gap = 0, .least = 0});
   y1 = moved(supported.y0);
-  ASSERT_TRUE(solver::Separation(supported.ode).separate(supported.y0, 0.01, {0.01, 0.001}, floor, y1));
+  ASSERT_TRUE(solver::Separation(supported.ode).separate(0, supported.y0, 0.01, {1, 0.1}, floor, y1));
   for (const int i : {0, 1, 2}) EXPECT_GE(y1.x(i, 2), -1e-12);
   EXPECT_GE(y1.x(3, 2), 0.001);
 }
@@ -326,7 +331,7 @@ TEST(Separation, SaysWherePinsForceAPairThroughItself) {
   Falling trial = falling();
   for (const int i : {0, 1, 2, 3}) trial.ode.pins.push_back({.particle = i});
   State y1 = moved(trial.y0);
-  EXPECT_FALSE(solver::Separation(trial.ode).separate(trial.y0, 0.01, {0.01, 0.001}, {}, y1));
+  EXPECT_FALSE(solver::Separation(trial.ode).separate(0, trial.y0, 0.01, {1, 0.1}, {}, y1));
 }
 
 }  // namespace
