@@ -89,8 +89,9 @@ TEST(ContactWatch, SeesSeamsThatContactLeavesAlone) {
 
 TEST(ContactWatch, SaysNothingOfEnergyWhereObstaclesMove) {
   const auto [run, found] = watched(cloth +
-                                    "obstacles = [{ shape = 'plane', position = [0, 0, -0.01], velocity = [0, 0, 1] }]\n"
-                                    "end = { time = 0.05 }\n");
+                                    "forces.gravity = [0, 0, -9.81]\nend = { time = 0.05 }\n"
+                                    "obstacles = [{ shape = 'plane', motion = [{ time = 0, position = [0, 0, -0.02] }, "
+                                    "{ time = 1, position = [0, 0, 0.98] }] }]\n");
   ASSERT_TRUE(run.succeeded());
   EXPECT_GT(run.steps.back().contacts, 0);
   EXPECT_FALSE(found.energy_rise);
