@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <ranges>
 #include <stdexcept>
 #include <utility>
 
@@ -231,7 +230,7 @@ std::map<int, Eigen::Vector3d> Garment::pulled(const Scene& phase, const Vectors
   std::map<int, std::vector<int>> meeting;
   for (int node = 0; node < nodes_; ++node) meeting[sewn_node(node)].push_back(node);
   std::map<int, Eigen::Vector3d> velocities;
-  for (const std::vector<int>& nodes : meeting | std::views::values) {
+  for (const auto& [sewn, nodes] : meeting) {
     if (nodes.size() < 2) continue;
     Eigen::Vector3d place = Eigen::Vector3d::Zero();
     for (const int node : nodes) place += x.row(node).transpose() / static_cast<double>(nodes.size());
