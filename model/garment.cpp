@@ -228,7 +228,7 @@ std::vector<solver::Pin> Garment::pins(const Scene& phase, const Vectors& x) con
 
 std::map<int, Eigen::Vector3d> Garment::pulled(const Scene& phase, const Vectors& x) const {
   std::map<int, std::vector<int>> meeting;
-  for (int node = 0; node < nodes_; ++node) meeting[sewn_node(node)].push_back(node);
+  for (int node = 0; node < nodes_; ++node) meeting[sewn_[static_cast<std::size_t>(node)]].push_back(node);
   std::map<int, Eigen::Vector3d> velocities;
   for (const auto& [sewn, nodes] : meeting) {
     if (nodes.size() < 2) continue;

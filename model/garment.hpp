@@ -47,8 +47,8 @@ class Garment {
   int nodes() const { return nodes_; }
   bool is_one_sheet() const { return panels_.front().nodes.empty(); }
 
-  /// What a node will be once the seams that pull it have met: the same for all nodes that do.
-  int sewn_node(int node) const { return sewn_.empty() ? node : sewn_[static_cast<std::size_t>(node)]; }
+  /// What each node will be once the seams that pull it have met: the same for all nodes that do. Empty if no seams are pulled.
+  const std::vector<int>& sewn_nodes() const { return sewn_; }
 
   /// The mass of each node [kg]. What a cut leaves outside has the mass of the others on average.
   Eigen::VectorXd masses() const;
@@ -85,7 +85,7 @@ class Garment {
 
   std::vector<Panel> panels_;
   int particles_ = 0, nodes_ = 0;
-  std::vector<int> sewn_;  ///< sewn_node() of each node; empty if no seams are pulled
+  std::vector<int> sewn_;
 };
 
 /// A garment as quadrilaterals, one for each cell, chains as lines. Vertices are the nodes, which are at x.

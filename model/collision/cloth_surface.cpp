@@ -27,7 +27,7 @@ std::vector<std::array<int, 3>> halves_of_cells(const Garment& garment) {
 }  // namespace
 
 ClothSurface::ClothSurface(const Garment& garment) : ClothSurface(halves_of_cells(garment), garment.start().x) {
-  for (int node = 0; node < garment.nodes(); ++node) sewn_.push_back(garment.sewn_node(node));
+  sewn_ = garment.sewn_nodes();
 }
 
 ClothSurface::ClothSurface(std::span<const std::array<int, 3>> corners, Vectors places) : places_(std::move(places)) {

@@ -52,7 +52,7 @@ class ClothSurface {
   std::vector<Face> faces_;
   std::vector<Edge> edges_;
   Vectors places_;
-  std::vector<int> sewn_;  ///< Garment::sewn_node; empty: the same
+  std::vector<int> sewn_;  ///< Garment::sewn_nodes()
 };
 
 }  // namespace drape::model
