@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <limits>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "model/collision/body_faces.hpp"
 #include "model/collision/self_contacts.hpp"
+#include "model/obstacles/surface.hpp"
 #include "model/phases.hpp"
 #include "model/sheet/cells.hpp"
 
@@ -61,13 +64,7 @@ Flattest flattest(const ClothSurface& surface, const Vectors& x) {
   return least;
 }
 
-}  // namespace
-
-void require_clear_cloth(const Scene& scene) {
-  const double thickness = scene.contact.thickness;
-  if (thickness == 0) return;
-  const Garment garment(phases(scene).front());
-  const Vectors x = garment.start().x;
+void require_clear_of_itself(const Garment& garment, const Vectors& x, double thickness) {
   solver::Counters unused;
   SelfContacts contacts(ClothSurface(garment), unused);
   const auto cell = [&](int face) { return cell_of(garment, contacts.surface().faces()[static_cast<std::size_t>(face)]); };
@@ -87,6 +84,30 @@ void require_clear_cloth(const Scene& scene) {
   throw std::invalid_argument(fmt::format(
       "expected cloth to begin at least contact.thickness = {:g} m from itself, not {:.3g} m as {} and {} do", thickness,
       nearest.distance, particle_at(garment, nearest.particles[0]), particle_at(garment, nearest.particles[2])));
+}
+
+void require_clear_of_bodies(const Garment& garment, const Vectors& x, std::span<const ObstacleRule> rules) {
+  constexpr double plane_side = 0;  // a plane has no edges that pass between particles
+  const ClothSurface surface(garment);
+  std::vector<PosedObstacle> bodies;
+  for (const ObstacleRule& rule : rules) bodies.emplace_back(rule, plane_side);
+  const std::vector<BodyIntersection> through = body_intersections(surface, bodies, 0, x);
+  if (through.empty()) return;
+  const auto [face, body] = through.front();
+  throw std::invalid_argument(fmt::format("expected cloth that does not begin through obstacles[{}] ({}), as {} does", body,
+                                          rules[static_cast<std::size_t>(body)].kind->name,
+                                          cell_of(garment, surface.faces()[static_cast<std::size_t>(face)])));
+}
+
+}  // namespace
+
+void require_clear_cloth(const Scene& scene) {
+  const ContactRule& rule = scene.contact;
+  if (rule.thickness == 0 && !rule.faces) return;
+  const Garment garment(phases(scene).front());
+  const Vectors x = garment.start().x;
+  if (rule.thickness > 0) require_clear_of_itself(garment, x, rule.thickness);
+  if (rule.faces) require_clear_of_bodies(garment, x, scene.obstacles);
 }
 
 }  // namespace drape::model

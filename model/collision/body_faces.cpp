@@ -37,30 +37,36 @@ BoxTree tree_of(const std::vector<Corners>& triangles, double margin) {
   return tree;
 }
 
-/// Number of pairs of a triangle of the cloth and one of a body that are so; `reach`: how far apart they may be then [m].
-template <class IsSo>
-int count_pairs(const ClothSurface& surface, std::span<const PosedObstacle> bodies, double t, const Vectors& x, double reach,
-                const IsSo& is_so) {
+/// Visits the pairs of a triangle of the cloth and one of a body that are so; `reach`: how far apart they may be then [m].
+template <class IsSo, class Visit>
+void visit_pairs(const ClothSurface& surface, std::span<const PosedObstacle> bodies, double t, const Vectors& x, double reach,
+                 const IsSo& is_so, const Visit& visit) {
   const std::vector<Corners> cloth = triangles_of(surface, x);
   const BoxTree tree = tree_of(cloth, reach);
-  int count = 0;
-  for (const PosedObstacle& body : bodies) {
-    const std::vector<Corners> faces = triangles_of(body.at(t));
-    tree.overlapping_pairs(tree_of(faces, 0), [&](int i, int j) { count += is_so(cloth[i], faces[j]) ? 1 : 0; });
+  for (int body = 0; body < std::ssize(bodies); ++body) {
+    const std::vector<Corners> faces = triangles_of(bodies[body].at(t));
+    tree.overlapping_pairs(tree_of(faces, 0), [&](int i, int j) {
+      if (is_so(cloth[i], faces[j])) visit(i, body);
+    });
   }
-  return count;
 }
 
 }  // namespace
 
 int face_pairs(const ClothSurface& surface, std::span<const PosedObstacle> bodies, double t, const Vectors& x,
                double distance) {
-  return count_pairs(surface, bodies, t, x, distance,
-                     [&](const Corners& one, const Corners& other) { return nearer(one, other, distance); });
+  int count = 0;
+  visit_pairs(
+      surface, bodies, t, x, distance, [&](const Corners& one, const Corners& other) { return nearer(one, other, distance); },
+      [&](int, int) { ++count; });
+  return count;
 }
 
-int body_intersections(const ClothSurface& surface, std::span<const PosedObstacle> bodies, double t, const Vectors& x) {
-  return count_pairs(surface, bodies, t, x, 0, intersect);
+std::vector<BodyIntersection> body_intersections(const ClothSurface& surface, std::span<const PosedObstacle> bodies, double t,
+                                                 const Vectors& x) {
+  std::vector<BodyIntersection> found;
+  visit_pairs(surface, bodies, t, x, 0, intersect, [&](int face, int body) { found.push_back({face, body}); });
+  return found;
 }
 
 }  // namespace drape::model

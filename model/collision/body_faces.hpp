@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "model/collision/cloth_surface.hpp"
 #include "model/obstacles/surface.hpp"
@@ -12,7 +13,14 @@ namespace drape::model {
 /// first corner.
 int face_pairs(const ClothSurface& surface, std::span<const PosedObstacle> bodies, double t, const Vectors& x, double distance);
 
-/// Number of such pairs that have a point in common, as intersect() has it.
-int body_intersections(const ClothSurface& surface, std::span<const PosedObstacle> bodies, double t, const Vectors& x);
+/// Such a pair.
+struct BodyIntersection {
+  int face;  ///< of the cloth
+  int body;
+};
+
+/// Those that have a point in common, as intersect() has it.
+std::vector<BodyIntersection> body_intersections(const ClothSurface& surface, std::span<const PosedObstacle> bodies, double t,
+                                                 const Vectors& x);
 
 }  // namespace drape::model

@@ -63,6 +63,20 @@ TEST(ClearCloth, IsThinnerThanItsTriangles) {
           "contact.thickness = 0.0354: expected at most half of the smallest altitude of triangles, 0.0354 m in cell [0, 0]"));
 }
 
+/// A corner of a box between all edges of the cloth.
+TEST(ClearCloth, DoesNotBeginThroughABodyThatItMeetsByItsFaces) {
+  const auto over_a_box = [](const char* faces, double height) {
+    return fmt::format(
+        "grid = {{ n = 2, size = 0.3 }}\ncontact.faces = {}\nobstacles = [{{ shape = 'plane', position = [0, 0, -1] }}, "
+        "{{ shape = 'box', size = [0.02, 0.02, 0.1], position = [0.05, 0.05, {}] }}]\n",
+        faces, height);
+  };
+  EXPECT_EQ(complaint(over_a_box("true", -0.051)), "");
+  EXPECT_EQ(complaint(over_a_box("false", -0.049)), "");
+  EXPECT_EQ(complaint(over_a_box("true", -0.049)),
+            "expected cloth that does not begin through obstacles[1] (box), as cell [0, 0] does");
+}
+
 /// Neighbours of pulled nodes are as near as in a sewn sheet once the nodes have met.
 TEST(ClearCloth, MayBePulledTogetherBySeams) {
   const auto two_sheets = [](const char* seams) {

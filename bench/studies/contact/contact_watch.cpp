@@ -55,7 +55,7 @@ void ContactWatch::observe(const solver::StepReport& step) {
 void ContactWatch::see(double t, const solver::State& y) {
   findings_.intersecting += self_->intersections(y.x).empty() ? 0 : 1;
   findings_.in_bodies += cloth_->contacts && cloth_->contacts->distances(t, y.x).minCoeff() <= 0 ? 1 : 0;
-  findings_.through_bodies += model::body_intersections(self_->surface(), bodies_, t, y.x) > 0 ? 1 : 0;
+  findings_.through_bodies += model::body_intersections(self_->surface(), bodies_, t, y.x).empty() ? 0 : 1;
   near_.clear();
   if (thickness_ == 0) return;
   self_->near(y.x, contact_reach * thickness_, near_);
