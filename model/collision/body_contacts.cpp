@@ -109,10 +109,20 @@ void BodyContacts::begin(double t, double h) {
   place(t, points_.begin);
   place(t + h, points_.end);
   placed_ = true;
+  fitted_ = -1;
 }
 
 bool BodyContacts::rub() const {
   return std::ranges::any_of(bodies_, [](const Body& body) { return body.friction > 0; });
+}
+
+/// Nothing where bodies rest.
+void BodyContacts::fit_bodies(double margin) {
+  if (margin == fitted_) return;
+  for (std::size_t k = 0; k < faces_.size(); ++k)
+    body_boxes_[k] = box_of_way(faces_[k].corners, points_.begin, points_.end, margin);
+  body_tree_.refit(body_boxes_);
+  fitted_ = margin;
 }
 
 void BodyContacts::find(const Vectors& x0, const Vectors& x1, double distance, const Visit& visit) {
@@ -124,10 +134,8 @@ void BodyContacts::find(const Vectors& x0, const Vectors& x1, double distance, c
   }
   const double half = reached(distance) / 2;
   for (std::size_t k = 0; k < cloth_boxes_.size(); ++k) cloth_boxes_[k] = box_of_way(cloth_.faces()[k].corners, x0_, x1_, half);
-  for (std::size_t k = 0; k < faces_.size(); ++k)
-    body_boxes_[k] = box_of_way(faces_[k].corners, points_.begin, points_.end, half);
   cloth_tree_.refit(cloth_boxes_);
-  body_tree_.refit(body_boxes_);
+  fit_bodies(half);
   const auto meet = [&](PairKind kind, const std::array<int, 4>& particles, double friction) {
     ++pairs_;
     if (const auto met = approach(kind, particles, x0_, x1_, distance, false)) visit(*met, friction);

@@ -49,6 +49,7 @@ class BodyContacts {
   };
 
   void place(double t, Vectors& x) const;
+  void fit_bodies(double margin);
   void add_faces(const Polygons& surface, int body, bool is_rigid);
 
   ClothSurface cloth_;
@@ -56,6 +57,7 @@ class BodyContacts {
   std::vector<Face> faces_;
   solver::BodyPoints points_;
   bool placed_ = false;
+  double fitted_ = -1;  ///< margin of the boxes around faces of bodies [m]; −1: they are to be fitted
   BoxTree cloth_tree_, body_tree_;
   std::vector<Eigen::AlignedBox3d> cloth_boxes_, body_boxes_;
   Vectors x0_, x1_;  ///< of nodes and points of bodies
