@@ -1,0 +1,96 @@
+#include "model/adaptive/face_prism.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace drape::model {
+namespace {
+
+using Eigen::Vector3d;
+using solver::Vectors;
+
+Corners corners_of(const EdgeMesh& sheet, const Vectors& x, int face) {
+  const auto& [a, b, c] = sheet.triangles()[face];
+  return {x.row(a), x.row(b), x.row(c)};
+}
+
+/// Positive in the first triangle of the edge.
+Vector3d normal_between(const EdgeMesh& sheet, const Vectors& x, const EdgeMesh::Edge& edge) {
+  const auto& [one, other] = edge.triangles;
+  const Vector3d first = face_normal(corners_of(sheet, x, one));
+  const Vector3d second = other < 0 ? first : face_normal(corners_of(sheet, x, other));
+  return separating_normal(x.row(edge.ends[1]) - x.row(edge.ends[0]), first, second);
+}
+
+}  // namespace
+
+FacePrism::FacePrism(const EdgeMesh& sheet, const Vectors& x, int face)
+    : planes_([&] {
+        const Corners corners = corners_of(sheet, x, face);
+        std::array<Plane, planes> all;
+        all[base] = {corners[0], face_normal(corners), 1};
+        for (int k = 0; k < 3; ++k) {
+          const EdgeMesh::Edge& edge = sheet.edges()[sheet.sides(face)[k]];
+          all[first_side + k] = {x.row(edge.ends[0]), normal_between(sheet, x, edge), edge.triangles[0] == face ? 1.0 : -1.0};
+        }
+        return all;
+      }()),
+      projection_(corners_of(sheet, x, face), {planes_[1].sign * planes_[1].normal, planes_[2].sign * planes_[2].normal,
+                                               planes_[3].sign * planes_[3].normal}) {}
+
+Eigen::Vector4d FacePrism::distances(const Vector3d& point) const {
+  Eigen::Vector4d all;
+  for (int k = 0; k < planes; ++k) {
+    const double distance = planes_[k].normal.dot(point - planes_[k].origin);
+    all[k] = std::abs(distance) <= on_plane ? 0 : planes_[k].sign * distance;
+  }
+  return all;
+}
+
+std::optional<FacePrism::Part> FacePrism::clip(const Eigen::Vector4d& from, const Eigen::Vector4d& to) {
+  Part part;
+  for (int k = 0; k < planes; ++k) {
+    const bool in_plane = from[k] == 0 && to[k] == 0;
+    if (in_plane && k != base) continue;
+    if (from[k] <= 0 && to[k] <= 0) return {};
+    const double cut = from[k] / (from[k] - to[k]);
+    if (from[k] < 0 && cut > part.begin) part.begin = cut, part.begin_plane = k;
+    if (to[k] < 0 && cut < part.end) part.end = cut, part.end_plane = k;
+  }
+  return part.begin < part.end ? std::optional(part) : std::nullopt;
+}
+
+FacePrism::Polygon FacePrism::clip(const Corners& triangle) const {
+  // Sutherland and Hodgman's algorithm; the distances of the corners go along, linearly.
+  struct Corner {
+    Vector3d point;
+    Eigen::Vector4d distances;
+    int side;
+  };
+  std::vector<Corner> inside, next;
+  for (int k = 0; k < 3; ++k) inside.push_back({triangle[k], distances(triangle[k]), k});
+  for (int k = 0; k < planes; ++k) {
+    next.clear();
+    for (std::size_t c = 0; c < inside.size(); ++c) {
+      const Corner &from = inside[c], &to = inside[(c + 1) % inside.size()];
+      const double a = from.distances[k], b = to.distances[k];
+      if (a >= 0) next.push_back(from);
+      if ((a < 0) == (b < 0)) continue;
+      const double cut = a / (a - b);
+      Corner at{from.point + cut * (to.point - from.point), from.distances + cut * (to.distances - from.distances),
+                a < 0 ? from.side : 3 + k};
+      at.distances[k] = 0;
+      next.push_back(at);
+    }
+    inside.swap(next);
+  }
+  Polygon polygon;
+  if (std::ranges::none_of(inside, [](const Corner& corner) { return corner.distances[base] > on_plane; })) return polygon;
+  for (const Corner& corner : inside) {
+    polygon.corners.push_back(corner.point);
+    polygon.sides.push_back(corner.side);
+  }
+  return polygon;
+}
+
+}  // namespace drape::model
