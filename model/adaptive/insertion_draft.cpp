@@ -50,6 +50,26 @@ class Assembly {
     return numbers;
   }
 
+  /// Adds a particle in a separating plane that the neighbour does not see: inside the face, but so near to the border that
+  /// only the border is between them. As the square of the distance from the next shared particle, so that those farther off
+  /// are not between one and the border.
+  int add_beside(int face, int edge, const VirtualParticle& particle) {
+    constexpr double near = 1e-9;
+    const int number = add(particle);
+    const int k = side_of(sheet_, face, edge), next = (k + 1) % 3, opposite = (k + 2) % 3;
+    const double image = prisms_.along(face, edge, particle.position).value();
+    double distance = std::min(image, 1 - image);
+    const bool forward = sheet_.edges()[edge].triangles[0] == face;
+    for (const int other : hit(face).borders[k])
+      distance = std::min(distance, std::abs(image - barycentric(face, other)[forward ? next : k]));
+    Vector3d place;
+    place[opposite] = near * distance * distance;
+    place[forward ? next : k] = image * (1 - place[opposite]);
+    place[forward ? k : next] = (1 - image) * (1 - place[opposite]);
+    hit(face).points.push_back({number, place});
+    return number;
+  }
+
   void add_segment(int face, const std::array<int, 2>& ends, const std::array<double, 2>& parameters, int edge) {
     const Vector3d from = barycentric(face, ends[0]), to = barycentric(face, ends[1]);
     if (ends[0] == ends[1] || (from + to).minCoeff() == 0) return;  // a point, or along an edge of the face
@@ -74,14 +94,27 @@ class Assembly {
   void add_to_border(HitFace& hit, const HitEdge& edge) {
     const int k = side_of(sheet_, hit.face, edge.edge), next = (k + 1) % 3;
     const bool forward = sheet_.edges()[edge.edge].triangles[0] == hit.face;
+    const std::vector<double> images = images_in(hit.face, edge);
     for (std::size_t i = 0; i < edge.particles.size(); ++i) {
       Vector3d place = Vector3d::Zero();
-      place[forward ? next : k] = edge.parameters[i];
-      place[forward ? k : next] = 1 - edge.parameters[i];
+      place[forward ? next : k] = images[i];
+      place[forward ? k : next] = 1 - images[i];
       hit.points.push_back({edge.particles[i], place});
     }
     hit.borders[k] = edge.particles;
     if (!forward) std::ranges::reverse(hit.borders[k]);
+  }
+
+  /// Parameters of the images of particles on an edge in the projection of a face, or those of the edge where these are not in
+  /// order: where a face does not see all of them.
+  std::vector<double> images_in(int face, const HitEdge& edge) {
+    std::vector<double> images;
+    for (const int particle : edge.particles) {
+      const auto image = prisms_.along(face, edge.edge, position(particle));
+      if (!image || *image <= (images.empty() ? 0 : images.back()) || *image >= 1) return edge.parameters;
+      images.push_back(*image);
+    }
+    return images;
   }
 
   Vector3d position(int number) const {
@@ -105,6 +138,14 @@ class Assembly {
 
 }  // namespace
 
+std::optional<double> FacePrisms::along(int face, int edge, const Vector3d& point) {
+  const Vector3d weights = of(face).projection().weights(point);
+  const int k = side_of(sheet_, face, edge), next = (k + 1) % 3;
+  const double both = weights[k] + weights[next];
+  if (both <= 0) return {};
+  return weights[sheet_.edges()[edge].triangles[0] == face ? next : k] / both;
+}
+
 void InsertionDraft::add(int face, const End& from, const End& to) {
   segments_.push_back(
       {face, from.particle.edge, {point(face, from), point(face, to)}, {from.particle.parameter, to.particle.parameter}});
@@ -115,9 +156,11 @@ int InsertionDraft::point(int face, const End& end) {
   const bool on_side = end.plane >= FacePrism::first_side;
   const int edge = on_side ? prisms_.sheet().sides(face)[end.plane - FacePrism::first_side] : -1;
   // A vertex of the obstacle is one point, whichever of its edges ends there.
-  const std::pair key(on_side ? -1 - edge : face, end.vertex < 0 ? -1 - end.particle.edge : end.vertex);
+  const std::pair key(on_side && end.shared ? -1 - edge : face, end.vertex < 0 ? -1 - end.particle.edge : end.vertex);
   const auto [found, is_new] = numbers_.try_emplace(key, static_cast<int>(points_.size()));
-  if (is_new) points_.push_back({end.particle, on_side ? -1 : face, edge, on_side ? along(edge, end.particle.position) : 0});
+  if (is_new)
+    points_.push_back({end.particle, on_side && end.shared ? -1 : face, edge,
+                       on_side && end.shared ? along(edge, end.particle.position) : 0});
   return found->second;
 }
 
@@ -126,15 +169,11 @@ int InsertionDraft::point(int face, const End& end) {
 double InsertionDraft::along(int edge, const Vector3d& position) {
   double sum = 0;
   int images = 0;
-  for (const int face : prisms_.sheet().edges()[edge].triangles) {
-    if (face < 0) continue;
-    const Vector3d weights = prisms_.of(face).projection().weights(position);
-    const int k = side_of(prisms_.sheet(), face, edge), next = (k + 1) % 3;
-    if (weights[k] + weights[next] <= 0) continue;  // beyond the centre
-    const double from_corner = std::clamp(weights[next] / (weights[k] + weights[next]), 0.0, 1.0);
-    sum += prisms_.sheet().edges()[edge].triangles[0] == face ? from_corner : 1 - from_corner;
-    ++images;
-  }
+  for (const int face : prisms_.sheet().edges()[edge].triangles)
+    if (const auto image = face < 0 ? std::nullopt : prisms_.along(face, edge, position)) {
+      sum += std::clamp(*image, 0.0, 1.0);
+      ++images;
+    }
   return sum / images;
 }
 
@@ -146,7 +185,7 @@ Insertion InsertionDraft::finish() const {
     const Point& point = points_[p];
     if (point.edge < 0)
       numbers[p] = assembly.add_inside(point.face, point.particle);
-    else
+    else if (point.face < 0)
       along_edges[point.edge].push_back(p);
   }
   for (auto& [edge, points] : along_edges) {
@@ -160,6 +199,9 @@ Insertion InsertionDraft::finish() const {
     const std::vector<int> added = assembly.add_along(edge, particles, parameters);
     for (std::size_t k = 0; k < points.size(); ++k) numbers[points[k]] = added[k];
   }
+  for (int p = 0; p < std::ssize(points_); ++p)
+    if (const Point& point = points_[p]; point.face >= 0 && point.edge >= 0)
+      numbers[p] = assembly.add_beside(point.face, point.edge, point.particle);
   for (const auto& [face, edge, points, parameters] : segments_)
     assembly.add_segment(face, {numbers[points[0]], numbers[points[1]]}, parameters, edge);
   return assembly.finished();

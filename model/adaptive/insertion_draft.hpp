@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -21,6 +22,10 @@ class FacePrisms {
   const solver::Vectors& x() const { return x_; }
   const FacePrism& of(int face) { return known_.try_emplace(face, sheet_, x_, face).first->second; }
 
+  /// The image, in a face, of a point of the plane through one of its edges: along the edge, from its first end at 0 to its
+  /// second at 1. Nothing if the point is beyond the centre of projection.
+  std::optional<double> along(int face, int edge, const Eigen::Vector3d& point);
+
  private:
   const EdgeMesh& sheet_;
   const solver::Vectors& x_;
@@ -35,8 +40,9 @@ class InsertionDraft {
   /// An end of a segment.
   struct End {
     VirtualParticle particle;
-    int vertex;  ///< of the obstacle; −1: the edge is cut here
-    int plane;   ///< of the prism, on which it lies; −1: none
+    int vertex;   ///< of the obstacle; −1: the edge is cut here
+    int plane;    ///< of the prism, on which it lies; −1: none
+    bool shared;  ///< if on a plane to a neighbour: that one sees it as well
   };
 
   /// Adds a segment of an edge of the obstacle to a face.
@@ -47,8 +53,9 @@ class InsertionDraft {
  private:
   struct Point {
     VirtualParticle particle;
-    int face, edge;  ///< of the sheet: where it lies; the other is −1
-    double along;    ///< the edge
+    int face;      ///< of the sheet; −1: shared
+    int edge;      ///< of the sheet, in whose separating plane it lies; −1: inside the prism
+    double along;  ///< the edge
   };
   struct Segment {
     int face, edge;  ///< of the sheet, of the obstacle

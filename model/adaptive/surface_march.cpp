@@ -70,14 +70,30 @@ void SurfaceMarch::insert(int face, int edge, const FacePrism::Part& part) {
   const auto& ends = obstacle_.edges()[edge].ends;
   const Vector3d &x = vertices_[ends[0]], &y = vertices_[ends[1]];
   const auto end = [&](double parameter, int plane, int vertex) {
-    if (plane >= 0) return InsertionDraft::End{{x + parameter * (y - x), edge, parameter}, -1, plane};
-    // A vertex may lie on a plane between faces, also on two, above a node.
-    const Eigen::Vector4d distances = prisms_.of(face).distances(vertices_[vertex]);
-    for (int k = FacePrism::first_side; k < FacePrism::planes; ++k)
-      if (distances[k] == 0) plane = k;
-    return InsertionDraft::End{{vertices_[vertex], edge, parameter}, vertex, plane};
+    InsertionDraft::End made{{x + parameter * (y - x), edge, parameter}, -1, plane, false};
+    if (plane < 0) {
+      made.vertex = vertex;
+      made.particle.position = vertices_[vertex];
+      // A vertex may lie on a plane between faces, also on two, above a node.
+      const Eigen::Vector4d distances = prisms_.of(face).distances(vertices_[vertex]);
+      for (int k = FacePrism::first_side; k < FacePrism::planes; ++k)
+        if (distances[k] == 0) made.plane = k;
+    }
+    if (made.plane >= FacePrism::first_side)
+      made.shared = is_seen_beyond(face, prisms_.sheet().sides(face)[made.plane - FacePrism::first_side], made.particle);
+    return made;
   };
   draft_.add(face, end(part.begin, part.begin_plane, ends[0]), end(part.end, part.end_plane, ends[1]));
+}
+
+/// Whether the face on the other side of an edge, if there is one, sees a particle in the plane between them.
+bool SurfaceMarch::is_seen_beyond(int face, int edge, const VirtualParticle& particle) {
+  const int neighbour = prisms_.sheet().across(edge, face);
+  if (neighbour < 0) return true;
+  const auto image = prisms_.along(neighbour, edge, particle.position);
+  if (!image || *image < 0 || *image > 1) return false;
+  const auto& [one, other] = obstacle_.edges()[particle.edge].triangles;
+  return is_upper(neighbour, one, particle.position) || is_upper(neighbour, other, particle.position);
 }
 
 Corners SurfaceMarch::corners(int triangle) const {

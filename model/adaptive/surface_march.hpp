@@ -32,6 +32,7 @@ class SurfaceMarch {
   void visit(int face, int triangle);
   void pass(int face, int triangle, int edge);
   void insert(int face, int edge, const FacePrism::Part& part);
+  bool is_seen_beyond(int face, int edge, const VirtualParticle& particle);
   void go_to(int face, int triangle);
 
   Corners corners(int triangle) const;
