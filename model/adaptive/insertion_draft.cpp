@@ -54,7 +54,7 @@ class Assembly {
   /// only the border is between them. As the square of the distance from the next shared particle, so that those farther off
   /// are not between one and the border.
   int add_beside(int face, int edge, const VirtualParticle& particle) {
-    constexpr double near = 1e-9;
+    constexpr double near = 1e-4;
     const int number = add(particle);
     const int k = side_of(sheet_, face, edge), next = (k + 1) % 3, opposite = (k + 2) % 3;
     const double image = prisms_.along(face, edge, particle.position).value();

@@ -1,6 +1,7 @@
 #include "model/adaptive/surface_march.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 
 namespace drape::model {
 namespace {
@@ -12,12 +13,25 @@ constexpr double no_angle = 1e-9;  // [rad], far above rounding, far below the a
 }  // namespace
 
 void SurfaceMarch::enter(int face, int triangle) {
+  if (!comes_from_behind(face, triangle)) return;
   go_to(face, triangle);
   while (!ahead_.empty()) {
     const auto [next_face, next_triangle] = ahead_.back();
     ahead_.pop_back();
     visit(next_face, next_triangle);
   }
+}
+
+/// Whether a triangle, or one across an edge that lies in the plane of the face, is behind the plane somewhere.
+bool SurfaceMarch::comes_from_behind(int face, int triangle) {
+  const auto height = [&](int vertex) { return prisms_.of(face).distances(vertices_[vertex])[FacePrism::base]; };
+  const auto is_behind = [&](int other) {
+    return std::ranges::any_of(obstacle_.triangles()[other], [&](int vertex) { return height(vertex) < 0; });
+  };
+  return is_behind(triangle) || std::ranges::any_of(obstacle_.sides(triangle), [&](int edge) {
+           const auto& [from, to] = obstacle_.edges()[edge].ends;
+           return height(from) == 0 && height(to) == 0 && is_behind(obstacle_.across(edge, triangle));
+         });
 }
 
 void SurfaceMarch::go_to(int face, int triangle) {

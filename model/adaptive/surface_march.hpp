@@ -21,7 +21,8 @@ class SurfaceMarch {
   SurfaceMarch(FacePrisms& prisms, const EdgeMesh& obstacle, std::span<const Eigen::Vector3d> vertices, std::int64_t& steps)
       : prisms_(prisms), obstacle_(obstacle), vertices_(vertices), steps_(steps), draft_(prisms) {}
 
-  /// Goes on from a triangle of the obstacle in the prism of a face.
+  /// Goes on from a triangle of the obstacle that has a point in common with a face, if the obstacle is on both sides of the
+  /// face there: one that only touches the front is on the far side.
   void enter(int face, int triangle);
 
   Insertion insertion() const { return draft_.finish(); }
@@ -29,6 +30,7 @@ class SurfaceMarch {
  private:
   using Place = std::pair<int, int>;  // a face of the sheet and a triangle of the obstacle
 
+  bool comes_from_behind(int face, int triangle);
   void visit(int face, int triangle);
   void pass(int face, int triangle, int edge);
   void insert(int face, int edge, const FacePrism::Part& part);
