@@ -67,7 +67,7 @@ class InsertionDraft {
   double along(int edge, const Eigen::Vector3d& position);
 
   FacePrisms& prisms_;
-  std::map<std::pair<int, int>, int> numbers_;  ///< of points, by where they lie and what they are
+  std::map<std::array<int, 3>, int> numbers_;  ///< of points, by face and edge as in Point, and what is there
   std::vector<Point> points_;
   std::vector<Segment> segments_;
 };
