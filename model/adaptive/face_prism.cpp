@@ -60,37 +60,39 @@ std::optional<FacePrism::Part> FacePrism::clip(const Eigen::Vector4d& from, cons
   return part.begin < part.end ? std::optional(part) : std::nullopt;
 }
 
-FacePrism::Polygon FacePrism::clip(const Corners& triangle) const {
-  // Sutherland and Hodgman's algorithm; the distances of the corners go along, linearly.
+unsigned FacePrism::sides_inside(const std::array<Eigen::Vector4d, 3>& corners) {
+  // Sutherland and Hodgman's algorithm on distances, which are linear in the triangle: each plane adds a corner at most.
   struct Corner {
-    Vector3d point;
     Eigen::Vector4d distances;
-    int side;
+    unsigned side;  ///< from here to the next corner
   };
-  std::vector<Corner> inside, next;
-  for (int k = 0; k < 3; ++k) inside.push_back({triangle[k], distances(triangle[k]), k});
+  struct Polygon {
+    std::array<Corner, 3 + planes> corners;
+    int size = 0;
+    void add(const Eigen::Vector4d& distances, unsigned side) { corners[size++] = {distances, side}; }
+  };
+  Polygon inside;
+  for (int k = 0; k < 3; ++k) inside.add(corners[k], 1U << k);
   for (int k = 0; k < planes; ++k) {
-    next.clear();
-    for (std::size_t c = 0; c < inside.size(); ++c) {
-      const Corner &from = inside[c], &to = inside[(c + 1) % inside.size()];
+    Polygon cut;
+    for (int c = 0; c < inside.size; ++c) {
+      const Corner &from = inside.corners[c], &to = inside.corners[(c + 1) % inside.size];
       const double a = from.distances[k], b = to.distances[k];
-      if (a >= 0) next.push_back(from);
+      if (a >= 0) cut.add(from.distances, from.side);
       if ((a < 0) == (b < 0)) continue;
-      const double cut = a / (a - b);
-      Corner at{from.point + cut * (to.point - from.point), from.distances + cut * (to.distances - from.distances),
-                a < 0 ? from.side : 3 + k};
-      at.distances[k] = 0;
-      next.push_back(at);
+      Eigen::Vector4d at = from.distances + a / (a - b) * (to.distances - from.distances);
+      at[k] = 0;
+      cut.add(at, a < 0 ? from.side : 8U << k);
     }
-    inside.swap(next);
+    inside = cut;
   }
-  Polygon polygon;
-  if (std::ranges::none_of(inside, [](const Corner& corner) { return corner.distances[base] > on_plane; })) return polygon;
-  for (const Corner& corner : inside) {
-    polygon.corners.push_back(corner.point);
-    polygon.sides.push_back(corner.side);
+  unsigned sides = 0;
+  bool above = false;
+  for (int c = 0; c < inside.size; ++c) {
+    sides |= inside.corners[c].side;
+    above |= inside.corners[c].distances[base] > on_plane;
   }
-  return polygon;
+  return above ? sides : 0;
 }
 
 }  // namespace drape::model

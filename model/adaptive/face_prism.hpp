@@ -41,14 +41,9 @@ class FacePrism {
   /// in a plane between two faces is inside both prisms.
   static std::optional<Part> clip(const Eigen::Vector4d& from, const Eigen::Vector4d& to);
 
-  /// A part of a triangle inside.
-  struct Polygon {
-    std::vector<Eigen::Vector3d> corners;
-    std::vector<int> sides;  ///< from each corner to the next: 0 to 2, sides of the triangle; 3 + k: on plane k
-  };
-
-  /// The part of a triangle inside; without corners if it is nowhere above the face.
-  Polygon clip(const Corners& triangle) const;
+  /// The sides of the part of a triangle inside, from the distances of its corners, as bits: 1 << k for the side of the
+  /// triangle from corner k to the next, 8 << k for one on plane k. 0 if it is nowhere above the face.
+  static unsigned sides_inside(const std::array<Eigen::Vector4d, 3>& corners);
 
  private:
   struct Plane {

@@ -1,13 +1,14 @@
 #include "model/adaptive/face_triangulation.hpp"
 
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
-#include <CGAL/Constrained_triangulation_plus_2.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Triangulation_vertex_base_with_info_2.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <map>
-#include <set>
+#include <limits>
+#include <unordered_map>
+#include <utility>
 
 #include "model/adaptive/face_projection.hpp"
 
@@ -16,9 +17,14 @@ namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
+struct VertexLabel {
+  int number = -1;  ///< −1: segments cross here
+};
 using FlatKernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using Delaunay = CGAL::Constrained_Delaunay_triangulation_2<FlatKernel, CGAL::Default, CGAL::Exact_predicates_tag>;
-using Planar = CGAL::Constrained_triangulation_plus_2<Delaunay>;
+using LabelledStructure =
+    CGAL::Triangulation_data_structure_2<CGAL::Triangulation_vertex_base_with_info_2<VertexLabel, FlatKernel>,
+                                         CGAL::Constrained_triangulation_face_base_2<FlatKernel>>;
+using Planar = CGAL::Constrained_Delaunay_triangulation_2<FlatKernel, LabelledStructure, CGAL::Exact_predicates_tag>;
 using Vertex = Planar::Vertex_handle;
 
 /// One face while it is triangulated.
@@ -49,69 +55,66 @@ class FlatFace {
         from = vertices_.at(next);
       }
     }
-    std::ranges::sort(inside);  // of those with the same image the highest is kept
+    std::ranges::sort(inside, {}, [](const auto& point) { return std::pair(point.first, point.second->particle); });
     for (const auto& [depth, point] : inside) insert(point->particle, point->barycentric);
   }
 
-  void insert_segments(const std::function<Vector3d(int)>& position, const std::function<int(const VirtualParticle&)>& add) {
-    std::vector<std::pair<const FaceSegment*, Planar::Constraint_id>> constraints;
+  void insert_segments() {
     for (const FaceSegment& segment : hit_.segments) {
       const Vertex from = vertices_.at(segment.ends[0]), to = vertices_.at(segment.ends[1]);
-      if (from != to) constraints.emplace_back(&segment, planar_.insert_constraint(from, to));
+      if (from != to) planar_.insert_constraint(from, to);
     }
-    std::map<Vertex, VirtualParticle> crossings;
-    std::vector<Vertex> order;
-    for (const auto& [segment, constraint] : constraints)
-      for (const Vertex& vertex : planar_.vertices_in_constraint(constraint)) {
-        if (numbers_.contains(vertex)) continue;
-        const VirtualParticle lifted = lift_to(*segment, vertex, position);
-        const auto [found, is_new] = crossings.try_emplace(vertex, lifted);
-        if (is_new) order.push_back(vertex);
-        if (height(lifted.position) > height(found->second.position)) found->second = lifted;
-      }
-    for (const Vertex& vertex : order) numbers_[vertex] = add(crossings.at(vertex));
+  }
+
+  void add_crossings(const std::function<Vector3d(int)>& position, const std::function<int(const VirtualParticle&)>& add) {
+    for (const Vertex vertex : planar_.finite_vertex_handles())
+      if (vertex->info().number < 0) vertex->info().number = add(crossing(vertex, position));
   }
 
   std::vector<std::array<int, 3>> triangles() const {
-    std::set<Planar::Face_handle> outside;
-    mark_outside(planar_.infinite_face(), outside);
     std::vector<std::array<int, 3>> all;
     for (const auto& flat : planar_.finite_face_handles())
-      if (!outside.contains(flat))
-        all.push_back({numbers_.at(flat->vertex(0)), numbers_.at(flat->vertex(1)), numbers_.at(flat->vertex(2))});
+      all.push_back({flat->vertex(0)->info().number, flat->vertex(1)->info().number, flat->vertex(2)->info().number});
     return all;
   }
 
  private:
   double height(const Vector3d& point) const { return normal_.dot(point - face_.corners[0]); }
 
+  /// If another particle has this place that one is kept. The border bulges, for it would be concave where it is rounded, and
+  /// predicates take many times as long for points that are almost in a line.
   void insert(int number, const Vector3d& barycentric) {
-    const Vector2d at = barycentric[0] * flat_[0] + barycentric[1] * flat_[1] + barycentric[2] * flat_[2];
+    constexpr double bulge = 1e-6;
+    Vector2d at = barycentric[0] * flat_[0] + barycentric[1] * flat_[1] + barycentric[2] * flat_[2];
+    for (int k = 0; k < 3; ++k)
+      if (barycentric[k] == 0) at += bulge * barycentric[(k + 1) % 3] * barycentric[(k + 2) % 3] * (at - flat_[k]);
     const Vertex vertex = planar_.insert({at.x(), at.y()});
     vertices_.emplace(number, vertex);
-    numbers_.emplace(vertex, number);
+    if (vertex->info().number < 0) vertex->info().number = number;
   }
 
-  VirtualParticle lift_to(const FaceSegment& segment, const Vertex& vertex,
-                          const std::function<Vector3d(int)>& position) const {
-    const auto from = vertices_.at(segment.ends[0])->point(), to = vertices_.at(segment.ends[1])->point();
-    const auto way = to - from;
-    const double part = lift((vertex->point() - from) * way / way.squared_length(), segment.ratio);
-    const Vector3d begin = position(segment.ends[0]), end = position(segment.ends[1]);
-    const auto& [first, last] = segment.parameters;
-    return {begin + part * (end - begin), segment.edge, first + part * (last - first)};
-  }
-
-  /// Marks what is beyond the border: rounded, it may be concave.
-  void mark_outside(const Planar::Face_handle& first, std::set<Planar::Face_handle>& outside) const {
-    std::vector<Planar::Face_handle> ahead{first};
-    while (!ahead.empty()) {
-      const Planar::Face_handle flat = ahead.back();
-      ahead.pop_back();
-      if (!outside.insert(flat).second) continue;
-      for (int k = 0; k < 3; ++k)
-        if (!planar_.is_constrained({flat, k})) ahead.push_back(flat->neighbor(k));
+  /// The point on the highest of the segments that cross at a vertex, where it is rounded.
+  VirtualParticle crossing(const Vertex& vertex, const std::function<Vector3d(int)>& position) const {
+    constexpr double rounding = 1e-12;  // [m]
+    std::vector<std::pair<double, VirtualParticle>> lifted;
+    for (const FaceSegment& segment : hit_.segments) {
+      const auto from = vertices_.at(segment.ends[0])->point(), to = vertices_.at(segment.ends[1])->point();
+      const auto way = to - from;
+      if (from == to) continue;
+      const double image = std::clamp((vertex->point() - from) * way / way.squared_length(), 0.0, 1.0);
+      const double apart = std::sqrt(CGAL::squared_distance(vertex->point(), from + image * way));
+      const double part = lift(image, segment.ratio);
+      const Vector3d begin = position(segment.ends[0]), end = position(segment.ends[1]);
+      const auto& [first, last] = segment.parameters;
+      lifted.push_back({apart, {begin + part * (end - begin), segment.edge, first + part * (last - first)}});
     }
+    const double nearest = std::ranges::min(lifted, {}, [](const auto& candidate) { return candidate.first; }).first;
+    return std::ranges::max(lifted, {},
+                            [&](const auto& candidate) {
+                              return candidate.first <= nearest + rounding ? height(candidate.second.position)
+                                                                           : -std::numeric_limits<double>::infinity();
+                            })
+        .second;
   }
 
   const BareFace& face_;
@@ -119,8 +122,7 @@ class FlatFace {
   Vector3d normal_;
   std::array<Vector2d, 3> flat_;
   Planar planar_;
-  std::map<int, Vertex> vertices_;
-  std::map<Vertex, int> numbers_;  ///< looked up only: addresses have no order that lasts
+  std::unordered_map<int, Vertex> vertices_;
 };
 
 }  // namespace
@@ -130,7 +132,8 @@ std::vector<std::array<int, 3>> triangulate(const BareFace& face, const HitFace&
                                             const std::function<int(const VirtualParticle&)>& add) {
   FlatFace flat(face, hit);
   flat.insert_points(position);
-  flat.insert_segments(position, add);
+  flat.insert_segments();
+  flat.add_crossings(position, add);
   return flat.triangles();
 }
 

@@ -12,8 +12,30 @@ constexpr double no_angle = 1e-9;  // [rad], far above rounding, far below the a
 
 }  // namespace
 
+SurfaceMarch::SurfaceMarch(FacePrisms& prisms, const EdgeMesh& obstacle, std::span<const Vector3d> vertices,
+                           std::int64_t& steps)
+    : prisms_(prisms), obstacle_(obstacle), vertices_(vertices), steps_(steps), draft_(prisms) {
+  for (const auto& [a, b, c] : obstacle.triangles()) normals_.push_back(face_normal({vertices[a], vertices[b], vertices[c]}));
+}
+
+bool SurfaceMarch::can_enter(int face, int triangle) {
+  if (known_.contains(place(face, triangle))) return false;
+  const FacePrism& prism = prisms_.of(face);
+  const auto height = [&](int vertex) { return prism.distances(vertices_[vertex])[FacePrism::base]; };
+  const auto is_in_front = [&](int vertex) { return height(vertex) > 0; };
+  const auto is_behind = [&](int vertex) { return height(vertex) < 0; };
+  const auto& corners = obstacle_.triangles()[triangle];
+  if (std::ranges::none_of(corners, is_in_front)) return false;
+  if (std::ranges::any_of(corners, is_behind)) return true;
+  // A side may lie in the plane of the face, and the obstacle go on behind it.
+  return std::ranges::any_of(obstacle_.sides(triangle), [&](int edge) {
+    const auto& [from, to] = obstacle_.edges()[edge].ends;
+    return height(from) == 0 && height(to) == 0 &&
+           std::ranges::any_of(obstacle_.triangles()[obstacle_.across(edge, triangle)], is_behind);
+  });
+}
+
 void SurfaceMarch::enter(int face, int triangle) {
-  if (!comes_from_behind(face, triangle)) return;
   go_to(face, triangle);
   while (!ahead_.empty()) {
     const auto [next_face, next_triangle] = ahead_.back();
@@ -22,61 +44,44 @@ void SurfaceMarch::enter(int face, int triangle) {
   }
 }
 
-/// Whether a triangle, or one across an edge that lies in the plane of the face, is behind the plane somewhere.
-bool SurfaceMarch::comes_from_behind(int face, int triangle) {
-  const auto height = [&](int vertex) { return prisms_.of(face).distances(vertices_[vertex])[FacePrism::base]; };
-  const auto is_behind = [&](int other) {
-    return std::ranges::any_of(obstacle_.triangles()[other], [&](int vertex) { return height(vertex) < 0; });
-  };
-  return is_behind(triangle) || std::ranges::any_of(obstacle_.sides(triangle), [&](int edge) {
-           const auto& [from, to] = obstacle_.edges()[edge].ends;
-           return height(from) == 0 && height(to) == 0 && is_behind(obstacle_.across(edge, triangle));
-         });
-}
-
 void SurfaceMarch::go_to(int face, int triangle) {
-  if (face >= 0 && known_.insert({face, triangle}).second) ahead_.emplace_back(face, triangle);
+  if (face >= 0 && known_.insert(place(face, triangle)).second) ahead_.emplace_back(face, triangle);
 }
 
 void SurfaceMarch::visit(int face, int triangle) {
   ++steps_;
-  const FacePrism::Polygon inside = prisms_.of(face).clip(corners(triangle));
-  for (const int side : inside.sides) {
-    constexpr int first = 3 + FacePrism::first_side;
-    if (side < 3)
-      pass(face, triangle, obstacle_.sides(triangle)[side]);
-    else if (side >= first)
-      go_to(prisms_.sheet().across(prisms_.sheet().sides(face)[side - first], face), triangle);
+  std::array<Eigen::Vector4d, 3> distances;
+  for (int k = 0; k < 3; ++k) distances[k] = prisms_.of(face).distances(vertices_[obstacle_.triangles()[triangle][k]]);
+  const unsigned sides = FacePrism::sides_inside(distances);
+  for (int k = 0; k < 3; ++k) {
+    if ((sides >> k & 1U) != 0) pass(face, triangle, k, distances[k], distances[(k + 1) % 3]);
+    if ((sides >> (3 + FacePrism::first_side + k) & 1U) != 0) go_to(neighbour(face, k), triangle);
   }
 }
 
-/// Inserts an edge of the triangle, and goes on over it and where it leaves the prism.
-void SurfaceMarch::pass(int face, int triangle, int edge) {
-  const FacePrism& prism = prisms_.of(face);
-  const auto& [begin, end] = obstacle_.edges()[edge].ends;
-  const Vector3d &x = vertices_[begin], &y = vertices_[end];
-  const Eigen::Vector4d from = prism.distances(x), to = prism.distances(y);
-  const auto part = FacePrism::clip(from, to);
+/// Inserts a side of the triangle, with these distances of its ends, and goes on over it and where it leaves the prism.
+void SurfaceMarch::pass(int face, int triangle, int side, const Eigen::Vector4d& from, const Eigen::Vector4d& to) {
+  const int edge = obstacle_.sides(triangle)[side], other = obstacle_.across(edge, triangle);
+  const bool forward = obstacle_.edges()[edge].triangles[0] == triangle;
+  const auto part = forward ? FacePrism::clip(from, to) : FacePrism::clip(to, from);
   if (!part) return;
 
-  const int other = obstacle_.across(edge, triangle);
-  const Vector3d middle = x + 0.5 * (part->begin + part->end) * (y - x);
-  const bool upper = is_upper(face, triangle, middle), other_is_upper = is_upper(face, other, middle);
-  const Vector3d n = face_normal(corners(triangle)), m = face_normal(corners(other));
-  const double bend = (obstacle_.edges()[edge].triangles[0] == triangle ? 1 : -1) * n.cross(m).dot((y - x).normalized());
-  const bool flat = n.cross(m).norm() <= no_angle && n.dot(m) > 0, convex = flat || bend > 0;
-  if (!flat && (upper || other_is_upper) && inserted_.insert({face, edge}).second) insert(face, edge, *part);
+  const auto& [begin, end] = obstacle_.edges()[edge].ends;
+  const Vector3d &x = vertices_[begin], &y = vertices_[end], &n = normals_[triangle], &m = normals_[other];
+  const Vector3d away = prisms_.of(face).projection().away(x + 0.5 * (part->begin + part->end) * (y - x));
+  const bool upper = is_upper(triangle, away), other_is_upper = is_upper(other, away);
+  const Vector3d bend = n.cross(m);
+  const bool flat = bend.norm() <= no_angle && n.dot(m) > 0, convex = flat || (bend.dot(y - x) > 0) == forward;
+  if (!flat && (upper || other_is_upper) && inserted_.insert(face * std::ssize(obstacle_.edges()) + edge).second)
+    insert(face, edge, *part);
 
   const bool goes_on = other_is_upper ? upper || convex : !upper && convex;
   if (goes_on) go_to(face, other);
   for (int k = 0; k < 3; ++k) {
     const int plane = FacePrism::first_side + k;
-    const bool touches = part->begin_plane == plane || part->end_plane == plane ||
-                         (part->begin_plane < 0 && from[plane] == 0) || (part->end_plane < 0 && to[plane] == 0);
-    if (!touches) continue;
-    const int neighbour = prisms_.sheet().across(prisms_.sheet().sides(face)[k], face);
-    go_to(neighbour, triangle);
-    if (goes_on) go_to(neighbour, other);
+    if (part->begin_plane != plane && part->end_plane != plane && from[plane] != 0 && to[plane] != 0) continue;
+    go_to(neighbour(face, k), triangle);
+    if (goes_on) go_to(neighbour(face, k), other);
   }
 }
 
@@ -107,16 +112,14 @@ bool SurfaceMarch::is_seen_beyond(int face, int edge, const VirtualParticle& par
   const auto image = prisms_.along(neighbour, edge, particle.position);
   if (!image || *image < 0 || *image > 1) return false;
   const auto& [one, other] = obstacle_.edges()[particle.edge].triangles;
-  return is_upper(neighbour, one, particle.position) || is_upper(neighbour, other, particle.position);
+  const Vector3d away = prisms_.of(neighbour).projection().away(particle.position);
+  return is_upper(one, away) || is_upper(other, away);
 }
 
-Corners SurfaceMarch::corners(int triangle) const {
-  const auto& [a, b, c] = obstacle_.triangles()[triangle];
-  return {vertices_[a], vertices_[b], vertices_[c]};
-}
+bool SurfaceMarch::is_upper(int triangle, const Vector3d& away) const { return normals_[triangle].dot(away) > no_angle; }
 
-bool SurfaceMarch::is_upper(int face, int triangle, const Vector3d& at) {
-  return face_normal(corners(triangle)).dot(prisms_.of(face).projection().away(at)) > no_angle;
+int SurfaceMarch::neighbour(int face, int side) const {
+  return prisms_.sheet().across(prisms_.sheet().sides(face)[side], face);
 }
 
 }  // namespace drape::model

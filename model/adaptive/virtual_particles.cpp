@@ -60,15 +60,16 @@ Insertion VirtualParticles::find(const Vectors& x, std::span<const Vector3d> ver
   const std::vector<Corners> cloth = corners_at(sheet_, rows_of(x)), body = corners_at(obstacle_, items_of(vertices));
   sheet_tree_.refit(boxes_of(cloth));
   obstacle_tree_.refit(boxes_of(body));
-  std::vector<std::array<int, 2>> passing;
-  sheet_tree_.overlapping_pairs(obstacle_tree_, [&](int face, int triangle) {
-    ++pairs_;
-    if (intersect(cloth[face], body[triangle])) passing.push_back({face, triangle});
-  });
-  std::ranges::sort(passing);  // so that particles are numbered in an order that does not depend on the trees
+  std::vector<std::array<int, 2>> near;
+  sheet_tree_.overlapping_pairs(obstacle_tree_, [&](int face, int triangle) { near.push_back({face, triangle}); });
+  std::ranges::sort(near);  // so that the order of particles does not depend on the trees
   FacePrisms prisms(sheet_, x);
   SurfaceMarch march(prisms, obstacle_, vertices, steps_);
-  for (const auto& [face, triangle] : passing) march.enter(face, triangle);
+  for (const auto& [face, triangle] : near) {
+    if (!march.can_enter(face, triangle)) continue;
+    ++pairs_;
+    if (intersect(cloth[face], body[triangle])) march.enter(face, triangle);
+  }
   return march.insertion();
 }
 
