@@ -2,6 +2,7 @@
 
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Triangulation_face_base_with_info_2.h>
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
 
 #include <Eigen/Geometry>
@@ -20,10 +21,13 @@ using Eigen::Vector3d;
 struct VertexLabel {
   int number = -1;  ///< −1: segments cross here
 };
+struct FaceLabel {
+  bool outside = false;
+};
 using FlatKernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using LabelledStructure =
-    CGAL::Triangulation_data_structure_2<CGAL::Triangulation_vertex_base_with_info_2<VertexLabel, FlatKernel>,
-                                         CGAL::Constrained_triangulation_face_base_2<FlatKernel>>;
+using LabelledStructure = CGAL::Triangulation_data_structure_2<
+    CGAL::Triangulation_vertex_base_with_info_2<VertexLabel, FlatKernel>,
+    CGAL::Triangulation_face_base_with_info_2<FaceLabel, FlatKernel, CGAL::Constrained_triangulation_face_base_2<FlatKernel>>>;
 using Planar = CGAL::Constrained_Delaunay_triangulation_2<FlatKernel, LabelledStructure, CGAL::Exact_predicates_tag>;
 using Vertex = Planar::Vertex_handle;
 
@@ -72,17 +76,19 @@ class FlatFace {
   }
 
   std::vector<std::array<int, 3>> triangles() const {
+    mark_outside();
     std::vector<std::array<int, 3>> all;
     for (const auto& flat : planar_.finite_face_handles())
-      all.push_back({flat->vertex(0)->info().number, flat->vertex(1)->info().number, flat->vertex(2)->info().number});
+      if (!flat->info().outside)
+        all.push_back({flat->vertex(0)->info().number, flat->vertex(1)->info().number, flat->vertex(2)->info().number});
     return all;
   }
 
  private:
   double height(const Vector3d& point) const { return normal_.dot(point - face_.corners[0]); }
 
-  /// If another particle has this place that one is kept. The border bulges, for it would be concave where it is rounded, and
-  /// predicates take many times as long for points that are almost in a line.
+  /// If another particle has this place that one is kept. The border bulges: predicates take many times as long for points that
+  /// are almost in a line.
   void insert(int number, const Vector3d& barycentric) {
     constexpr double bulge = 1e-6;
     Vector2d at = barycentric[0] * flat_[0] + barycentric[1] * flat_[1] + barycentric[2] * flat_[2];
@@ -115,6 +121,18 @@ class FlatFace {
                                                                            : -std::numeric_limits<double>::infinity();
                             })
         .second;
+  }
+
+  /// Marks triangles beyond the border, which is concave where points are so close that rounding is larger than the bulge.
+  void mark_outside() const {
+    std::vector<Planar::Face_handle> ahead{planar_.infinite_face()};
+    while (!ahead.empty()) {
+      const Planar::Face_handle flat = ahead.back();
+      ahead.pop_back();
+      if (std::exchange(flat->info().outside, true)) continue;
+      for (int k = 0; k < 3; ++k)
+        if (!flat->is_constrained(k)) ahead.push_back(flat->neighbor(k));
+    }
   }
 
   const BareFace& face_;

@@ -57,10 +57,10 @@ bool covers_a_node(const SheetOverBody& scene, const VirtualParticles& search) {
       lines[node].push_back(2 * prisms.of(face).projection().away(scene.sheet.x.row(node)));
   for (std::size_t node = 0; node < lines.size(); ++node) {
     const Vector3d x = scene.sheet.x.row(node), wide(1e-6, 2e-6, 0);
-    for (const Vector3d& one : lines[node])
-      for (const Vector3d& other : lines[node])
+    for (auto one = lines[node].begin(); one != lines[node].end(); ++one)
+      for (auto other = one; other != lines[node].end(); ++other)
         for (const std::array<int, 3>& triangle : scene.body.triangles)
-          if (model::intersect({x, x + one - wide, x + other + wide}, corners(scene.body, triangle))) return true;
+          if (model::intersect({x, x + *one - wide, x + *other + wide}, corners(scene.body, triangle))) return true;
   }
   return false;
 }
@@ -192,6 +192,13 @@ TEST(VirtualParticles, LieOnEdgesOfTheBodyAndProjectToTheirPlaces) {
         const bool inside = point.barycentric.minCoeff() > 1e-4;
         EXPECT_TRUE(!inside || place == point.barycentric);
         ++points;
+      }
+      for (const model::FaceSegment& segment : hit.segments) {
+        const auto image = [&](const Vector3d& p) { return prism.projection().barycentric(p); };
+        const Vector3d from = made.refined.position(segment.ends[0], made.x),
+                       to = made.refined.position(segment.ends[1], made.x);
+        const Vector3d lifted = from + model::lift(0.3, segment.ratio) * (to - from);
+        EXPECT_NEAR((image(lifted) - 0.7 * image(from) - 0.3 * image(to)).norm(), 0, 1e-12);
       }
     }
   });
