@@ -207,7 +207,7 @@ TEST(VirtualParticles, LieOnEdgesOfTheBodyAndProjectToTheirPlaces) {
 
 /// Each edge of the mesh has one triangle on each side, those along the border of the sheet one alone, and there are no holes.
 TEST(VirtualParticles, ConformInFacesThatAreNeighbours) {
-  for_random_scenes(200, [&](const SheetOverBody& scene, const Refinement& made) {
+  for_random_scenes(200, [&](const SheetOverBody&, const Refinement& made) {
     const EdgeMesh mesh("the refined sheet", made.refined.triangles);
     std::set<std::array<int, 2>> border, expected;
     std::set<int> used;
@@ -226,7 +226,6 @@ TEST(VirtualParticles, ConformInFacesThatAreNeighbours) {
     }
     EXPECT_EQ(border, expected);
     EXPECT_EQ(std::ssize(used) - std::ssize(mesh.edges()) + std::ssize(mesh.triangles()), 1) << "a disc";
-    EXPECT_GE(std::ssize(used), scene.sheet.x.rows());
   });
 }
 
