@@ -38,6 +38,11 @@ class FlatFace {
     const auto& [a, b, c] = face.corners;
     const Vector3d along = (b - a).normalized(), across = normal_.cross(along);
     for (int k = 0; k < 3; ++k) flat_[k] = {along.dot(face.corners[k] - a), across.dot(face.corners[k] - a)};
+    constexpr double beside = 1e-4;
+    const auto is_beside = [](const FacePoint& point) {
+      return point.barycentric.minCoeff() > 0 && point.barycentric.minCoeff() < beside;
+    };
+    bulge_ = std::ranges::any_of(hit.points, is_beside) ? 0 : 1e-6;
   }
 
   /// Inserts corners and border, then the points inside.
@@ -87,13 +92,11 @@ class FlatFace {
  private:
   double height(const Vector3d& point) const { return normal_.dot(point - face_.corners[0]); }
 
-  /// If another particle has this place that one is kept. The border bulges: predicates take many times as long for points that
-  /// are almost in a line.
+  /// If another particle has this place that one is kept.
   void insert(int number, const Vector3d& barycentric) {
-    constexpr double bulge = 1e-6;
     Vector2d at = barycentric[0] * flat_[0] + barycentric[1] * flat_[1] + barycentric[2] * flat_[2];
     for (int k = 0; k < 3; ++k)
-      if (barycentric[k] == 0) at += bulge * barycentric[(k + 1) % 3] * barycentric[(k + 2) % 3] * (at - flat_[k]);
+      if (barycentric[k] == 0) at += bulge_ * barycentric[(k + 1) % 3] * barycentric[(k + 2) % 3] * (at - flat_[k]);
     const Vertex vertex = planar_.insert({at.x(), at.y()});
     vertices_.emplace(number, vertex);
     if (vertex->info().number < 0) vertex->info().number = number;
@@ -139,6 +142,9 @@ class FlatFace {
   const HitFace& hit_;
   Vector3d normal_;
   std::array<Vector2d, 3> flat_;
+  /// How far the border bulges: predicates take many times as long for points that are almost in a line. Points beside the
+  /// border have to stay as they are to it.
+  double bulge_;
   Planar planar_;
   std::unordered_map<int, Vertex> vertices_;
 };
