@@ -39,7 +39,9 @@ std::shared_ptr<Repulsion> repel(const ContactRule& rule, const std::shared_ptr<
         repulsion->add(t, x, v, f);
       };
   forces.also_visit([repulsion](double t, const Vectors& x, const Vectors& v, const JacobianEntries& entries) {
-    repulsion->visit(t, x, v, entries);
+    const Repulsion::Derivatives& all = repulsion->derivatives(t, x, v, entries.exact());
+    for (int i = 0; i < static_cast<int>(all.by_x.size()); ++i) entries.add_dx(i, i, all.by_x[static_cast<std::size_t>(i)]);
+    for (int i = 0; i < static_cast<int>(all.by_v.size()); ++i) entries.add_dv(i, i, all.by_v[static_cast<std::size_t>(i)]);
   });
   ode.without_energy.emplace_back(rule.response == ResponseKind::penalty ? "penalty" : "field");
   return repulsion;

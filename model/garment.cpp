@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -72,6 +71,15 @@ Garment::Garment(const Scene& scene) {
   nodes_ = particles_;
   const bool is_sewn = scene.seam_state == SeamState::sewn;
   if (panels_.size() > 1 || !scene.seams.empty()) sew(is_sewn ? std::span(scene.seams) : std::span<const SeamRule>());
+  if (scene.seam_state == SeamState::pulled) {
+    Scene closed = scene;
+    closed.seam_state = SeamState::sewn;
+    const Garment sewn(closed);
+    sewn_.resize(static_cast<std::size_t>(nodes_));
+    for (std::size_t k = 0; k < panels_.size(); ++k)
+      for (int i = 0; i < panels_[k].sheet.grid.particles(); ++i)
+        sewn_[static_cast<std::size_t>(panels_[k].node(i))] = sewn.panels_[k].node(i);
+  }
   if (scene.rest == RestShape::start) {
     const Vectors x = start().x;
     for (Panel& panel : panels_) {
@@ -219,15 +227,10 @@ std::vector<solver::Pin> Garment::pins(const Scene& phase, const Vectors& x) con
 }
 
 std::map<int, Eigen::Vector3d> Garment::pulled(const Scene& phase, const Vectors& x) const {
-  Scene closed = phase;
-  closed.seam_state = SeamState::sewn;
-  const Garment sewn(closed);
-  std::vector<std::set<int>> meeting(static_cast<std::size_t>(sewn.nodes()));
-  for (std::size_t k = 0; k < panels_.size(); ++k)
-    for (int i = 0; i < panels_[k].sheet.grid.particles(); ++i)
-      meeting[static_cast<std::size_t>(sewn.panels_[k].node(i))].insert(panels_[k].node(i));
+  std::map<int, std::vector<int>> meeting;
+  for (int node = 0; node < nodes_; ++node) meeting[sewn_[static_cast<std::size_t>(node)]].push_back(node);
   std::map<int, Eigen::Vector3d> velocities;
-  for (const std::set<int>& nodes : meeting) {
+  for (const auto& [sewn, nodes] : meeting) {
     if (nodes.size() < 2) continue;
     Eigen::Vector3d place = Eigen::Vector3d::Zero();
     for (const int node : nodes) place += x.row(node).transpose() / static_cast<double>(nodes.size());

@@ -47,6 +47,9 @@ class Garment {
   int nodes() const { return nodes_; }
   bool is_one_sheet() const { return panels_.front().nodes.empty(); }
 
+  /// What each node will be once the seams that pull it have met: the same for all nodes that do. Empty if no seams are pulled.
+  const std::vector<int>& sewn_nodes() const { return sewn_; }
+
   /// The mass of each node [kg]. What a cut leaves outside has the mass of the others on average.
   Eigen::VectorXd masses() const;
 
@@ -82,6 +85,7 @@ class Garment {
 
   std::vector<Panel> panels_;
   int particles_ = 0, nodes_ = 0;
+  std::vector<int> sewn_;
 };
 
 /// A garment as quadrilaterals, one for each cell, chains as lines. Vertices are the nodes, which are at x.

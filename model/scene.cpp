@@ -189,6 +189,8 @@ Scene without_trim(Scene scene) {
   return scene;
 }
 
+bool has_contacts(const Scene& scene) { return !scene.obstacles.empty() || scene.contact.thickness > 0; }
+
 double size(const Scene& scene) {
   double longest = 0;
   const Garment garment(scene);

@@ -166,6 +166,9 @@ Scene without_trim(Scene scene);
 /// longest [m].
 double size(const Scene& scene);
 
+/// Whether obstacles or the cloth itself stop its motion, which is not smooth then.
+bool has_contacts(const Scene& scene);
+
 /// Numerical stiffness ν_h = h² k/(ρ l²), the largest of panels, weft and warp [Etzmuß 2002, 3.4.4].
 double numerical_stiffness(const Scene& scene, double h);
 

@@ -153,7 +153,7 @@ double largest_growth(const SplitOde& ode, const State& y0, double t0, const Tra
 
 Growth measure_growth(const SplitOde& ode, const State& y0, double t0, const Trajectory& unperturbed, double size,
                       const SolveFrom& solve) {
-  if (!ode.contacts) {
+  if (!ode.has_contacts()) {
     const State direction = fastest_growing(ode, y0, t0, unperturbed.times, size);
     return growth_along(direction, y0, unperturbed, size, solve);
   }

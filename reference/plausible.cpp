@@ -91,7 +91,7 @@ Trajectory loose_contact_run(const SplitOde& ode, const State& y0, double t0, do
 
 void require_plausible(const Reference& reference, const SplitOde& ode, const State& y0, double t0,
                        std::span<const double> times, double size) {
-  const bool contact = static_cast<bool>(ode.contacts);
+  const bool contact = ode.has_contacts();
   require_fitting(reference, times, y0.x.rows());
   require_uncertainty(reference, contact);
   require_pins(reference, ode, y0, t0, size);

@@ -114,6 +114,9 @@ struct SplitOde {
 
   std::shared_ptr<PairSearch> pairs;  ///< finds where the cloth meets itself; null: it passes through itself
 
+  /// Whether obstacles or the cloth itself stop its motion, which is not smooth then.
+  bool has_contacts() const { return contacts || pairs; }
+
   std::shared_ptr<Counters> work = std::make_shared<Counters>();
 
   double* response_ms = nullptr;  ///< if given, the wall time of the response to contacts is added there, detection apart

@@ -79,7 +79,7 @@ Group run_group(const RunArguments& a) {
   check_steps(a, scene.end);
   RunSpec spec{scene, fmt::format("{}", fmt::join(a.choice.sets, " ")), nullptr, 0, a.options};
   spec.options.control = step_control(a.control);
-  spec.options.error_control = {a.tolerance, model::size(scene), scene.end, scene.obstacles.empty()};
+  spec.options.error_control = {a.tolerance, model::size(scene), scene.end, !model::has_contacts(scene)};
   Group group;
   for (const std::string& name : named_methods(a.methods, scene)) {
     spec.options.stage = a.options.stage;

@@ -72,7 +72,7 @@ reference::Reference References::certified(const model::Scene& scene, const mode
   }
   const double size = model::size(scene);
   reference::Reference reference = tight(scene, cloth, times, uncertainty * size);
-  if (cloth.ode.contacts) return reference;  // of first order: its uncertainty decides what is shown
+  if (cloth.ode.has_contacts()) return reference;  // of first order: its uncertainty decides what is shown
   try {
     reference::certify(reference, agreement_, results::comparable_growth, size);
   } catch (const reference::NotCertified& error) {
@@ -87,7 +87,7 @@ reference::Reference References::tight(const model::Scene& scene, const model::C
   reference::Reference best = at(rtol_, scene, cloth, times, left());
   for (;;) {
     const double worst = std::ranges::max(best.error), tightest = std::ranges::min(reference_tolerances);
-    const bool comparable = !cloth.ode.contacts && std::ranges::max(best.growth) <= results::comparable_growth;
+    const bool comparable = !cloth.ode.has_contacts() && std::ranges::max(best.growth) <= results::comparable_growth;
     if (!comparable || !(worst > uncertainty) || best.tolerance <= tightest) return best;
     try {
       best = at(tightened(best.tolerance, uncertainty / worst), scene, cloth, times, left());

@@ -90,8 +90,8 @@ reference::Reference compute_reference(const model::Scene& scene, const model::C
   }
   const reference::Equations equations{first, second};
   try {
-    return first.contacts ? reference::contact_reference(equations, cloth.start, 0, times, options)
-                          : reference::reference(equations, cloth.start, 0, times, options);
+    return first.has_contacts() ? reference::contact_reference(equations, cloth.start, 0, times, options)
+                                : reference::reference(equations, cloth.start, 0, times, options);
   } catch (const LimitReached&) {  // of our own methods; solvers of SUNDIALS make it an error of theirs
   } catch (const reference::ReferenceError&) {
     check_interruption();  // it may have been the reason

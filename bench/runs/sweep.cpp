@@ -101,7 +101,7 @@ void measure_errors(const model::Scene& scene, std::vector<MeasuredRun>& runs, R
     const model::Cloth cloth = model::compile(scene);
     const reference::Reference first = references(scene, cloth);
     const double smallest = compare_all(runs, first, scene, cloth);
-    if (cloth.ode.contacts || 10 * base::largest(first.error) <= smallest * model::size(scene)) return;
+    if (cloth.ode.has_contacts() || 10 * base::largest(first.error) <= smallest * model::size(scene)) return;
     compare_all(runs, references.resolving(scene, cloth, smallest), scene, cloth);
   } catch (const reference::ReferenceError& error) {
     remark(error.what());

@@ -101,7 +101,7 @@ RunSpec controlled_spec(const Policy& policy, const model::Scene& scene) {
   spec.options.max_updates = 20'000;  // with little damping the loop is slow
   spec.options.control = policy.control;
   if (policy.tolerance > 0)
-    spec.options.error_control = {policy.tolerance, model::size(scene), scene.end, scene.obstacles.empty(),
+    spec.options.error_control = {policy.tolerance, model::size(scene), scene.end, !model::has_contacts(scene),
                                   most_controlled_steps};
   return spec;
 }

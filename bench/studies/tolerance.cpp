@@ -52,7 +52,7 @@ std::vector<Setting> settings(bool quick) {
   for (const char* scene : {"hung-edge", "hung-corners"})
     all.push_back({fmt::format("{}-hardly-damped", scene), scene, {{"material.damping", "0.5"}}});
   for (const model::BuiltinScene& scene : model::builtin_scenes()) {
-    if (!model::parse_scene(scene.toml, scene.name).obstacles.empty()) continue;
+    if (model::has_contacts(model::parse_scene(scene.toml, scene.name))) continue;
     Setting& setting = all.emplace_back(Setting{std::string(scene.name), std::string(scene.name), {}});
     for (const auto& [name, key, value] : shortened)
       if (scene.name == name) setting.overrides.push_back({key, value});

@@ -26,7 +26,9 @@ std::vector<std::array<int, 3>> halves_of_cells(const Garment& garment) {
 
 }  // namespace
 
-ClothSurface::ClothSurface(const Garment& garment) : ClothSurface(halves_of_cells(garment), garment.start().x) {}
+ClothSurface::ClothSurface(const Garment& garment) : ClothSurface(halves_of_cells(garment), garment.start().x) {
+  sewn_ = garment.sewn_nodes();
+}
 
 ClothSurface::ClothSurface(std::span<const std::array<int, 3>> corners, Vectors places) : places_(std::move(places)) {
   std::map<std::array<int, 2>, int> index;
@@ -66,7 +68,9 @@ Corners ClothSurface::corners(int face, const Vectors& x) const {
 }
 
 bool ClothSurface::joined(int one, int other) const {
-  return std::ranges::find_first_of(faces_[one].corners, faces_[other].corners) != faces_[one].corners.end();
+  return std::ranges::any_of(faces_[one].corners, [&](int i) {
+    return std::ranges::any_of(faces_[other].corners, [&](int j) { return joined_nodes(i, j); });
+  });
 }
 
 }  // namespace drape::model

@@ -42,13 +42,17 @@ class ClothSurface {
   /// The corners of a face whose nodes are at x, N × 3 [m].
   Corners corners(int face, const Vectors& x) const;
 
-  /// Whether two faces have a node in common.
+  /// Whether two nodes are the same, or will be once the seams have met that pull them: these bring them together.
+  bool joined_nodes(int i, int j) const { return i == j || (!sewn_.empty() && sewn_[i] == sewn_[j]); }
+
+  /// Whether two faces have joined nodes.
   bool joined(int one, int other) const;
 
  private:
   std::vector<Face> faces_;
   std::vector<Edge> edges_;
   Vectors places_;
+  std::vector<int> sewn_;  ///< Garment::sewn_nodes()
 };
 
 }  // namespace drape::model

@@ -62,12 +62,13 @@ void SelfContacts::each_pair(const Vectors& x, double reach, const Visit& visit)
   const auto meet = [&](PairKind kind, const std::array<int, 4>& particles, bool may_end) {
     if (!stays_apart(kind, particles, x, way_, reach)) visit(kind, particles, may_end);
   };
+  const auto joined = [&](int i, int j) { return surface_.joined_nodes(i, j); };
   const auto vertices_and_face = [&](const ClothSurface::Face& one, const ClothSurface::Face& other) {
     const auto [a, b, c] = other.corners;
     if (other.is_edge()) return;
     for (const int v : one.vertices) {
       if (v < 0) return;
-      if (v != a && v != b && v != c) meet(PairKind::vertex_face, {v, a, b, c}, false);
+      if (!joined(v, a) && !joined(v, b) && !joined(v, c)) meet(PairKind::vertex_face, {v, a, b, c}, false);
     }
   };
   tree_.overlapping_pairs([&](int i, int j) {
@@ -81,7 +82,8 @@ void SelfContacts::each_pair(const Vectors& x, double reach, const Visit& visit)
         const ClothSurface::Edge &lower = surface_.edges()[std::min(e, f)], &higher = surface_.edges()[std::max(e, f)];
         const auto [a, b] = lower.ends;
         const auto [c, d] = higher.ends;
-        if (a != c && a != d && b != c && b != d) meet(PairKind::edge_edge, {a, b, c, d}, !lower.has_face || !higher.has_face);
+        if (!joined(a, c) && !joined(a, d) && !joined(b, c) && !joined(b, d))
+          meet(PairKind::edge_edge, {a, b, c, d}, !lower.has_face || !higher.has_face);
       }
     }
   });

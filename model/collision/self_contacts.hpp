@@ -20,7 +20,7 @@ struct Approach {
   double part;      ///< of the step until the distance has fallen as far
 };
 
-/// Finds where a cloth comes near itself: pairs of a vertex and a face, or of two edges, that have no node in common. Two edges
+/// Finds where a cloth comes near itself: pairs of a vertex and a face, or of two edges, that have no joined nodes. Two edges
 /// count where they are nearest inside both; where one ends, a vertex and a face are as near, unless it is that of a chain.
 /// Pairs come in an order that depends on the surface alone. Memory is kept from call to call.
 class SelfContacts {
@@ -37,11 +37,11 @@ class SelfContacts {
   /// Sets `found` to the pairs nearer than `distance` [m] at x, N × 3.
   void near(const Vectors& x, double distance, std::vector<Proximity>& found);
 
-  /// Pairs of triangles without a common node that have a point in common at x, as intersect() has it; indices of faces, the
+  /// Pairs of triangles without joined nodes that have a point in common at x, as intersect() has it; indices of faces, the
   /// lower first.
   std::vector<std::array<int, 2>> intersections(const Vectors& x);
 
-  /// Number of pairs of triangles without a common node that are nearer than `distance` [m] at x.
+  /// Number of pairs of triangles without joined nodes that are nearer than `distance` [m] at x.
   int face_pairs(const Vectors& x, double distance);
 
  private:
@@ -53,7 +53,7 @@ class SelfContacts {
   template <class Visit>
   void each_pair(const Vectors& x, double reach, const Visit& visit);
 
-  /// Calls visit(i, j, corners, corners) for pairs of triangles i < j without a common node that may be within `reach` at x.
+  /// Calls visit(i, j, corners, corners) for pairs of triangles i < j without joined nodes that may be within `reach` at x.
   template <class Visit>
   void each_face_pair(const Vectors& x, double reach, const Visit& visit);
 

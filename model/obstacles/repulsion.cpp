@@ -1,5 +1,6 @@
 #include "model/obstacles/repulsion.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -17,9 +18,7 @@ Repulsion::Repulsion(std::shared_ptr<Contacts> contacts, const ContactRule& rule
       mass_(std::move(mass)),
       damping_(rule.response == ResponseKind::field ? 2 * std::sqrt(rule.push / rule.range) : 0),
       nearest_(distance_at(strongest)),
-      reach_(distance_at(nothing)),
-      by_x_(static_cast<std::size_t>(mass_.size())),
-      by_v_(by_x_) {}
+      reach_(distance_at(nothing)) {}
 
 double Repulsion::distance_at(double strength) const {
   if (rule_.response == ResponseKind::penalty) return rule_.distance * std::pow(strength, -1 / rule_.exponent);
@@ -48,24 +47,22 @@ void Repulsion::add(double t, const Vectors& x, const Vectors& v, Vectors& f) {
   }
 }
 
-void Repulsion::visit(double t, const Vectors& x, const Vectors& v, const JacobianEntries& entries) {
+const Repulsion::Derivatives& Repulsion::derivatives(double t, const Vectors& x, const Vectors& v, bool exact) {
   contacts_->near(t, x, reach_, near_);
-  by_x_.assign(by_x_.size(), Eigen::Matrix3d::Zero());
-  by_v_.assign(by_v_.size(), Eigen::Matrix3d::Zero());
+  const auto particles = static_cast<std::size_t>(mass_.size());
+  derivatives_.by_x.assign(particles, Eigen::Matrix3d::Zero());
+  derivatives_.by_v.assign(damping_ > 0 ? particles : 0, Eigen::Matrix3d::Zero());
   for (const Depth& at : near_) {
     const auto i = static_cast<std::size_t>(at.particle);
     const Strength s = strength(rule_.distance - at.depth);
     const double recedes = (at.velocity - v.row(at.particle).transpose()).dot(at.normal);
     double push = rule_.push + damping_ * recedes;
-    if (!entries.exact()) push = std::max(0.0, push);
+    if (!exact) push = std::max(0.0, push);
     const Eigen::Matrix3d along = mass_[at.particle] * at.normal * at.normal.transpose();
-    by_x_[i] += s.slope * push * along;
-    by_v_[i] -= s.value * damping_ * along;
+    derivatives_.by_x[i] += s.slope * push * along;
+    if (damping_ > 0) derivatives_.by_v[i] -= s.value * damping_ * along;
   }
-  for (std::size_t i = 0; i < by_x_.size(); ++i) {
-    entries.add_dx(static_cast<int>(i), static_cast<int>(i), by_x_[i]);
-    if (damping_ > 0) entries.add_dv(static_cast<int>(i), static_cast<int>(i), by_v_[i]);
-  }
+  return derivatives_;
 }
 
 }  // namespace drape::model

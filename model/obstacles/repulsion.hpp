@@ -1,8 +1,8 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
-#include "model/forces/term.hpp"
 #include "model/obstacles/contacts.hpp"
 
 namespace drape::model {
@@ -23,8 +23,13 @@ class Repulsion {
   /// Adds F to f.
   void add(double t, const Vectors& x, const Vectors& v, Vectors& f);
 
-  /// Visits ∂F/∂x and ∂F/∂v of every particle, as if surfaces were planes.
-  void visit(double t, const Vectors& x, const Vectors& v, const JacobianEntries& entries);
+  /// ∂F/∂x [N/m] and ∂F/∂v [N s/m] of each particle.
+  struct Derivatives {
+    std::vector<Eigen::Matrix3d> by_x, by_v;  ///< the second empty if there is no damping
+  };
+
+  /// As if surfaces were planes; `exact`: else negative semidefinite.
+  const Derivatives& derivatives(double t, const Vectors& x, const Vectors& v, bool exact);
 
  private:
   /// F over m c without damping, and its derivative by r [1/m].
@@ -40,7 +45,7 @@ class Repulsion {
   double damping_;          ///< b [1/s]
   double nearest_, reach_;  ///< distances from the surface between which the field is as above, and beyond which it is 0 [m]
   std::vector<Depth> near_;
-  std::vector<Eigen::Matrix3d> by_x_, by_v_;
+  Derivatives derivatives_;
 };
 
 }  // namespace drape::model

@@ -260,6 +260,8 @@ bool ContactResponse::update(const Stage& stage, State& y, const Vectors& r, con
     pairs_->add_forces(pushed_);  // which are those of this solution only now
     for (Touched& p : touched_)
       if (p.status != Status::free) balance(p, stage, y, pushed_);
+    rub_obstacles(stage.gamma, pushed_);
+    pushed_ /= stage.gamma;  // for finish()
     return changed;
   }
   leave_supports();
@@ -412,7 +414,17 @@ bool ContactResponse::finish(State& y1, State& y0) {
   if (pairs_) {
     const Eigen::Vector3d before = y1.v.transpose() * ode_.mass;
     changed = pairs_->finish(y1, y0);
-    if (ode_.pins.empty()) impulse_ += y1.v.transpose() * ode_.mass - before;  // what stands on supports stops by them
+    if (ode_.pins.empty()) {
+      impulse_ += y1.v.transpose() * ode_.mass - before;  // what stands on supports stops by them
+      if (has_pairs()) {
+        // Forces of pairs have no sum: what those of the last sweeps have more in the directions that obstacles leave free than
+        // the solution, obstacles bear less in the others.
+        Eigen::Vector3d missing = pushed_.colwise().sum();
+        for (const Touched& p : touched_)
+          if (p.status != Status::free) missing -= p.constrained() * pushed_.row(p.particle).transpose();
+        impulse_ -= h_ * missing;
+      }
+    }
   }
   for (Touched& p : touched_) {
     if (p.status == Status::free) continue;

@@ -91,7 +91,7 @@ class PairResponse : public Projector {
     Eigen::Vector3d lambda = Eigen::Vector3d::Zero();  ///< multiplier, and friction across it [N s]
     Eigen::Vector2d slides = Eigen::Vector2d::Zero();  ///< friction that the system takes as given [N s]
     bool active = false;                               ///< whether it is constrained
-    bool sticks = false;                               ///< whether it is across the normal, too
+    bool sticks = false;                               ///< whether it is also across the normal
     bool before = false;                               ///< whether it was active in the step before
 
     double speed(int direction, const Vectors& v) const { return motion[direction].along(pair.particles, v); }

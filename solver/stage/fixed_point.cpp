@@ -1,10 +1,16 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "solver/stage/loop_tolerance.hpp"
 #include "solver/stage/stage_solver.hpp"
 
 namespace drape::solver {
+namespace {
+
+constexpr double worse = 4;  ///< growth of the residual, over the least one, that restarts an acceleration
+
+}  // namespace
 
 StageResult StageSolver::fixed_point(const Stage& stage, const Vectors* f_explicit, State& y) {
   StageResult result;
@@ -20,6 +26,9 @@ StageResult StageSolver::fixed_point(const Stage& stage, const Vectors* f_explic
                                   ? options_.cg_tolerance
                                   : std::min(options_.cg_tolerance, tolerance / 2);  // else the loop could not end
   const int changing_updates = !linear ? 50 : ode_.pairs ? 30 : 10;
+  Anderson* const anderson = !linear && contacts && in_contact_ ? &*in_contact_ : nullptr;
+  if (anderson != nullptr) anderson->restart();
+  double least = std::numeric_limits<double>::infinity();
   StageSystem::Scale size{};
   bool coarse = false;
   for (;; ++result.updates, ++work_.updates) {
@@ -50,7 +59,14 @@ StageResult StageSolver::fixed_point(const Stage& stage, const Vectors* f_explic
     coarse = contacts && (changed || !solved) && residual > 10 * solved_to;
     const LinearResult system = system_.correct(coarse ? residual / 10 : solved_to);
     result.cg_iterations += system.iterations;
-    y.v += system_.correction();
+    if (anderson != nullptr) {
+      const bool restarts = changed || residual > worse * least;
+      if (restarts) anderson->restart();
+      least = restarts ? residual : std::min(least, residual);
+      anderson->advance(y.v, system_.correction());
+    } else {
+      y.v += system_.correction();
+    }
     if (system.outcome != Outcome::success) return ended(system.outcome);
   }
 }

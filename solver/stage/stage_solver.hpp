@@ -1,7 +1,9 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
+#include "solver/stage/anderson.hpp"
 #include "solver/stage/stage_system.hpp"
 
 namespace drape::solver {
@@ -48,7 +50,8 @@ class StageSolver {
   StageResult meet_pairs(const Stage& stage, const Vectors* f_explicit, State& y, StageResult result);
   StageResult one_system(const Stage& stage, const Vectors& f_explicit, State& y);
 
-  /// Algorithm 6, with the response to contacts. f̂ is given for linear stages with contacts.
+  /// Algorithm 6, with the response to contacts, accelerated while these do not change if the stage's kind is. f̂ is given for
+  /// linear stages with contacts.
   StageResult fixed_point(const Stage& stage, const Vectors* f_explicit, State& y);
 
   /// Algorithm 6 to the letter, without contacts.
@@ -59,6 +62,7 @@ class StageSolver {
   StageSystem system_;
   std::unique_ptr<AcceleratedStage> accelerated_;  ///< if the options ask for it
   std::unique_ptr<StageIteration> iteration_;      ///< if the options ask for one
+  std::optional<Anderson> in_contact_;             ///< of the loop, where stages are accelerated and contacts possible
   LinearCounters work_;
 };
 

@@ -56,8 +56,13 @@ double distance_at_end(const model::Scene& scene, const results::RunRecord& run,
 
 double largest_accurate_step(const model::Scene& scene, const std::string& method, const solver::Vectors& x, double part) {
   constexpr int most_steps = 10'000;
-  for (int n = 10; n <= most_steps; n *= 2)
-    if (distance_at_end(scene, run_by(scene, method, scene.end / n), x) <= part) return scene.end / n;
+  double accurate = NAN;  // the step before, if it is
+  for (int n = 10; n <= most_steps; n *= 2) {
+    const double step = scene.end / n;
+    const bool ends_near = distance_at_end(scene, run_by(scene, method, step), x) <= part;
+    if (ends_near && !std::isnan(accurate)) return accurate;
+    accurate = ends_near ? step : NAN;
+  }
   return NAN;
 }
 

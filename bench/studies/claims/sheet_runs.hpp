@@ -35,7 +35,8 @@ FineMotion fine_motion(const model::Scene& scene);
 /// Root mean square distance at the end of a run over the size of the scene; NaN if it failed.
 double distance_at_end(const model::Scene& scene, const results::RunRecord& run, const solver::Vectors& x);
 
-/// The largest of the steps end/10, end/20, end/40 … that ends within a part of the scene's size of x; NaN if none does.
+/// The largest of the steps end/10, end/20, end/40 … that ends within a part of the scene's size of x, and half of which does
+/// as well: in contact errors do not fall evenly, and one may be small by chance. NaN if there is none.
 double largest_accurate_step(const model::Scene& scene, const std::string& method, const solver::Vectors& x, double part);
 
 /// A count of the work of a run; NaN if it failed.

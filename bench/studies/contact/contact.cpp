@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "bench/runs/certified_reference.hpp"
 #include "bench/runs/costs.hpp"
 #include "bench/runs/record.hpp"
 #include "bench/runs/timing.hpp"
@@ -21,6 +22,7 @@
 #include "bench/studies/draping.hpp"
 #include "bench/studies/step_means.hpp"
 #include "bench/studies/studies.hpp"
+#include "model/phases.hpp"
 #include "model/scene_file/scene_file.hpp"
 #include "results/columns.hpp"
 #include "results/verdict.hpp"
@@ -63,13 +65,21 @@ constexpr const char* contact_scenes[] = {"stack",         "sphere_drop", "cloth
                                           "curtain_drawn", "box_swing",   "tablecloth",  "ball"};
 constexpr const char* contact_methods[] = {"sbdf2", "verlet", "imex-euler", "implicit-euler", "bdf2", "midpoint"};
 
+/// Garments meet themselves here, and not in the scenes.
+constexpr const char* self_contact_garments[] = {"dress", "sewn_dress", "walking_dress", "trousers"};
+constexpr const char* self_contact_methods[] = {"sbdf2", "imex-euler"};
+constexpr const char* garment_thickness = "0.004";  // [m]
+constexpr double slowest_dress = 2000;              // wall time a simulated second [ms/s]
+
+bool is_garment(const std::string& name) { return std::ranges::count(self_contact_garments, name) > 0; }
+
 /// Values of contact.response; the others are compared with the first.
 constexpr std::string_view contact_responses[] = {"constraint", "alteration", "reaction", "penalty",
                                                   "field",      "reposition", "reflect",  "impulse"};
 constexpr const char* response_scenes[] = {"box_swing", "tablecloth", "ball"};
 constexpr const char* response_methods[] = {"sbdf2", "imex-euler", "implicit-euler", "bdf2", "midpoint"};
 
-/// Of the values of a table: all, or for tests the first ones.
+/// All values of a table, or for tests the first ones.
 template <std::size_t n>
 std::span<const char* const> some_of(const char* const (&all)[n], bool quick, std::size_t first) {
   return std::span(all).first(quick ? first : n);
@@ -79,6 +89,7 @@ std::span<const char* const> some_of(const char* const (&all)[n], bool quick, st
 model::Scene contact_scene(const std::string& name, bool quick, std::string_view response = contact_responses[0]) {
   std::vector<model::Override> changes{{"contact.response", std::string(response)}};
   if (name == "stack") return model::parse_scene(stack, name, changes);
+  if (is_garment(name)) changes.push_back({"contact.thickness", garment_thickness});
   if (quick) changes.push_back({"grid.n", "8"});
   return model::load_scene(name, changes);
 }
@@ -138,9 +149,18 @@ struct ContactRun {
   std::optional<double> flight = {}, impact = {}, rest = {};  ///< CG iterations a step
   double motion = 0;
   ContactFindings found = {};
-  std::optional<double> largest_step = {};                                 ///< [s]
+  std::optional<double> largest_step = {};  ///< [s]
+  std::optional<results::ErrorRecord> error = {};
   double forces = 0, detection = 0, response = 0, others = 0, spread = 0;  ///< [ms/s]
+
+  double time() const { return forces + detection + response + others; }
 };
+
+/// A value of the error, if the scene has a reference.
+template <double results::ErrorRecord::*value>
+Datum of_error(const ContactRun& row) {
+  return row.error ? results::to_datum((*row.error).*value) : Datum();
+}
 
 constexpr ColumnOf<ContactRun> contact_columns[] = {
     {"scene", "scene", "", "built-in, or stack: three sheets that fall on each other", Role::key, field<&ContactRun::scene>},
@@ -179,6 +199,20 @@ constexpr ColumnOf<ContactRun> contact_columns[] = {
     {"largest_step", "largest h", "s",
      "of 0.04, 0.02, …, 0.0025: the run lasts to its end, cloth is never through itself, and no particle in an obstacle",
      Role::quantity, field<&ContactRun::largest_step>},
+    {"error", "error", "1", "of positions at the end over the size of the scene, where growth and ± ref allow to compare them",
+     Role::quantity,
+     [](const ContactRun& row) {
+       return row.error && comparable(*row.error) ? of_error<&results::ErrorRecord::rms>(row) : Datum();
+     }},
+    {"uncertainty", "± ref", "1",
+     "by which two responses disagree, and by which doubling their steps changes them, the largest", Role::quantity,
+     of_error<&results::ErrorRecord::reference_error>},
+    {"growth", "growth", "1", "of a small perturbation of the start: above 100, compare centres in place of positions",
+     Role::quantity, of_error<&results::ErrorRecord::growth>},
+    {"centre", "centre", "1", "distance of the centre of mass from the reference's, over the size of the scene", Role::quantity,
+     of_error<&results::ErrorRecord::centre>},
+    {"centre_spread", "± pert", "1", "the same of the perturbed motion", Role::quantity,
+     of_error<&results::ErrorRecord::centre_spread>},
     {"outcome", "outcome", "", "how the run ended", Role::outcome, field<&ContactRun::outcome>},
 };
 
@@ -242,11 +276,20 @@ ContactVerdict resting_cost(const ContactRun& row) {
   return found;
 }
 
+ContactVerdict time_of_dress(const ContactRun& row) {
+  ContactVerdict found{row.scene,         row.method,           "wall time of a simulated second [s]",
+                       row.time() / 1000, slowest_dress / 1000, {Standing::open, row.outcome}};
+  if (row.outcome == "success") found.verdict = results::check(*found.value <= found.most, "below", "not below");
+  return found;
+}
+
 std::vector<ContactVerdict> judged(const std::vector<ContactRun>& rows) {
   std::vector<ContactVerdict> all;
   for (const ContactRun& row : rows) all.push_back(intersections_of(row));
   for (const ContactRun& row : rows)
-    if (solver::method(row.method).implicit()) all.push_back(resting_cost(row));
+    if (solver::method(row.method).implicit() && !is_garment(row.scene)) all.push_back(resting_cost(row));
+  for (const ContactRun& row : rows)
+    if (row.scene.ends_with("dress")) all.push_back(time_of_dress(row));
   return all;
 }
 
@@ -272,6 +315,18 @@ struct ContactStudy {
   std::vector<ContactMoment> moments;
 };
 
+/// Errors of runs of a scene. Scenes whose pins follow paths have no reference; those of garments are in their own study.
+std::vector<std::optional<results::ErrorRecord>> contact_errors(const model::Scene& scene, std::span<const WatchedRun> runs) {
+  std::vector<std::optional<results::ErrorRecord>> errors(runs.size());
+  if (model::phases(scene).size() > 1 || is_garment(scene.name)) return errors;
+  constexpr double agreement = 1;  // that of contacts is not asked for
+  const model::Cloth cloth = model::compile(scene);
+  const reference::Reference reference = References(agreement)(scene, cloth);
+  for (std::size_t k = 0; k < runs.size(); ++k)
+    if (runs[k].run.succeeded()) errors[k] = distance(runs[k].run, reference, scene, cloth);
+  return errors;
+}
+
 void study_contact(const std::string& name, std::span<const char* const> methods, bool quick, Checkpoint& checkpoint,
                    ContactStudy& study) {
   const model::Scene scene = contact_scene(name, quick);
@@ -283,10 +338,11 @@ void study_contact(const std::string& name, std::span<const char* const> methods
     });
   };
   std::vector<ContactRun> rows;
+  std::vector<WatchedRun> usual_runs;
   Group group;
   std::vector<std::size_t> counts;
   for (const std::string_view method : methods) {
-    const WatchedRun usual = kept(method, contact_step);
+    const WatchedRun& usual = usual_runs.emplace_back(kept(method, contact_step));
     ContactRun& row = rows.emplace_back(contact_row(name, method, usual));
     const auto largest = std::ranges::find_if(
         contact_steps, [&](double h) { return h == contact_step ? usual.usable() : kept(method, h).usable(); });
@@ -299,6 +355,8 @@ void study_contact(const std::string& name, std::span<const char* const> methods
     counts.push_back(std::max<std::size_t>(1, steps_to_time(usual.run)));
     checkpoint.advance();
   }
+  checkpoint.show("reference of " + name);
+  const auto errors = checkpoint.once("errors " + name, [&] { return contact_errors(scene, usual_runs); });
   checkpoint.show("timing " + name);
   const auto times = checkpoint.once("times " + name, [&] {
     std::vector<std::array<double, 5>> found;
@@ -310,6 +368,7 @@ void study_contact(const std::string& name, std::span<const char* const> methods
     ContactRun& row = rows[k];
     row.forces = times[k][0], row.detection = times[k][1], row.response = times[k][2];
     row.others = times[k][3], row.spread = times[k][4];
+    row.error = errors[k];
   }
   std::ranges::move(rows, std::back_inserter(study.rows));
 }
@@ -396,12 +455,14 @@ std::vector<ResponseRun> compare_responses(std::span<const char* const> scenes, 
 std::vector<Job> contact(const Question& question) {
   const bool quick = question.quick;
   const auto scenes = some_of(contact_scenes, quick, 1), methods = some_of(contact_methods, quick, 2);
+  const auto garments = some_of(self_contact_garments, quick, 0), garment_methods = some_of(self_contact_methods, quick, 0);
   const auto compared = some_of(response_scenes, quick, 1), compared_methods = some_of(response_methods, quick, 1);
   return {job(
-              "contact", static_cast<int>(scenes.size() * methods.size()),
+              "contact", static_cast<int>(scenes.size() * methods.size() + garments.size() * garment_methods.size()),
               [=](Checkpoint& checkpoint) {
                 ContactStudy study;
                 for (const char* name : scenes) study_contact(name, methods, quick, checkpoint, study);
+                for (const char* name : garments) study_contact(name, garment_methods, quick, checkpoint, study);
                 return study;
               },
               present_contact),

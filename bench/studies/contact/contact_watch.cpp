@@ -19,7 +19,8 @@ Eigen::Vector3d momentum_of(const solver::SplitOde& ode, const solver::Vectors& 
 void ContactWatch::begin(const model::Scene& scene, const model::Cloth& cloth, const solver::State& start) {
   const bool first = cloth_ == nullptr;
   cloth_ = &cloth;
-  const bool still = std::ranges::all_of(cloth.ode.pins, [](const solver::Pin& pin) { return pin.prescribed().isZero(0); });
+  const bool still = std::ranges::all_of(cloth.ode.pins, [](const solver::Pin& pin) { return pin.prescribed().isZero(0); }) &&
+                     std::ranges::none_of(scene.obstacles, &model::moves);
   energies_.reset();
   if (still) {
     findings_.energy_rise = findings_.energy_rise.value_or(0);
@@ -28,10 +29,11 @@ void ContactWatch::begin(const model::Scene& scene, const model::Cloth& cloth, c
   }
   force_ = force(cloth.begin, start);
   momentum_ = momentum_of(cloth.ode, start.v);
+  holds_ = holds_ || !cloth.ode.pins.empty();
+  self_.emplace(model::ClothSurface(*cloth.garment), unused_);  // seams merge nodes
   if (!first) return;
   off_.setZero();
   thickness_ = scene.contact.thickness;
-  self_.emplace(model::ClothSurface(*cloth.garment), unused_);
   constexpr double no_plane = 0;  // no face passes through a plane unless a particle does
   for (const model::ObstacleRule& rule : scene.obstacles) bodies_.emplace_back(rule, no_plane);
   see(cloth.begin, start);
@@ -47,7 +49,7 @@ void ContactWatch::observe(const solver::StepReport& step) {
   const Eigen::Vector3d given = step.h / 2 * (force_before + force_);
   off_ += momentum_ - momentum_before - given - step.contacts.impulse;
   given_ += given.norm();
-  if (cloth_->ode.pins.empty() && given_ > 0) findings_.momentum = off_.norm() / given_;
+  if (!holds_ && given_ > 0) findings_.momentum = off_.norm() / given_;
 }
 
 void ContactWatch::see(double t, const solver::State& y) {

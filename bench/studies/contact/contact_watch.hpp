@@ -18,7 +18,8 @@ struct ContactFindings {
   int in_bodies = 0;                 ///< frames with a particle inside an obstacle
   int through_bodies = 0;            ///< frames in which faces of cloth intersect those of obstacles
 
-  /// Largest rise of the total energy above what it was before, over the energies, while pins rest; nothing if they never do.
+  /// Largest rise of the total energy above what it was before, over the energies, while pins and obstacles rest; nothing if
+  /// they never do.
   std::optional<double> energy_rise = {};
 
   /// What the change of momentum is off from forces, by the trapezoidal rule, and the obstacles' impulses, over the impulse of
@@ -60,6 +61,7 @@ class ContactWatch : public Observer {
   Eigen::Vector3d force_, momentum_;  ///< at the end of the step before [N], [N s]
   Eigen::Vector3d off_;               ///< [N s]
   double given_ = 0;                  ///< [N s]
+  bool holds_ = false;                ///< whether pins have given momentum
 };
 
 }  // namespace drape::bench

@@ -26,7 +26,7 @@ constexpr double recommended_step = 0.01;  ///< [s]
 
 /// What a run may take: a limit that is the same on every machine, evaluations times particles, and CPU seconds, which grow
 /// with the particles from the small sheets to the large.
-constexpr double most_work = 1e8;
+constexpr double most_evaluated = 1e8;
 constexpr double seconds_small = 1, seconds_large = 3, seconds_quick = 0.15;
 constexpr int large_sheet = 64;  ///< particles a side
 
@@ -38,7 +38,8 @@ constexpr int repetitions_of_all = 3;  ///< the fewest times that show a spread
 Limits limits_of(const FieldSheet& sheet) {
   const double particles = static_cast<double>(sheet.n) * sheet.n;
   const double seconds = sheet.n >= large_sheet ? seconds_large : seconds_small;
-  return {.seconds = sheet.quick ? seconds_quick : seconds, .evaluations = static_cast<std::int64_t>(most_work / particles)};
+  return {.seconds = sheet.quick ? seconds_quick : seconds,
+          .evaluations = static_cast<std::int64_t>(most_evaluated / particles)};
 }
 
 /// From coarse to fine. Explicit methods that keep their steps need far finer ones.

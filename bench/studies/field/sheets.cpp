@@ -87,7 +87,7 @@ reference::Reference explicit_reference(const model::Scene& scene, const model::
 
 reference::Reference certified_or_explicit(const model::Scene& scene, const model::Cloth& cloth,
                                            const std::vector<double>& times, Checkpoint& checkpoint) {
-  if (cloth.ode.damping.nonZeros() == 0 && scene.obstacles.empty()) return explicit_reference(scene, cloth, times);
+  if (cloth.ode.damping.nonZeros() == 0 && !model::has_contacts(scene)) return explicit_reference(scene, cloth, times);
   constexpr double agreement = 1e-6;
   const auto say = [&](const std::string& pace) { checkpoint.report("reference: " + pace); };
   References references(agreement, {.seconds = longest_reference, .say = say});

@@ -191,7 +191,7 @@ std::vector<Configuration> configurations(const model::Scene& scene, Search sear
   std::vector<Configuration> all;
   add_ours(all, scene, search, methods);
   add_thesis(all, scene, search, methods);
-  if (scene.obstacles.empty() && search != Search::large) add_peers(all, scene, search);  // they have no contacts
+  if (!model::has_contacts(scene) && search != Search::large) add_peers(all, scene, search);  // they have no contacts
   for (Configuration& one : all) one.advised = one.name == advised_ours || one.name == advised_peer();
   return all;
 }

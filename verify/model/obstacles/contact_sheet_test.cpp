@@ -7,6 +7,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <random>
+#include <utility>
 
 #include "reference/reference.hpp"
 #include "reference/stepped.hpp"
@@ -78,6 +79,28 @@ TEST_P(SheetContact, RubsByCoulombsLawInTotal) { EXPECT_NEAR(friction_over_press
 /// While not all contacts are found, few particles carry what all will: friction that is decided then is three times as much.
 TEST(Friction, IsDecidedWhenContactsAreFound) {
   for (const char* method : {"imex-euler", "sbdf2"}) EXPECT_NEAR(friction_over_pressure(method, 0.02), 0.3, 0.06) << method;
+}
+
+/// Anderson's method restarts where contacts change.
+TEST(StagesInContact, AreAcceleratedToTheSameMotion) {
+  for (const std::string& obstacle : {table, ball})
+    for (const char* method : {"implicit-euler", "bdf2", "midpoint"}) {
+      const auto solved = [&](const char* stage) {
+        Trial trial = sheet(obstacle + "end.time = 0.3\n");
+        solver::Options options;
+        options.loop_tolerance = 1e-8;
+        options.stage = &solver::stage_kind(stage);
+        Moment last = run(trial, method, 0.01, options).back();
+        EXPECT_GT(last.contacts.constrained, 0);
+        return std::pair(std::move(last), trial.cloth.ode.work->count("updates"));
+      };
+      const auto [plain, plain_updates] = solved("fixed-point");
+      for (const char* stage : {"anderson", "auto"}) {
+        const auto [accelerated, updates] = solved(stage);
+        EXPECT_LE(reference::rms_distance(accelerated.y.x, plain.y.x), 1e-6 * 0.3) << obstacle << method << " " << stage;
+        EXPECT_LT(updates, plain_updates / 2) << obstacle << method << " " << stage;
+      }
+    }
 }
 
 /// The distance of a method at h from the reference of a scene, and the reference's own uncertainty, over the sheet's size.

@@ -187,7 +187,7 @@ TEST_P(Relocations, SendBackWithTheirRestitution) {
   }
 }
 
-/// What lies still falls anew in each step, by at most g h².
+/// What lies still falls again in each step, by at most g h².
 TEST_P(Relocations, KeepWhatFellAtTheBorder) {
   const double h = 0.005;
   for (const std::string response : {"reposition", "impulse"}) {

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "bench/runs/record.hpp"
+#include "bench/runs/reference_work.hpp"
 #include "model/collision/self_contacts.hpp"
 #include "solver/contact/pair_search.hpp"
 #include "solver/contact/separation.hpp"
@@ -161,11 +162,47 @@ TEST(SelfContact, HoldsAStackAtRest) {
     EXPECT_LE(rest.v.cwiseAbs().maxCoeff(), 1e-4) << h << ": there is no friction";
     for (int layer = 0; layer < 3; ++layer)
       for (int i = 64 * layer; i < 64 * (layer + 1); ++i) EXPECT_NEAR(rest.x(i, 2), 0.005 * (layer + 1), 1e-4) << h;
+    const double weight = 9.81 * trial.cloth.ode.mass.sum();
+    for (std::size_t k = 1; k < moments.size(); ++k) {
+      const double gained = momentum(trial.cloth.ode, moments[k].y)[2] - momentum(trial.cloth.ode, moments[k - 1].y)[2];
+      EXPECT_NEAR(gained, moments[k].contacts.impulse[2] - h * weight, 1e-6 * h * weight) << h << ", " << moments[k].t;
+    }
     // The floor bears the weight of all layers.
-    EXPECT_NEAR(moments.back().contacts.impulse[2] / h, 9.81 * trial.cloth.ode.mass.sum(),
-                1e-3 * 9.81 * trial.cloth.ode.mass.sum())
-        << h;
+    EXPECT_NEAR(moments.back().contacts.impulse[2] / h, weight, 1e-3 * weight) << h;
   }
+}
+
+/// Two crossed strips whose ends pass each other: a mirror maps one on the other, so that they meet in its plane.
+TEST_P(SelfContactBy, CrossesStripsInTheirMirrorPlane) {
+  const Trial trial = compiled(
+      "grid = { n = [11, 3], size = [0.3, 0.06] }\n"
+      "material = { density = 0.3, tension = 20, damping = 0.2, shear = 1, bend = 1e-5 }\n"
+      "contact = { thickness = 0.005 }\nend = { time = 0.4 }\n"
+      "[[panels]]\nname = 'lower'\nstart.position = [-0.15, -0.03, -0.01]\n"
+      "[[panels]]\nname = 'upper'\nstart.position = [0.03, -0.15, 0.01]\nstart.rotation = [0, 0, 90]\n"
+      "[[pins]]\nwhere = 'left edge'\npanel = 'lower'\nvelocity = [0, 0, 0.05]\n"
+      "[[pins]]\nwhere = 'right edge'\npanel = 'lower'\nvelocity = [0, 0, 0.05]\n"
+      "[[pins]]\nwhere = 'left edge'\npanel = 'upper'\nvelocity = [0, 0, -0.05]\n"
+      "[[pins]]\nwhere = 'right edge'\npanel = 'upper'\nvelocity = [0, 0, -0.05]\n");
+  constexpr int middle = 16, particles = 33;
+  const Vectors x = contact_scenes::run(trial, GetParam(), 0.01).back().y.x;
+  EXPECT_NEAR(x(0, 2), 0.01, 1e-9);
+  EXPECT_NEAR(x(particles, 2), -0.01, 1e-9);
+  EXPECT_NEAR(x(middle, 2), -0.0025, 2e-4);
+  EXPECT_NEAR(x(particles + middle, 2), 0.0025, 2e-4);
+}
+
+/// The impact is inelastic, between equal masses: the centre of the upper plate falls on with half its speed.
+TEST(SelfContact, HasAReferenceOfTwoResponses) {
+  const Trial trial = plates();
+  const std::vector<double> times{0.03, 0.06};
+  const auto truth = bench::compute_reference(trial.scene, trial.cloth, times, {.size = 0.2}, {}, 600);
+  EXPECT_EQ(truth.name, "verlet");
+  EXPECT_EQ(truth.witness, "midpoint");
+  EXPECT_LE(std::ranges::max(truth.error), 0.01 * 0.2);
+  const double met = 0.022 - 0.005;  // [s], at 1 m/s
+  for (std::size_t k = 0; k < times.size(); ++k)
+    EXPECT_NEAR(truth.trajectory.states[k].x.bottomRows(64).col(2).mean(), 0.005 - (times[k] - met) / 2, 2e-4) << times[k];
 }
 
 /// Counts in how many frames of a run cloth intersects itself, or has particles inside obstacles.
