@@ -90,7 +90,8 @@ void AdaptiveSprings::set_matrices() {
 }
 
 /// The pull of a strand along d whose ends part with the velocity u.
-Eigen::Vector3d AdaptiveSprings::pull(const Strand& strand, Part part, const Eigen::Vector3d& d, const Eigen::Vector3d& u) const {
+Eigen::Vector3d AdaptiveSprings::pull(const Strand& strand, Part part, const Eigen::Vector3d& d,
+                                      const Eigen::Vector3d& u) const {
   const bool whole = part == Part::whole;
   const Eigen::Vector3d n = d.normalized();
   Eigen::Vector3d sum = whole ? Eigen::Vector3d(strand.k / strand.length * d - strand.k * n) : Eigen::Vector3d(-strand.k * n);

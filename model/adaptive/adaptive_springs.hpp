@@ -15,8 +15,8 @@ namespace drape::model {
 /// tension and its damping. [Etzmuß 2002, 5.4]
 ///
 /// Virtual particles are found at the beginning of a step and move with the obstacle until it ends. No force acts on them: what
-/// they pull is what the obstacle exerts. In the split equation K and D take k w/r_j and d w/r_j of each end, r_j being the rest
-/// length of its part, and lose the coupling of the ends: constant matrices bound the stiffest parts, however short.
+/// they pull is what the obstacle exerts. In the split equation K and D take k w/r_j and d w/r_j of each end, r_j being the
+/// rest length of its part, and lose the coupling of the ends: constant matrices bound the stiffest parts, however short.
 class AdaptiveSprings : public solver::StepForces {
  public:
   /// `faces`, `places`: of VirtualParticles; `ode`: with K and D of the undivided sheet. Throws as VirtualParticles does.
@@ -76,11 +76,11 @@ class AdaptiveSprings : public solver::StepForces {
   std::vector<Edge> edges_;
   std::vector<Spring> springs_;  ///< aligned with the edges
   std::vector<int> divided_;
-  std::vector<End> ends_;                            ///< two for each divided spring
-  SparseMatrix whole_stiffness_, whole_damping_;     ///< K and D of the sheet
-  SparseMatrix stiffness_, damping_;                 ///< and of now
-  double t_ = 0;    ///< when the step begins [s]
-  Vectors x_;       ///< then; empty before the first step
+  std::vector<End> ends_;                         ///< two for each divided spring
+  SparseMatrix whole_stiffness_, whole_damping_;  ///< K and D of the sheet
+  SparseMatrix stiffness_, damping_;              ///< and of now
+  double t_ = 0;                                  ///< when the step begins [s]
+  Vectors x_;                                     ///< then; empty before the first step
   std::vector<Eigen::Vector3d> positions_, velocities_;
   std::int64_t changes_ = 0;
   std::int64_t &searches_, &divided_springs_;

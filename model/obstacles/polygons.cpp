@@ -73,8 +73,7 @@ Polygons ringed_sphere(int vertices) {
     }
   }
   for (int k = 1; k < first[1]; ++k) sphere.faces.push_back({0, k + 1 < first[1] ? k + 1 : 1, k});
-  for (int k = first[rings - 1]; k < last; ++k)
-    sphere.faces.push_back({last, k, k + 1 < last ? k + 1 : first[rings - 1]});
+  for (int k = first[rings - 1]; k < last; ++k) sphere.faces.push_back({last, k, k + 1 < last ? k + 1 : first[rings - 1]});
   return sphere;
 }
 

@@ -9,18 +9,6 @@ namespace drape::verify {
 
 using Eigen::Vector3d;
 
-model::TriangleMesh box_mesh(const Vector3d& size) {
-  model::TriangleMesh mesh{"the box", {}, {}};
-  for (int k = 0; k < 8; ++k)
-    mesh.vertices.push_back((Vector3d(k & 1, (k >> 1) & 1, k >> 2) - Vector3d::Constant(0.5)).cwiseProduct(size));
-  constexpr int sides[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
-  for (const auto& [a, b, c, d] : sides) {
-    mesh.triangles.push_back({a, b, c});
-    mesh.triangles.push_back({a, c, d});
-  }
-  return mesh;
-}
-
 model::TriangleMesh ball_mesh(double radius, int times) {
   model::TriangleMesh mesh{"the ball", {}, {}};
   constexpr double phi = std::numbers::phi;

@@ -7,11 +7,9 @@
 
 #include "model/obstacles/triangle_mesh.hpp"
 #include "solver/state.hpp"
+#include "verify/support/mesh_files.hpp"
 
 namespace drape::verify {
-
-/// A closed box around the origin, with two triangles a side [m].
-model::TriangleMesh box_mesh(const Eigen::Vector3d& size);
 
 /// A closed ball around the origin: an icosahedron whose triangles are quartered a number of times. 30 · 4^times edges.
 model::TriangleMesh ball_mesh(double radius, int times);

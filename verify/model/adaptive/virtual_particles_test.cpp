@@ -359,7 +359,8 @@ std::string error_of(const std::vector<std::array<int, 3>>& faces, const Triangl
 
 TEST(VirtualParticles, NeedAClosedObstacleWithAVolume) {
   const std::vector<std::array<int, 3>> faces{{0, 1, 2}, {3, 2, 1}};
-  const TriangleMesh box = box_mesh({1, 1, 1});
+  TriangleMesh box = box_mesh({1, 1, 1});
+  box.name = "the box";
   EXPECT_EQ(error_of(faces, box), "");
 
   TriangleMesh open = box;
