@@ -222,18 +222,25 @@ void Integrator::follow_step_forces() {
 }
 
 /// The sum of these forces, without what pins bear [N].
-Eigen::Vector3d Integrator::step_force(double t, const State& y) {
-  step_.ode.step_forces->of_obstacles(t, y, scratch_.f_hat);
+Eigen::Vector3d Integrator::step_force(StepForces::Part part, double t, const State& y) {
+  step_.ode.step_forces->of_obstacles(part, t, y, scratch_.f_hat);
   filter(step_.ode.pins, scratch_.f_hat);
   return scratch_.f_hat.colwise().sum();
 }
 
-/// Their impulse: exact for implicit Euler, by the trapezoidal rule for what is more accurate.
+/// Their impulse: as the method has it if it is one of Euler's, by the trapezoidal rule for what is more accurate.
 void Integrator::sum_step_forces() {
+  using enum StepForces::Part;
   if (!step_.ode.step_forces) return;
-  const Eigen::Vector3d end = step_force(step_.t + step_.h, next_.y);
-  const bool of_end = method_.implicit() && method_.order == 1;
-  forced_ = step_.h * (of_end ? end : 0.5 * (step_force(step_.t, state()) + end));
+  const double begin = step_.t, end = step_.t + step_.h;
+  const bool implicit_euler = method_.order == 1 && method_.implicit();
+  if (!implicit_euler) {
+    forced_ = step_.h / 2 * (step_force(whole, begin, state()) + step_force(whole, end, next_.y));
+    return;
+  }
+  forced_ = step_.h * step_force(whole, end, next_.y);
+  if (method_.stages == Method::Stages::linear)
+    forced_ += step_.h * (step_force(without_linear, begin, state()) - step_force(without_linear, end, next_.y));
 }
 
 void Integrator::renew_matrices() {

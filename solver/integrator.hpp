@@ -59,7 +59,7 @@ class Integrator {
   void follow_stiffness();
   void follow_step_forces();
   void renew_matrices();
-  Eigen::Vector3d step_force(double t, const State& y);
+  Eigen::Vector3d step_force(StepForces::Part part, double t, const State& y);
   void sum_step_forces();
   void begin_contacts(double h);
   bool hit_hard() const;

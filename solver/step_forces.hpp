@@ -21,8 +21,11 @@ class StepForces {
   virtual const SparseMatrix& stiffness() const = 0;
   virtual const SparseMatrix& damping() const = 0;
 
-  /// Sets f (N × 3) to the forces that obstacles exert on particles by them [N].
-  virtual void of_obstacles(double t, const State& y, Vectors& f) const = 0;
+  /// What is not linear is explicit to methods that split forces.
+  enum class Part { whole, without_linear };
+
+  /// Sets f (N × 3) to the forces that obstacles exert on particles by them [N], all of them or without what K x + D v has.
+  virtual void of_obstacles(Part part, double t, const State& y, Vectors& f) const = 0;
 };
 
 }  // namespace drape::solver

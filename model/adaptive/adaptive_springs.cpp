@@ -122,9 +122,9 @@ void AdaptiveSprings::add(Part part, double t, const Vectors& x, const Vectors& 
   }
 }
 
-void AdaptiveSprings::of_obstacles(double t, const solver::State& y, Vectors& f) const {
+void AdaptiveSprings::of_obstacles(Part part, double t, const solver::State& y, Vectors& f) const {
   f.setZero(y.x.rows(), 3);
-  for (const End& end : ends_) f.row(end.node) += pull(end, Part::whole, t, y.x, y.v);
+  for (const End& end : ends_) f.row(end.node) += pull(end, part, t, y.x, y.v);
 }
 
 void AdaptiveSprings::visit(double t, const Vectors& x, const Vectors& v, const JacobianEntries& entries) const {

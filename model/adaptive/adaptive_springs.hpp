@@ -27,7 +27,7 @@ class AdaptiveSprings : public solver::StepForces {
   std::int64_t changes() const override { return changes_; }
   const SparseMatrix& stiffness() const override { return stiffness_; }
   const SparseMatrix& damping() const override { return damping_; }
-  void of_obstacles(double t, const solver::State& y, Vectors& f) const override;
+  void of_obstacles(Part part, double t, const solver::State& y, Vectors& f) const override;
 
   /// Adds the forces to f (N × 3) [N], all of them or what is not in K x + D v.
   void add(double t, const Vectors& x, const Vectors& v, Vectors& f) const { add(Part::whole, t, x, v, f); }
@@ -57,9 +57,6 @@ class AdaptiveSprings : public solver::StepForces {
     Strand strand;
     int first = -1;  ///< of its two parts, from i and from j; −1: it is not divided
   };
-
-  /// All of a pull, or what is not in K x + D v.
-  enum class Part { whole, without_linear };
 
   Strand strand(const Edge& edge, double length) const;
   void divide(const DividedSpring& divided);

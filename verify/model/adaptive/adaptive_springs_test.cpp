@@ -219,29 +219,32 @@ INSTANTIATE_TEST_SUITE_P(, Balance, testing::ValuesIn(methods()), [](const auto&
   return name;
 });
 
-/// The weight of a sheet that lies over an edge is what its virtual particles bear.
+/// The weight of a sheet that lies over a bar is what its virtual particles bear. Both methods of Euler say so to the tolerance
+/// of their stages, the others as far as the trapezoidal rule is right.
 TEST_P(Balance, ClosesWithTheImpulsesOfVirtualParticles) {
   const std::string& method = GetParam();
+  const bool exact = method == "implicit-euler" || method == "imex-euler";
   const Trial four = builtin("box_four");
-  const double h = 0.005, weight = 9.81 * four.cloth.ode.mass.sum();
-  const auto moments = run(four, method, h);
+  const double h = 0.001, weight = g * four.cloth.ode.mass.sum();
+  solver::Options tight;
+  tight.loop_tolerance = tight.cg_tolerance = 1e-12;
+  tight.stage = &solver::stage_kind("newton");
+  const auto moments = run(four, method, h, tight);
+  const auto momentum = [&](const Moment& moment) { return Eigen::Vector3d(moment.y.v.transpose() * four.cloth.ode.mass); };
   Eigen::Vector3d off = Eigen::Vector3d::Zero();
   double most = 0, borne = 0;
   for (std::size_t k = 1; k < moments.size(); ++k) {
-    const auto momentum = [&](const Moment& moment) { return Eigen::Vector3d(moment.y.v.transpose() * four.cloth.ode.mass); };
-    const double taken = moments[k].t - moments[k - 1].t;
-    const Eigen::Vector3d step =
-        momentum(moments[k]) - momentum(moments[k - 1]) - moments[k].contacts.impulse - taken * Eigen::Vector3d(0, 0, -weight);
-    off += step;
-    most = std::max(most, step.norm());
+    const Eigen::Vector3d fallen = (moments[k].t - moments[k - 1].t) * Eigen::Vector3d(0, 0, -weight);
+    const Eigen::Vector3d missing = momentum(moments[k]) - momentum(moments[k - 1]) - moments[k].contacts.impulse - fallen;
+    off += missing;
+    most = std::max(most, missing.norm());
     borne += moments[k].contacts.impulse.z();
   }
   const double total = weight * four.scene.end;
-  fmt::print("{:24} off {:.2e} of the weight's impulse, {:.2e} in a step, borne {:.4f}\n", method, off.norm() / total,
-             most / (h * weight), borne / total);
-  EXPECT_LE(off.norm(), 0.02 * total);
-  if (method == "implicit-euler") {
-    EXPECT_LE(most, 1e-6 * h * weight);
+  EXPECT_LE(off.norm(), 0.01 * total);
+  EXPECT_GT(borne, 0.5 * total);
+  if (exact) {
+    EXPECT_LE(most, 1e-7 * h * weight);
   }
 }
 
