@@ -19,6 +19,8 @@ using solver::SparseMatrix;
 using solver::State;
 using solver::Vectors;
 
+constexpr double g = 9.81;
+
 /// A square sheet of 0.4 m, its front upward at height 0, with a bar along y in it: from 0.085 to 0.295 m, its top at a height.
 std::string over_a_bar(int n, double top, const std::string& more = "") {
   return fmt::format(
