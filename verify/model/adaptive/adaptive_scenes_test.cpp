@@ -79,6 +79,7 @@ TEST_P(AdaptiveScene, HasNoFaceThroughItsObstacle) {
   }
   EXPECT_EQ(refined, 0) << "of " << frames << " frames, at " << testing::PrintToString(bad);
   EXPECT_GT(whole, frames / 4) << "there is something to refine";
+  EXPECT_GT(trial.cloth.ode.work->counter("divided_springs", ""), frames) << "and forces depend on it";
 }
 
 /// [Etzmuß 2002, 5.2, fig. 5.13]

@@ -230,6 +230,7 @@ TEST_P(Balance, ClosesWithTheImpulsesOfVirtualParticles) {
   const double h = 0.001, weight = g * four.cloth.ode.mass.sum();
   solver::Options tight;
   tight.loop_tolerance = tight.cg_tolerance = 1e-12;
+  tight.stage_accuracy = 1e-10;
   tight.stage = &solver::stage_kind("newton");
   const auto moments = run(four, method, h, tight);
   const auto momentum = [&](const Moment& moment) { return Eigen::Vector3d(moment.y.v.transpose() * four.cloth.ode.mass); };
