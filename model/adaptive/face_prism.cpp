@@ -74,6 +74,7 @@ unsigned FacePrism::sides_inside(const std::array<Eigen::Vector4d, 3>& corners) 
   Polygon inside;
   for (int k = 0; k < 3; ++k) inside.add(corners[k], 1U << k);
   for (int k = 0; k < planes; ++k) {
+    if (std::ranges::all_of(corners, [k](const Eigen::Vector4d& distances) { return distances[k] >= 0; })) continue;
     Polygon cut;
     for (int c = 0; c < inside.size; ++c) {
       const Corner &from = inside.corners[c], &to = inside.corners[(c + 1) % inside.size];

@@ -56,10 +56,18 @@ VirtualParticles::VirtualParticles(std::span<const std::array<int, 3>> faces, co
       pairs_(work.counter("adaptive_pairs", "pairs of triangles of the sheet and the obstacle that were intersected")),
       steps_(work.counter("adaptive_steps", "triangles of the obstacle that were clipped by a prism of the sheet")) {}
 
+/// Costs nothing while the obstacle rests.
+void VirtualParticles::move_obstacle(std::span<const Vector3d> vertices) {
+  if (std::ranges::equal(vertices, vertices_)) return;
+  vertices_.assign(vertices.begin(), vertices.end());
+  body_ = corners_at(obstacle_, items_of(vertices));
+  obstacle_tree_.refit(boxes_of(body_));
+}
+
 Insertion VirtualParticles::find(const Vectors& x, std::span<const Vector3d> vertices) {
-  const std::vector<Corners> cloth = corners_at(sheet_, rows_of(x)), body = corners_at(obstacle_, items_of(vertices));
+  const std::vector<Corners> cloth = corners_at(sheet_, rows_of(x));
   sheet_tree_.refit(boxes_of(cloth));
-  obstacle_tree_.refit(boxes_of(body));
+  move_obstacle(vertices);
   std::vector<std::array<int, 2>> near;
   sheet_tree_.overlapping_pairs(obstacle_tree_, [&](int face, int triangle) { near.push_back({face, triangle}); });
   std::ranges::sort(near);  // so that the order of particles does not depend on the trees
@@ -68,7 +76,7 @@ Insertion VirtualParticles::find(const Vectors& x, std::span<const Vector3d> ver
   for (const auto& [face, triangle] : near) {
     if (!march.can_enter(face, triangle)) continue;
     ++pairs_;
-    if (intersect(cloth[face], body[triangle])) march.enter(face, triangle);
+    if (intersect(cloth[face], body_[triangle])) march.enter(face, triangle);
   }
   return march.insertion();
 }

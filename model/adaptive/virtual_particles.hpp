@@ -38,8 +38,12 @@ class VirtualParticles {
   Insertion find(const solver::Vectors& x, std::span<const Eigen::Vector3d> vertices);
 
  private:
+  void move_obstacle(std::span<const Eigen::Vector3d> vertices);
+
   EdgeMesh sheet_, obstacle_;
   BoxTree sheet_tree_, obstacle_tree_;
+  std::vector<Eigen::Vector3d> vertices_;  ///< of the obstacle where it was last; empty before
+  std::vector<Corners> body_;              ///< its triangles there
   std::int64_t &pairs_, &steps_;
 };
 
