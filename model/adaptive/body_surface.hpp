@@ -26,6 +26,7 @@ class BodySurface {
   void place(double t, std::vector<Eigen::Vector3d>& positions, std::vector<Eigen::Vector3d>& velocities) const;
 
  private:
+  void add(const ObstacleRule& rule);
   void place(double t, std::vector<Eigen::Vector3d>& positions) const;
 
   std::vector<PosedObstacle> bodies_;
