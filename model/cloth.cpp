@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/adaptive/adaptive_springs.hpp"
 #include "model/collision/cloth_pairs.hpp"
 #include "model/garment_forces.hpp"
 #include "model/obstacles/reaction.hpp"
@@ -21,13 +22,40 @@ int count_fixed(const std::vector<solver::Pin>& pins) {
   return count;
 }
 
-/// The forces of obstacles, if that is how they act: at most one is not null.
+/// The forces of obstacles, if that is how they act: at most one of the first two is not null.
 struct ContactForces {
   std::shared_ptr<Reaction> reaction;
   std::shared_ptr<Repulsion> repulsion;
+  std::shared_ptr<AdaptiveSprings> adaptive;
 
-  bool any() const { return reaction || repulsion; }
+  bool any() const { return reaction || repulsion || adaptive; }
 };
+
+/// Adds the forces of springs that obstacles divide to those of the ODE; null if no obstacle has edges.
+std::shared_ptr<AdaptiveSprings> adapt(const Scene& scene, const Garment& garment, GarmentForces& forces,
+                                       solver::SplitOde& ode) {
+  BodySurface bodies(scene.obstacles);
+  if (bodies.empty()) return {};
+  const Garment::Panel& panel = garment.panels().front();
+  auto adaptive = std::make_shared<AdaptiveSprings>(panel.sheet, ClothSurface(garment).triangles(), garment.start().x,
+                                                    std::move(bodies), ode);
+  ode.compliant_constraints = {};  // which stand for whole springs
+  ode.unconstrained_force = {};
+  ode.force = [=, others = ode.force](double t, const Vectors& x, const Vectors& v, Vectors& f) {
+    others(t, x, v, f);
+    adaptive->add(t, x, v, f);
+  };
+  ode.explicit_force = [=, others = ode.explicit_force](double t, const Vectors& x, const Vectors& v, Vectors& f) {
+    others(t, x, v, f);
+    adaptive->add_explicit(t, x, v, f);
+  };
+  forces.also_visit([adaptive](double t, const Vectors& x, const Vectors& v, const JacobianEntries& entries) {
+    adaptive->visit(t, x, v, entries);
+  });
+  ode.without_energy.emplace_back("virtual particles");
+  ode.step_forces = adaptive;
+  return adaptive;
+}
 
 std::shared_ptr<Repulsion> repel(const ContactRule& rule, const std::shared_ptr<Contacts>& contacts, GarmentForces& forces,
                                  solver::SplitOde& ode) {
@@ -69,8 +97,8 @@ std::shared_ptr<Reaction> react(const ContactRule& rule, const std::shared_ptr<C
 /// Lets the obstacles act, by constraints in the solver, after steps, or by forces, which it returns.
 ContactForces respond(const ContactRule& rule, const std::shared_ptr<Contacts>& contacts, GarmentForces& forces,
                       solver::SplitOde& ode) {
-  if (rule.response == ResponseKind::reaction) return {react(rule, contacts, ode), {}};
-  if (is_force(rule.response)) return {{}, repel(rule, contacts, forces, ode)};
+  if (rule.response == ResponseKind::reaction) return {react(rule, contacts, ode), {}, {}};
+  if (is_force(rule.response)) return {{}, repel(rule, contacts, forces, ode), {}};
   if (relocates(rule.response))
     ode.relocate = Relocation(contacts, rule);
   else
@@ -102,10 +130,11 @@ solver::SplitOde::Force given(const std::shared_ptr<GarmentForces>& forces, cons
     else
       f.setZero(x.rows(), 3);
     const bool reacts = contact.reaction && contact.reaction->acts(t, x);
-    if (!moved && !reacts && !contact.repulsion) return;
+    if (!moved && !reacts && !contact.repulsion && !contact.adaptive) return;
     forces->uncounted_force(ForcePart::whole, t, x, v, whole);
     total = whole;
-    if (reacts) contact.reaction->add(v, whole, total);
+    if (contact.adaptive) contact.adaptive->add(t, x, v, total);
+    if (reacts) contact.reaction->add(v, Vectors(total), total);
     if (contact.repulsion) contact.repulsion->add(t, x, v, total);
     f += total - whole;
     if (moved) keep_moved(pins, total, f);
@@ -170,7 +199,10 @@ Cloth compile(const Scene& scene, std::shared_ptr<const Garment> garment, solver
   ContactForces contact;
   if (!scene.obstacles.empty()) {
     cloth.contacts = std::make_shared<Contacts>(contacts(scene, *ode.work));
+    std::shared_ptr<AdaptiveSprings> adaptive;
+    if (scene.contact.adaptive) adaptive = adapt(scene, *cloth.garment, *forces, ode);
     contact = respond(scene.contact, cloth.contacts, *forces, ode);
+    contact.adaptive = std::move(adaptive);
   }
   const std::span<const ObstacleRule> met = scene.contact.faces ? std::span(scene.obstacles) : std::span<const ObstacleRule>();
   if (scene.contact.thickness > 0 || !met.empty())

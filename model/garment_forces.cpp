@@ -104,7 +104,7 @@ std::vector<solver::CompliantConstraint> GarmentForces::constraints() const {
 
 void GarmentForces::visit(const Moment& now, const JacobianEntries& entries) {
   const auto& [t, x, v] = now;
-  if (also_visit_) also_visit_(t, x, v, entries);
+  for (const VisitForce& also : also_visit_) also(t, x, v, entries);
   if (Part& part = parts_.front(); part.panel.nodes.empty()) return part.forces.visit(t, x, v, entries);
   for (Part& part : parts_) {
     const auto by_nodes = [&panel = part.panel](const JacobianEntries::Add& add) {

@@ -30,9 +30,9 @@ class GarmentForces {
   std::vector<std::string> names() const;  ///< of all forces that some panel has
   std::vector<std::string> without_energy() const;
 
-  /// A force of nodes on themselves, whose blocks are to be in the Jacobians; the same ones in the same order at each call.
+  /// A force beside those of panels, whose blocks are to be in the Jacobians; the same ones in the same order at each call.
   using VisitForce = std::function<void(double t, const Vectors& x, const Vectors& v, const JacobianEntries& entries)>;
-  void also_visit(VisitForce visit) { also_visit_ = std::move(visit); }
+  void also_visit(VisitForce visit) { also_visit_.push_back(std::move(visit)); }
 
   ClothMemory& memory() { return memory_; }
   double energy(const Vectors& x);
@@ -73,7 +73,7 @@ class GarmentForces {
   std::vector<Part> parts_;
   std::vector<Kind> kinds_;
   ClothMemory memory_;
-  VisitForce also_visit_;  ///< may be absent
+  std::vector<VisitForce> also_visit_;
   Vectors x1_;
   std::int64_t &forces_, &explicit_forces_, &jacobians_, &newton_matrices_, &normal_evaluations_;
 };

@@ -63,7 +63,7 @@ std::string describe(Outcome outcome, const StageResult& result, double t, doubl
 Integrator::Integrator(const SplitOde& ode, const Method& method, const Options& options, State y0, double t0)
     : options_(options),
       method_(method),
-      own_(ode.memory ? std::optional<SplitOde>(ode) : std::nullopt),
+      own_(ode.memory || ode.step_forces ? std::optional<SplitOde>(ode) : std::nullopt),
       history_(history_points(method, options), method.forces, first_point(ode, method, t0, std::move(y0))),
       next_(history_[0]),
       scratch_{Vectors::Zero(ode.particles(), 3), Vectors::Zero(ode.particles(), 3), Vectors::Zero(ode.particles(), 3), {}},
@@ -123,6 +123,7 @@ StageResult Integrator::step(double h) {
   ++steps_;
   starting_ += step_.starting ? 1 : 0;
   step_.after_impact = hard;
+  sum_step_forces();
   finish_contacts();
   remember(step_.h, hard || part < 1);
   return result;
@@ -140,6 +141,7 @@ bool Integrator::attempt(double h) {
   next_.has_f = false;
   step_.recall();
   follow_stiffness();
+  follow_step_forces();
   begin_contacts(h);
   method_.step(step_);
   bool hard = hit_hard();
@@ -196,13 +198,52 @@ bool Integrator::attempt_again(double h) {
 
 /// The explicit forces of the history are those without K x: the K of now.
 void Integrator::follow_stiffness() {
-  if (!own_ || own_->memory->stiffness_changes() == stiffness_changes_) return;
+  if (!step_.ode.memory || own_->memory->stiffness_changes() == stiffness_changes_) return;
   stiffness_changes_ = own_->memory->stiffness_changes();
   const SparseMatrix less = own_->stiffness - own_->memory->stiffness();
   own_->stiffness = own_->memory->stiffness();
   if (method_.stages == Method::Stages::linear)
     for (int k = 0; k < method_.forces; ++k)
       if (history_[k].has_f) history_[k].f += less * history_[k].y.x;
+  renew_matrices();
+}
+
+/// Forces of the history are those of steps before: methods that combine them need the forces of this step.
+void Integrator::follow_step_forces() {
+  const auto& forces = step_.ode.step_forces;
+  if (!forces) return;
+  forces->begin(step_.t, state());
+  if (forces->changes() == force_changes_) return;
+  force_changes_ = forces->changes();
+  own_->stiffness = forces->stiffness();
+  own_->damping = forces->damping();
+  for (int k = 0; k < method_.forces; ++k) history_[k].has_f = false;
+  renew_matrices();
+}
+
+/// The sum of these forces, without what pins bear [N].
+Eigen::Vector3d Integrator::step_force(StepForces::Part part, double t, const State& y) {
+  step_.ode.step_forces->of_obstacles(part, t, y, scratch_.f_hat);
+  filter(step_.ode.pins, scratch_.f_hat);
+  return scratch_.f_hat.colwise().sum();
+}
+
+/// Their impulse: as the method has it if it is one of Euler's, by the trapezoidal rule for what is more accurate.
+void Integrator::sum_step_forces() {
+  using enum StepForces::Part;
+  if (!step_.ode.step_forces) return;
+  const double begin = step_.t, end = step_.t + step_.h;
+  const bool implicit_euler = method_.order == 1 && method_.implicit();
+  if (!implicit_euler) {
+    forced_ = step_.h / 2 * (step_force(whole, begin, state()) + step_force(whole, end, next_.y));
+    return;
+  }
+  forced_ = step_.h * step_force(whole, end, next_.y);
+  if (method_.stages == Method::Stages::linear)
+    forced_ += step_.h * (step_force(without_linear, begin, state()) - step_force(without_linear, end, next_.y));
+}
+
+void Integrator::renew_matrices() {
   if (stage_) stage_->renew();
   kept_.reset();
   sub_stepping_.limit = 0;
@@ -316,10 +357,10 @@ void Integrator::remember(double h, bool restart) {
 }
 
 ContactReport Integrator::contacts() const {
-  if (step_.ode.relocate) return relocated_;
-  if (contacts_) return {contacts_->constrained(), contacts_->impulse() + separated_, contacts_->work()};
-  if (impacts_) return {impacts_->constrained(), impacts_->impulse() + separated_, impacts_->work()};
-  return {};
+  if (step_.ode.relocate) return {relocated_.constrained, relocated_.impulse + forced_, relocated_.work};
+  if (contacts_) return {contacts_->constrained(), contacts_->impulse() + separated_ + forced_, contacts_->work()};
+  if (impacts_) return {impacts_->constrained(), impacts_->impulse() + separated_ + forced_, impacts_->work()};
+  return {0, forced_, 0};
 }
 
 /// Compensated summation: else the round-off of a million steps would reach the size of a step.

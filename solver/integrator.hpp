@@ -13,7 +13,7 @@ namespace drape::solver {
 /// Contacts of one step.
 struct ContactReport {
   int constrained = 0;                                ///< number of particles that touched an obstacle
-  Eigen::Vector3d impulse = Eigen::Vector3d::Zero();  ///< given to the particles [N s]
+  Eigen::Vector3d impulse = Eigen::Vector3d::Zero();  ///< given to the particles, also by StepForces [N s]
   double work = 0;                                    ///< done on the particles by these impulses [J]
 };
 
@@ -57,6 +57,10 @@ class Integrator {
   bool end_behind_kink(double part);
   bool attempt_again(double h);
   void follow_stiffness();
+  void follow_step_forces();
+  void renew_matrices();
+  Eigen::Vector3d step_force(StepForces::Part part, double t, const State& y);
+  void sum_step_forces();
   void begin_contacts(double h);
   bool hit_hard() const;
   bool relocate();
@@ -70,7 +74,7 @@ class Integrator {
 
   const Options options_;
   const Method& method_;
-  std::optional<SplitOde> own_;              ///< with the K of now, if forces remember the motion
+  std::optional<SplitOde> own_;              ///< with the K and D of now, if they change
   std::optional<ContactResponse> contacts_;  ///< of implicit methods
   std::optional<ImpactResponse> impacts_;    ///< of explicit ones
   std::optional<Separation> separation_;     ///< if the cloth meets itself
@@ -86,11 +90,12 @@ class Integrator {
   State found_;                                          ///< the end of the step before a response changes it
   ContactReport relocated_;                              ///< what that did
   Eigen::Vector3d separated_ = Eigen::Vector3d::Zero();  ///< impulse of obstacles under pairs that were pushed apart [N s]
+  Eigen::Vector3d forced_ = Eigen::Vector3d::Zero();     ///< impulse of obstacles by forces of the step [N s]
   Step step_;
   const bool extrapolates_;  ///< whether the history is longer than the method needs
   double tolerance_;
   double error_ = 0;
-  std::int64_t stiffness_changes_ = 0;
+  std::int64_t stiffness_changes_ = 0, force_changes_ = 0;
   double lost_time_ = 0;  ///< round-off added to the time [s]
   std::int64_t &steps_, &rejected_, &starting_, &kinks_;
 };

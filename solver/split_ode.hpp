@@ -9,6 +9,7 @@
 #include "solver/counters.hpp"
 #include "solver/memory.hpp"
 #include "solver/state.hpp"
+#include "solver/step_forces.hpp"
 
 namespace drape::solver {
 
@@ -88,6 +89,9 @@ struct SplitOde {
   /// Null if no force remembers the motion. Else forces are those of the state that it has passed last, or of a path from
   /// there.
   std::shared_ptr<Memory> memory;
+
+  /// Null if obstacles are no part of the forces, or not anew in each step.
+  std::shared_ptr<StepForces> step_forces;
 
   /// Adds to the force f(t, (x0 + x1)/2, v) what the mean force between these positions has more: a discrete gradient, whose
   /// work along x1 − x0 is the potential energy that is lost, and which keeps both momenta that the force keeps. Absent:

@@ -37,7 +37,7 @@ const std::vector<Room> rooms = {
     {"solver/base", {"solver/base/"}, {}},
     {"solver's vocabulary",
      {"solver/counters.", "solver/filter.", "solver/memory.", "solver/outcome.", "solver/split_ode.", "solver/stage.",
-      "solver/state."},
+      "solver/state.", "solver/step_forces."},
      {"solver/base"}},
     {"solver/linear", {"solver/linear/"}, {"solver's vocabulary"}},
     {"solver/contact", {"solver/contact/"}, {"solver's vocabulary"}},
@@ -58,7 +58,8 @@ const std::vector<Room> rooms = {
      {"model/scene.", "model/garment.", "model/outline_mesh.", "model/trimmed_surface."},
      {"model/forces", "model/obstacles"}},
     {"model/collision", {"model/collision/"}, {"model's scenes"}},
-    {"model", {"model/"}, {"model/jacobian", "model/obstacles/shapes", "model/collision"}},
+    {"model/adaptive", {"model/adaptive/"}, {"model/collision"}},
+    {"model", {"model/"}, {"model/jacobian", "model/obstacles/shapes", "model/adaptive"}},
     {"model/scene_file", {"model/scene_file/"}, {"model"}},
     {"model/pattern", {"model/pattern/"}, {"model/scene_file"}},
 
@@ -120,7 +121,7 @@ const std::vector<Confined> confined_libraries = {
     {{"cholmod", "suitesparse/cholmod", "Eigen/CholmodSupport"}, {"solver/linear/"}},
     {{"klu", "suitesparse/klu"}, {"solver/linear/klu_factor.cpp"}},
     {{"assimp/"}, {"model/obstacles/mesh_file.cpp"}},
-    {{"CGAL/"}, {"model/outline_mesh.cpp", "model/collision/exact_intersection.cpp"}},
+    {{"CGAL/"}, {"model/outline_mesh.cpp", "model/adaptive/face_triangulation.cpp", "model/collision/exact_intersection.cpp"}},
     {{"glpk.h"}, {"model/pattern/quad_layout.cpp"}},
     {{"unsupported/Eigen/BVH"}, {"model/trimmed_surface.cpp"}},
 };

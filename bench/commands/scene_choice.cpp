@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "bench/runs/available_memory.hpp"
+#include "model/adaptive/sheet_refinement.hpp"
 #include "model/at_rest.hpp"
 #include "model/clear_cloth.hpp"
 #include "model/clear_start.hpp"
@@ -20,6 +21,7 @@ model::Scene SceneChoice::load() const {
   model::Scene loaded = model::load_scene(scene, overrides);
   require_memory(loaded);
   try {
+    model::require_bodies(loaded);
     model::require_clear_start(loaded);
     model::require_clear_cloth(loaded);
   } catch (const std::invalid_argument& error) {

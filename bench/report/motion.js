@@ -18,6 +18,7 @@ function unpack(trajectory, surfaces) {
     positions: new Float32Array(bytesOf(trajectory.positions).buffer),
     constraint: bytesOf(trajectory.constraint),
     trim: unpackTrim(trajectory.trim),
+    refined: trajectory.trim ? null : unpackRefined(trajectory.refined),
     obstacles,
     missing: [
       ...trajectory.obstacles.missing.map((why) => `An obstacle is not drawn: ${why}`),
@@ -36,6 +37,32 @@ function unpackTrim(trim) {
   };
 }
 
+/** The sheet with its virtual particles, frame by frame. */
+function unpackRefined(frames) {
+  if (!frames) return null;
+  return frames.map(({vertices, nearest, triangles}) => ({
+                      vertices: new Float32Array(bytesOf(vertices).buffer),
+                      nearest: new Uint32Array(bytesOf(nearest).buffer),
+                      triangles: new Uint32Array(bytesOf(triangles).buffer)
+                    }));
+}
+
+const longest = (frames, part) => Math.max(...frames.map((frame) => frame[part].length));
+
+/** Draws the virtual particles of the frame before a time, each in the colour of the particle that is nearest. */
+export function placeRefined({motion, geometry, drawn}, t) {
+  const {vertices, nearest, triangles} = motion.refined[framesAt(motion.times, t).below];
+  const {position, color} = drawn.attributes, first = 3 * motion.particles;
+  position.array.set(geometry.attributes.position.array);
+  position.array.set(vertices, first);
+  color.array.set(geometry.attributes.color.array);
+  nearest.forEach((i, k) => color.array.copyWithin(first + 3 * k, 3 * i, 3 * i + 3));
+  drawn.index.array.fill(0);
+  drawn.index.array.set(triangles);
+  drawn.index.needsUpdate = position.needsUpdate = color.needsUpdate = true;
+  drawn.setDrawRange(0, triangles.length);
+}
+
 /** Writes what particles have, three numbers each, to the vertices of the mesh that rides on them. */
 export function carry({particles, weights}, from, to) {
   for (let i = 0; i < to.length; ++i) {
@@ -45,7 +72,8 @@ export function carry({particles, weights}, from, to) {
 }
 
 /** The particle to which a vertex of what is drawn is nearest. */
-export function particleOf({trim}, vertex) {
+export function particleOf({trim, refined, particles, times}, vertex, t) {
+  if (refined && vertex >= particles) return refined[framesAt(times, t).below].nearest[vertex - particles];
   if (!trim) return vertex;
   const weights = trim.weights.subarray(3 * vertex, 3 * vertex + 3);
   return trim.particles[3 * vertex + weights.indexOf(Math.max(...weights))];
@@ -225,6 +253,8 @@ function makeCloth(motion, geometry) {
   const chain = !motion.trim && motion.panels.every(([nu, nv]) => nu === 1 || nv === 1);
   if (motion.trim)
     geometry.setIndex(new THREE.BufferAttribute(motion.trim.triangles, 1));
+  else if (motion.refined)
+    geometry.setIndex(new THREE.BufferAttribute(new Uint32Array(longest(motion.refined, "triangles")), 1));
   else if (!chain)
     geometry.setIndex(cellTriangles(motion));
   const cloth = chain ?
@@ -250,7 +280,9 @@ function makeGeometry(count) {
 /** What three.js draws of one run: `geometry` has the particles, `drawn` the vertices of the cloth. */
 function makeScene(motion) {
   const geometry = makeGeometry(3 * motion.particles);
-  const drawn = motion.trim ? makeGeometry(motion.trim.particles.length) : geometry;
+  const drawn = motion.trim ? makeGeometry(motion.trim.particles.length) :
+      motion.refined        ? makeGeometry(3 * motion.particles + longest(motion.refined, "vertices")) :
+                              geometry;
   const {chain, cloth, lines} = makeCloth(motion, drawn), bodies = motion.obstacles.map(makeObstacle);
   const marks = constraints.filter((mark) => hasMarks(motion, mark))
                     .map((mark) => makeMarks(mark, geometry.attributes.position, motion.particles));

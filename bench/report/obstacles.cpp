@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "bench/report/base64.hpp"
+#include "model/adaptive/sheet_refinement.hpp"
 #include "model/obstacles/contacts.hpp"
 #include "model/obstacles/surface.hpp"
 #include "model/scene_file/scene_file.hpp"
@@ -146,6 +147,30 @@ Json page_trim(const results::RunRecord& run) try {
           {"triangles", packed(triangles(surface->at(run.trajectory->states.front().x)))}};
 } catch (const std::exception& error) {  // its file is gone, or the record is of a program whose scenes were others
   return {{"missing", error.what()}};
+}
+
+Json page_refined(const results::RunRecord& run) try {
+  const Readable read = read_obstacles(run);
+  if (!read.scene.contact.adaptive || !read.missing.empty()) return nullptr;
+  model::SheetRefinement refinement(model::Garment(read.scene), read.scene.obstacles);
+  const results::TrajectoryRecord& trajectory = *run.trajectory;
+  Json frames = Json::array();
+  for (std::size_t k = 0; k < trajectory.times.size(); ++k) {
+    const solver::Vectors& x = trajectory.states[k].x;
+    const model::Polygons refined = refinement.polygons(trajectory.times[k], x);
+    std::vector<float> places;
+    std::vector<int> nearest;
+    for (const Eigen::Vector3d& vertex : std::span(refined.vertices).subspan(static_cast<std::size_t>(x.rows()))) {
+      for (const double c : vertex) places.push_back(static_cast<float>(c));
+      Eigen::Index node = 0;
+      (x.rowwise() - vertex.transpose()).rowwise().squaredNorm().minCoeff(&node);
+      nearest.push_back(static_cast<int>(node));
+    }
+    frames.push_back({{"vertices", packed(places)}, {"nearest", packed(nearest)}, {"triangles", packed(triangles(refined))}});
+  }
+  return frames;
+} catch (const std::exception&) {  // the record is of a program whose scenes were others, as its obstacles say
+  return nullptr;
 }
 
 Json page_obstacles(const results::RunRecord& run, Json& surfaces) {

@@ -17,4 +17,9 @@ nlohmann::ordered_json page_obstacles(const results::RunRecord& run, nlohmann::o
 /// and their weights, and `triangles`, corners among the vertices. If they cannot be read, `missing` says why.
 nlohmann::ordered_json page_trim(const results::RunRecord& run);
 
+/// The sheet with its virtual particles in each frame of a run with a trajectory, null if its scene has none or if an obstacle
+/// is missing: positions of virtual particles, the particles to which they are nearest, and triangles, whose corners are
+/// particles or, numbered after these, virtual ones.
+nlohmann::ordered_json page_refined(const results::RunRecord& run);
+
 }  // namespace drape::bench

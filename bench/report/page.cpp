@@ -111,6 +111,7 @@ Json page_trajectory(const results::RunRecord& run, Json& surfaces) {
           {"positions", packed_positions(trajectory.states)},
           {"constraint", packed_constraints(trajectory.constraint)},
           {"trim", page_trim(run)},
+          {"refined", page_refined(run)},
           {"obstacles", page_obstacles(run, surfaces)}};
 }
 

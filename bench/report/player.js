@@ -2,8 +2,8 @@
 
 import {commandLine, element, files, groupBy, shortNumber, unique} from "./data.js";
 import {bounds, carry, colourAt, colourScale, constraints, constraintsAt, distances, hasMarks, makeView} from "./motion.js";
-import {markPicture, particleName, particleOf, placeMarks, placeObstacle, positionsAt} from "./motion.js";
-import {rootMeanSquare, runLabel, viridis} from "./motion.js";
+import {markPicture, particleName, particleOf, placeMarks, placeObstacle, placeRefined} from "./motion.js";
+import {positionsAt, rootMeanSquare, runLabel, viridis} from "./motion.js";
 import {along, axis, baseLayout, labelled, lineStyle, logTicks, style, timeAxis} from "./plots.js";
 import {comparedRuns} from "./run_figures.js";
 
@@ -20,6 +20,7 @@ function updateView(view, player) {
     carry(motion.trim, color.array, view.drawn.attributes.color.array);
     view.drawn.attributes.position.needsUpdate = view.drawn.attributes.color.needsUpdate = true;
   }
+  if (motion.refined) placeRefined(view, player.t);
   if (!view.chain) view.drawn.computeVertexNormals();
   view.drawn.computeBoundingSphere();
   for (const body of view.bodies) placeObstacle(body, motion.times, player.t);
@@ -85,7 +86,7 @@ function hover(player, view, event) {
   if (!hit) return void (view.canvas.title = "");
   const {array} = view.geometry.attributes.position;
   const far = (i) => hit.point.distanceToSquared(new THREE.Vector3(...array.subarray(3 * i, 3 * i + 3)));
-  const corners = [hit.face.a, hit.face.b, hit.face.c].map((vertex) => particleOf(view.motion, vertex));
+  const corners = [hit.face.a, hit.face.b, hit.face.c].map((vertex) => particleOf(view.motion, vertex, player.t));
   const i = corners.sort((p, q) => far(p) - far(q))[0];
   const place = [...array.subarray(3 * i, 3 * i + 3)].map((x) => x.toFixed(4)).join(", ");
   const constrained = constraints.find(({kind}) => kind === constraintsAt(view.motion, player.t)[i]);

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <optional>
 
+#include "model/adaptive/sheet_refinement.hpp"
 #include "model/garment.hpp"
 #include "solver/base/atomic_file.hpp"
 
@@ -38,6 +39,7 @@ class Writer : public Observer {
   Writer(const RunSpec& spec, const Frames& frames)
       : folder_(frames.folder / run_name(spec)), every_(frames.every), trimmed_(model::trimmed_surface(spec.scene)) {
     base::create_folder(folder_);
+    if (spec.scene.contact.adaptive) refinement_.emplace(model::Garment(spec.scene), spec.scene.obstacles);
     for (const model::ObstacleRule& rule : spec.scene.obstacles) obstacles_.emplace_back(rule, 4 * model::size(spec.scene));
   }
 
@@ -54,6 +56,7 @@ class Writer : public Observer {
     due_ = periods + 1;
     write(folder_ / fmt::format("sheet-{:04}.obj", frame_), t,
           trimmed_ ? trimmed_->at(cloth_->garment->spread(y.x)) : model::garment_polygons(*cloth_->garment, y.x));
+    if (refinement_) write(folder_ / fmt::format("refined-{:04}.obj", frame_), t, refinement_->polygons(t, y.x));
     for (std::size_t k = 0; k < obstacles_.size(); ++k)
       write(folder_ / fmt::format("obstacle-{}-{:04}.obj", k, frame_), t, obstacles_[k].at(t));
     ++frame_;
@@ -63,6 +66,7 @@ class Writer : public Observer {
   double every_;
   const model::Cloth* cloth_ = nullptr;
   std::optional<model::TrimmedSurface> trimmed_;
+  std::optional<model::SheetRefinement> refinement_;
   std::vector<model::PosedObstacle> obstacles_;
   double due_ = 0;
   int frame_ = 0;

@@ -14,8 +14,9 @@ struct Frames {
 };
 
 /// Writes the run that it observes to the folder `scene-method-step`: `sheet-0000.obj`, the sheet or what its scene trims it
-/// to, at the start and so on, beside the k-th obstacle of the scene, where it is at that time, as `obstacle-k-0000.obj`. Each
-/// file begins with its time. Throws base::FileError where a file cannot be written.
+/// to, at the start and so on, with `contact.adaptive` also `refined-0000.obj` with its virtual particles, beside the k-th
+/// obstacle of the scene, where it is at that time, as `obstacle-k-0000.obj`. Each file begins with its time. Throws
+/// base::FileError where a file cannot be written.
 std::unique_ptr<Observer> frame_writer(const RunSpec& spec, const Frames& frames);
 
 }  // namespace drape::bench

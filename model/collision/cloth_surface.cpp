@@ -53,6 +53,13 @@ ClothSurface::ClothSurface(std::span<const std::array<int, 3>> corners, Vectors 
   }
 }
 
+std::vector<std::array<int, 3>> ClothSurface::triangles() const {
+  std::vector<std::array<int, 3>> all;
+  for (const Face& face : faces_)
+    if (!face.is_edge()) all.push_back(face.corners);
+  return all;
+}
+
 std::vector<Eigen::Vector3d> ClothSurface::centres() const {
   std::vector<Eigen::Vector3d> all;
   for (int k = 0; k < static_cast<int>(faces_.size()); ++k) {

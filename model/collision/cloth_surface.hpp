@@ -36,6 +36,9 @@ class ClothSurface {
   std::span<const Face> faces() const { return faces_; }
   std::span<const Edge> edges() const { return edges_; }
 
+  /// The corners of the faces that are triangles, front upward where the pattern is.
+  std::vector<std::array<int, 3>> triangles() const;
+
   /// The middles of the faces where the nodes are once.
   std::vector<Eigen::Vector3d> centres() const;
 

@@ -1,3 +1,4 @@
+#include "model/forces/spring_blocks.hpp"
 #include "model/forces/term.hpp"
 #include "model/sheet/edges.hpp"
 
@@ -14,15 +15,11 @@ std::optional<Term> make_projected_damping(const Sheet& sheet) {
     for (const Edge& edge : all) {
       const Eigen::Vector3d p = c.x.row(edge.j) - c.x.row(edge.i);
       const Eigen::Vector3d q = c.v.row(edge.j) - c.v.row(edge.i);
-      const double r = p.norm();
-      const Eigen::Vector3d n = p / r;
-      const Eigen::Matrix3d nn = n * n.transpose();
-      const Eigen::Matrix3d P = Eigen::Matrix3d::Identity() - nn;
-      const double weight = along(d, edge) * edge.width / edge.length;
+      const double weight = along(d, edge) * edge.width;
       const EdgeEnds ends{edge.i, edge.j};
-      add_edge_pair(entries.add_dv, ends, ends, weight * nn);
+      add_edge_pair(entries.add_dv, ends, ends, weight * viscous_block(p, edge.length));
       if (!entries.exact()) continue;  // the rest is not symmetric
-      add_edge_pair(entries.add_dx, ends, ends, weight / r * (n * (P * q).transpose() + q.dot(n) * P));
+      add_edge_pair(entries.add_dx, ends, ends, weight * viscous_turn_block(p, q, edge.length));
     }
   };
   return term;

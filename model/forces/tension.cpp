@@ -1,6 +1,6 @@
-#include <algorithm>
 #include <memory>
 
+#include "model/forces/spring_blocks.hpp"
 #include "model/forces/term.hpp"
 #include "model/sheet/cells.hpp"
 
@@ -44,15 +44,8 @@ std::optional<Term> make_tension(const Sheet& sheet) {
   term.jacobian = [=](const Configuration& c, const JacobianEntries& entries) {
     for (const Edge& edge : *all) {
       const Eigen::Vector3d d = c.x.row(edge.j) - c.x.row(edge.i);
-      const double r = d.norm();
-      const Eigen::Vector3d n = d / r;
-      const Eigen::Matrix3d nn = n * n.transpose();
-      const double turn = 1 / edge.length - 1 / r;  // negative where the edge is compressed
-      const Eigen::Matrix3d block =
-          along(k, edge) * edge.width *
-          (nn / edge.length + (entries.exact() ? turn : std::max(turn, 0.0)) * (Eigen::Matrix3d::Identity() - nn));
       const EdgeEnds ends{edge.i, edge.j};
-      add_edge_pair(entries.add_dx, ends, ends, block);
+      add_edge_pair(entries.add_dx, ends, ends, along(k, edge) * edge.width * tension_block(d, edge.length, entries.exact()));
     }
   };
   return term;

@@ -36,6 +36,7 @@ struct ContactRule {
   double exponent = 10;         ///< n of penalty
   double range = 1e-3;          ///< e of field [m]
   double restitution = 0.5;     ///< e of reflect
+  bool adaptive = false;        ///< whether springs have virtual neighbours on the edges of obstacles [Etzmuß 2002, 5.4]
 };
 
 /// Whether a response changes positions and velocities after the step.

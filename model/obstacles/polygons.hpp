@@ -23,6 +23,10 @@ struct ProfilePoint {
 /// A profile from below to above, turned round the z axis and closed by a lid at either end.
 Polygons turned(const std::vector<ProfilePoint>& profile);
 
+/// Triangles between this number of vertices, at least 20, on a sphere of radius 1: two poles and rings about as far apart as
+/// their vertices. A closed mesh of n vertices has 3n − 6 edges.
+Polygons ringed_sphere(int vertices);
+
 /// In Wavefront's OBJ format, numbers to the last bit.
 void write_obj(std::ostream& out, const Polygons& polygons);
 

@@ -31,16 +31,23 @@ PosedObstacle::PosedObstacle(const ObstacleRule& rule, double plane_side) {
 
 Polygons PosedObstacle::at(double t) const {
   Polygons posed;
+  add_vertices(t, posed.vertices);
+  int first = 0;
   for (const auto& [obstacle, surface] : parts_) {
-    const Pose pose = obstacle.pose(t);
-    const int first = static_cast<int>(posed.vertices.size());
-    for (const Eigen::Vector3d& vertex : vertices_at(obstacle, surface, t)) posed.vertices.push_back(pose.to_world(vertex));
     for (std::vector<int> face : surface.faces) {
       for (int& corner : face) corner += first;
       posed.faces.push_back(std::move(face));
     }
+    first += static_cast<int>(surface.vertices.size());
   }
   return posed;
+}
+
+void PosedObstacle::add_vertices(double t, std::vector<Eigen::Vector3d>& all) const {
+  for (const auto& [obstacle, surface] : parts_) {
+    const Pose pose = obstacle.pose(t);
+    for (const Eigen::Vector3d& vertex : vertices_at(obstacle, surface, t)) all.push_back(pose.to_world(vertex));
+  }
 }
 
 }  // namespace drape::model

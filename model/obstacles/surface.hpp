@@ -22,6 +22,9 @@ class PosedObstacle {
   /// The surface where it is at a time [s].
   Polygons at(double t) const;
 
+  /// Appends the vertices of that.
+  void add_vertices(double t, std::vector<Eigen::Vector3d>& all) const;
+
  private:
   struct Part {
     Obstacle obstacle;

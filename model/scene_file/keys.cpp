@@ -440,6 +440,8 @@ std::span<const SceneKey> scene_key_table() {
        in_contact<&ContactRule::range>, check::positive},
       {"contact.restitution", "1", "e: part of the normal velocity with which \"reflect\" sends particles back",
        in_contact<&ContactRule::restitution>, check::part_or_none},
+      {"contact.adaptive", "", "whether springs that an edge of an obstacle divides pull at it: virtual particles of one step (chapter 5)",
+       in_contact<&ContactRule::adaptive>, check::flag},
 
       {"start.plane", "", "\"horizontal\" (v along y) or \"vertical\" (v along z)", in_start<&Start::plane>, check::one_of<planes>},
       {"start.stretch", "1", "factors along weft and warp at t = 0", in_start<&Start::stretch>, check::positive},

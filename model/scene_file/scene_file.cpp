@@ -185,6 +185,17 @@ void check_panels(const Scene& scene, const std::string& origin) {
   }
 }
 
+/// Virtual particles are those of one sheet, whose tension is linear.
+void check_adaptive(const Scene& scene, const Garment& garment, const std::string& origin) {
+  const auto fail = [&](std::string_view what) { throw SceneError(fmt::format("{}: contact.adaptive: {}", origin, what)); };
+  const auto& [nu, nv] = std::pair(scene.sheet.grid.nu, scene.sheet.grid.nv);
+  if (!garment.is_one_sheet() || std::min(nu, nv) < 2) fail("expected a sheet, without panels");
+  const Material& material = scene.sheet.material;
+  const bool linear = !material.weft_curve.given() && !material.warp_curve.given() && !by_tables(material);
+  if (!linear || !material.relaxation.spectrum().empty())
+    fail("expected tension by the moduli alone, without curves, tables and relaxation");
+}
+
 /// Rules that no single key can break.
 void check_together(const Scene& scene, const std::string& origin) {
   const auto fail = [&](std::string_view what) { throw SceneError(fmt::format("{}: {}", origin, what)); };
@@ -203,6 +214,7 @@ void check_together(const Scene& scene, const std::string& origin) {
   const std::vector<solver::Pin> all = pins(scene);
   if (std::ssize(all) == garment.nodes() && std::ranges::all_of(all, &solver::Pin::all))
     fail("pins: expected at least one coordinate that is free to move");
+  if (scene.contact.adaptive) check_adaptive(scene, garment, origin);
 }
 
 /// The unit stands behind what the description begins with: "k1, k2 [N/m]: one number for both".

@@ -103,7 +103,9 @@ Outcome StageSystem::prepare(double gamma, double inertia, double different) {
 }
 
 void StageSystem::renew() {
-  stiffness_ = array(Merged(ode_).k);
+  const Merged merged(ode_);
+  stiffness_ = array(merged.k);
+  damping_ = array(merged.d);
   spring_ = thrice(ode_.stiffness.diagonal());
   gamma_ = 0;
 }

@@ -35,7 +35,7 @@ class StageSystem {
   /// Assembles and factors M − γ D in place of A, for methods whose springs are explicit.
   Outcome prepare_damping(double gamma);
 
-  /// K has changed: A is assembled again before the next stage.
+  /// K or D has changed: A is assembled again before the next stage.
   void renew();
 
   /// γ of A [s].

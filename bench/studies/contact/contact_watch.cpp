@@ -19,7 +19,8 @@ Eigen::Vector3d momentum_of(const solver::SplitOde& ode, const solver::Vectors& 
 void ContactWatch::begin(const model::Scene& scene, const model::Cloth& cloth, const solver::State& start) {
   const bool first = cloth_ == nullptr;
   cloth_ = &cloth;
-  const bool still = std::ranges::all_of(cloth.ode.pins, [](const solver::Pin& pin) { return pin.prescribed().isZero(0); }) &&
+  const bool still = !cloth.ode.step_forces &&
+                     std::ranges::all_of(cloth.ode.pins, [](const solver::Pin& pin) { return pin.prescribed().isZero(0); }) &&
                      std::ranges::none_of(scene.obstacles, &model::moves);
   energies_.reset();
   if (still) {
@@ -71,9 +72,14 @@ void ContactWatch::see_energy(double t, const solver::State& y) {
   if (energies_->scale > 0) findings_.energy_rise = std::max(*findings_.energy_rise, rise / energies_->scale);
 }
 
+/// Without those that count as impulses of obstacles.
 Eigen::Vector3d ContactWatch::force(double t, const solver::State& y) {
-  cloth_->ode.force(t, y.x, y.v, f_);
-  return f_.colwise().sum();
+  const solver::SplitOde& ode = cloth_->ode;
+  ode.force(t, y.x, y.v, f_);
+  const Eigen::Vector3d all = f_.colwise().sum();
+  if (!ode.step_forces) return all;
+  ode.step_forces->of_obstacles(solver::StepForces::Part::whole, t, y, f_);
+  return all - f_.colwise().sum().transpose();
 }
 
 }  // namespace drape::bench

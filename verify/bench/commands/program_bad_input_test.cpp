@@ -141,6 +141,21 @@ const std::vector<BadInput> bad_inputs = {
     {"BodyInTheCloth",
      run_with("--set", {"obstacles=[{ shape = 'sphere', radius = 0.1, position = [0.5, 0.5, 0] }]"}),
      {"hung-edge: expected ", "not to pass through obstacles[0] (sphere)", " m deep at t = 0 s"}},
+    {"OpenBodyAmongClosedOnes",
+     run_with("--scene", {"open_body.toml"}),
+     {"open_body.toml: obstacles[1] (mesh): ", "open.obj: expected a closed mesh, 3 edges of its 1 triangles are open"}},
+    {"FlatBody",
+     run_with("--scene", {"flat_body.toml"}),
+     {"flat_body.toml: obstacles[0] (mesh): ", "flat.obj: expected a mesh that encloses a volume"}},
+    {"VirtualParticlesOfAChain",
+     run_with("--set", {"grid.n=[5, 1]", "--set", "pins=[]", "--set", "contact.adaptive=true"}),
+     {"hung-edge", "contact.adaptive: expected a sheet, without panels"}},
+    {"VirtualParticlesWithCurves",
+     run_with("--set", {"material.weft_curve=[[0, 0], [1, 2]]", "--set", "contact.adaptive=true"}),
+     {"contact.adaptive: expected tension by the moduli alone"}},
+    {"FewVerticesOfASphere",
+     run_with("--set", {"obstacles=[{ shape = 'sphere', radius = 0.1, vertices = 19, position = [0, 0, -5] }]"}),
+     {"obstacles.vertices = 19", "0 or a whole number from 20 to 100000"}},
     {"EndNegative", run_with("--set", {"end.time=-1"}), {"--set", "end.time = -1", "above 0"}},
 
     // Files.
@@ -186,6 +201,14 @@ void fill(const BenchIntegrators& program) {
   program.write("nan.toml", "name = \"nan\"\nmaterial.density = nan\n");
   program.write("one.toml", "name = \"one\"\ngrid.n = [1, 1]\n");
   program.write("nameless.toml", "grid.n = 5\n");
+  const std::string adaptive = "grid.n = 3\ncontact.adaptive = true\nobstacles = [";
+  program.write("open_body.toml", "name = \"a\"\n" + adaptive +
+                                      "{ shape = 'plane', position = [0, 0, -9] },"
+                                      "{ shape = 'mesh', file = 'open.obj', position = [0, 0, -5] }]\n");
+  program.write("flat_body.toml",
+                "name = \"a\"\n" + adaptive + "{ shape = 'mesh', file = 'flat.obj', position = [0, 0, -5] }]\n");
+  program.write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  program.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 1 4 2\nf 2 4 3\nf 3 4 1\n");
   program.write("exists.h5", "a user's results");
   program.write("results", "a file, where by default a folder is made");
   std::filesystem::create_directory(program.folder() / "folder.toml");

@@ -107,5 +107,34 @@ TEST(PageTrim, HasTheMeshInThePlaceOfTheGrid) {
   }
 }
 
+/// A cell above a bar, and two frames later in it: two virtual particles on either divided side, one for each edge of the bar.
+TEST(PageRefined, HasVirtualParticlesOfEachFrame) {
+  const auto recorded = [](const std::string& lines) {
+    const model::Scene scene = model::parse_scene(
+        "name = 'x'\ngrid = { n = 2, size = 1 }\n"
+        "obstacles = [{ shape = 'box', size = [0.5, 2, 1], position = [0.5, 0.5, -1] }]\n" +
+            lines,
+        "a.toml");
+    results::RunRecord run;
+    run.scene = "x";
+    for (const model::KeyValue& row : model::key_values(scene))
+      run.scene_keys.push_back({row.key, model::to_toml(row.value), row.unit});
+    solver::State above = model::start(scene), in = above;
+    in.x.col(2).setConstant(-0.75);
+    run.trajectory = {.nu = 2, .nv = 2, .panels = {}, .times = {0, 1}, .states = {above, in}, .stretch = {}, .constraint = {}};
+    return run;
+  };
+  EXPECT_TRUE(bench::page_refined(recorded("")).is_null());
+  const Json page = bench::page_refined(recorded("contact.adaptive = true\n"));
+  ASSERT_EQ(page.size(), 2U);
+  EXPECT_EQ(numbers(page[0].at("vertices")).size(), 0U);
+  EXPECT_EQ(numbers(page[0].at("triangles")).size(), 6U);
+  const std::vector<float> places = numbers(page[1].at("vertices"));
+  ASSERT_GE(places.size(), 3U * 6);
+  EXPECT_EQ(numbers(page[1].at("nearest")).size(), places.size() / 3);
+  for (std::size_t k = 2; k < places.size(); k += 3) EXPECT_FLOAT_EQ(places[k], -0.5F) << "on top of the bar";
+  EXPECT_GT(numbers(page[1].at("triangles")).size(), 6U);
+}
+
 }  // namespace
 }  // namespace drape::verify::page_obstacles_test

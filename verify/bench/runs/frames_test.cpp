@@ -86,6 +86,28 @@ TEST(Frames, ShowEveryParticleAndEveryCell) {
   EXPECT_LT(later.vertices[0][2], -1e-4);  // it falls
 }
 
+/// Four particles over a box: the faces that it divides, and its edges among theirs.
+TEST(Frames, ShowVirtualParticlesBesideTheSheet) {
+  const BenchIntegrators program;
+  program.output({"run", "--scene", "box_four", "--method", "implicit-euler", "--step", "0.01", "--until", "0.2", "--every",
+                  "0.1", "--no-reference", "--repeat", "1", "--frames", "a"});
+  const std::string folder = "a/box_four-implicit-euler-0.01/";
+  const auto refined = [&](int k) { return mesh(program, fmt::format("{}refined-{:04}.obj", folder, k)); };
+  EXPECT_EQ(refined(0).vertices.size(), 4U) << "nothing is divided at the start";
+  EXPECT_EQ(refined(0).faces.size(), 2U);
+  const Obj last = refined(2), sheet = mesh(program, folder + "sheet-0002.obj");
+  EXPECT_EQ(last.t, sheet.t);
+  EXPECT_EQ(sheet.vertices.size(), 4U);
+  EXPECT_GE(last.vertices.size(), 10U) << "two on each of two springs, and where edges cross the diagonal of the cell";
+  for (std::size_t k = 0; k < last.vertices.size(); ++k) {
+    if (k < 4) {
+      EXPECT_EQ(last.vertices[k], sheet.vertices[k]);
+    } else {
+      EXPECT_NEAR(last.vertices[k].z(), -0.03, 1e-12) << "on top of the box";
+    }
+  }
+}
+
 /// The scene names a mesh, which rides on the sheet.
 TEST(Frames, ShowWhatTheSheetIsTrimmedTo) {
   const BenchIntegrators program;

@@ -65,6 +65,18 @@ TEST(ContactWatch, BalancesMomentumWithTheImpulsesOfObstacles) {
   EXPECT_THAT(found.momentum, Optional(Lt(1e-3)));
 }
 
+TEST(ContactWatch, BalancesMomentumWithTheImpulsesOfVirtualParticles) {
+  const auto [run, found] =
+      watched(cloth +
+                  "forces.gravity = [0, 0, -9.81]\ncontact = { adaptive = true, distance = 1e-3 }\nend = { time = 0.3 }\n"
+                  "obstacles = [{ shape = 'box', size = [0.01, 0.4, 0.1], position = [0.1, 0.1, -0.055] }]\n",
+              "implicit-euler");
+  ASSERT_TRUE(run.succeeded());
+  EXPECT_EQ(run.steps.back().contacts, 0) << "the bar is between particles";
+  EXPECT_THAT(found.momentum, Optional(Lt(1e-3)));
+  EXPECT_FALSE(found.energy_rise);
+}
+
 TEST(ContactWatch, SaysNothingOfBalancesWherePinsGive) {
   const auto [run, found] = watched(cloth + "pins = [{ where = 'left edge', velocity = [-0.1, 0, 0] }]\nend.time = 0.05\n");
   ASSERT_TRUE(run.succeeded());

@@ -87,6 +87,7 @@ rotation = [0, 90, 0]
 [[obstacles]]
 shape = "sphere"
 radius = 0.75
+vertices = 50
 motion = [{ time = 0.5, position = [0, 0, 1] }, { time = 1, rotation = [0, 0, 45.5] }]
 [[obstacles]]
 shape = "cylinder"
@@ -101,6 +102,7 @@ push = 20
 exponent = 12
 range = 2e-3
 restitution = 0.25
+adaptive = true
 [start]
 plane = "vertical"
 stretch = [1.1, 1]
@@ -131,6 +133,7 @@ void expect_obstacles(const std::vector<model::ObstacleRule>& obstacles) {
   expect_frame(box.motion[0], 0, {0.1, 0, -1}, {0, 90, 0});
   EXPECT_EQ(sphere.kind->name, "sphere");
   EXPECT_EQ(value_of(sphere, "radius"), "0.75");
+  EXPECT_EQ(value_of(sphere, "vertices"), "50");
   ASSERT_EQ(sphere.motion.size(), 2u);
   expect_frame(sphere.motion[0], 0.5, {0, 0, 1}, {0, 0, 0});
   expect_frame(sphere.motion[1], 1, {0, 0, 0}, {0, 0, 45.5});
@@ -182,6 +185,7 @@ void expect_complete(const Scene& scene) {
   EXPECT_EQ(scene.contact.exponent, 12);
   EXPECT_EQ(scene.contact.range, 2e-3);
   EXPECT_EQ(scene.contact.restitution, 0.25);
+  EXPECT_TRUE(scene.contact.adaptive);
   ASSERT_EQ(scene.pins.size(), 3u);
   EXPECT_EQ(scene.pins[0].where, "left edge");
   EXPECT_THAT(scene.pins[0].directions, ElementsAre(true, true, true));

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "model/adaptive/edge_mesh.hpp"
+#include "model/adaptive/face_prism.hpp"
+#include "model/adaptive/insertion.hpp"
+
+namespace drape::model {
+
+/// Prisms of the faces of a sheet at a time, computed when they are first needed.
+class FacePrisms {
+ public:
+  /// `x`: positions of the nodes, N × 3 [m]. Both have to outlive this object.
+  FacePrisms(const EdgeMesh& sheet, const solver::Vectors& x) : sheet_(sheet), x_(x) {}
+
+  const EdgeMesh& sheet() const { return sheet_; }
+  const solver::Vectors& x() const { return x_; }
+  const FacePrism& of(int face) { return known_.try_emplace(face, sheet_, x_, face).first->second; }
+
+  /// The image, in a face, of a point of the plane through one of its edges: along the edge, from its first end at 0 to its
+  /// second at 1. Nothing if the point is beyond the centre of projection.
+  std::optional<double> along(int face, int edge, const Eigen::Vector3d& point);
+
+ private:
+  const EdgeMesh& sheet_;
+  const solver::Vectors& x_;
+  std::unordered_map<int, FacePrism> known_;
+};
+
+/// Collects points on edges of an obstacle and joins those that faces share.
+class InsertionDraft {
+ public:
+  explicit InsertionDraft(FacePrisms& prisms) : prisms_(prisms) {}
+
+  /// An end of a segment.
+  struct End {
+    VirtualParticle particle;
+    int vertex;   ///< of the obstacle; −1: the edge is cut here
+    int plane;    ///< of the prism, on which it lies; −1: none
+    bool shared;  ///< if on a plane to a neighbour: that one sees it as well
+  };
+
+  /// Adds a segment of an edge of the obstacle to a face.
+  void add(int face, const End& from, const End& to);
+
+  Insertion finish() const;
+
+ private:
+  struct Point {
+    VirtualParticle particle;
+    int face;      ///< of the sheet; −1: shared
+    int edge;      ///< of the sheet, in whose separating plane it lies; −1: inside the prism
+    double along;  ///< the edge
+  };
+  struct Segment {
+    int face, edge;  ///< of the sheet, of the obstacle
+    std::array<int, 2> points;
+    std::array<double, 2> parameters;
+  };
+
+  int point(int face, const End& end);
+  double along(int edge, const Eigen::Vector3d& position);
+
+  FacePrisms& prisms_;
+  std::map<std::array<int, 3>, int> numbers_;  ///< of points, by face and edge as in Point, and what is there
+  std::vector<Point> points_;
+  std::vector<Segment> segments_;
+};
+
+}  // namespace drape::model
