@@ -90,7 +90,7 @@ struct SplitOde {
   /// there.
   std::shared_ptr<Memory> memory;
 
-  /// Null if obstacles are no part of the forces, or not anew in each step.
+  /// Null if no forces are found at the beginnings of steps.
   std::shared_ptr<StepForces> step_forces;
 
   /// Adds to the force f(t, (x0 + x1)/2, v) what the mean force between these positions has more: a discrete gradient, whose

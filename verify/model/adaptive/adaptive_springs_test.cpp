@@ -178,7 +178,7 @@ TEST(AdaptiveSprings, HaveTheirJacobian) {
   }
 }
 
-/// Where parts are compressed, too: a bar below the slack sheet.
+/// Also where parts are compressed: a bar in a slack sheet.
 TEST(AdaptiveSprings, LeaveNewtonMatricesPositiveDefinite) {
   for (const std::string& form : damping_forms) {
     const Trial over = trial(over_a_bar(3, 0.05, "start.stretch = 0.5\n"), form);
