@@ -304,8 +304,9 @@ TEST(SceneFile, NamesAllShapesInItsHelp) {
   const std::string help = std::ranges::find(keys, "obstacles", &model::KeyHelp::path)->description;
   EXPECT_THAT(
       help,
-      HasSubstr("shape = plane | sphere, radius | box, size | cylinder, radius, height | mannequin, height, arms, legs, walk, "
-                "walk_from | mesh, file, "));
+      HasSubstr(
+          "shape = plane | sphere, radius, vertices | box, size | cylinder, radius, height | mannequin, height, arms, legs, "
+          "walk, walk_from | mesh, file, "));
 }
 
 TEST(SceneFile, IsReadFromDisk) {
