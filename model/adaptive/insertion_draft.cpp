@@ -50,8 +50,8 @@ class Assembly {
     return numbers;
   }
 
-  /// Adds a particle in a separating plane that the neighbour does not see: inside the face, but so near to the border that
-  /// only the border is between them. As the square of the distance from the next shared particle, so that those farther off
+  /// Adds a particle in a separating plane that the neighbour does not see: inside the face, at a distance from the border at
+  /// which only the border is between them. As the square of the distance from the next shared particle, so that those farther off
   /// are not between one and the border.
   int add_beside(int face, int edge, const VirtualParticle& particle) {
     constexpr double near = 1e-4;

@@ -302,10 +302,9 @@ TEST(SceneFile, HasTheUnitOfEveryKeyInItsHelpAndItsRow) {
 TEST(SceneFile, NamesAllShapesInItsHelp) {
   const std::vector<model::KeyHelp> keys = model::scene_keys();
   const std::string help = std::ranges::find(keys, "obstacles", &model::KeyHelp::path)->description;
-  EXPECT_THAT(
-      help,
-      HasSubstr("shape = plane | sphere, radius | box, size | cylinder, radius, height | mannequin, height, arms, legs, walk, "
-                "walk_from | mesh, file, "));
+  EXPECT_THAT(help, HasSubstr("shape = plane | sphere, radius, vertices | box, size | cylinder, radius, height | mannequin, "
+                              "height, arms, legs, walk, "
+                              "walk_from | mesh, file, "));
 }
 
 TEST(SceneFile, IsReadFromDisk) {
