@@ -49,6 +49,9 @@ std::span<const Study> studies() {
       {.name = "figure-4.3",
        .description = "CG iterations and contacts over time of a sheet that swings against a box; what contact costs",
        .answer = figure_4_3},
+      {.name = "table-5.1",
+       .description = "virtual particles: what they cost beside the thesis' figures, what they are worth, what their jumps do",
+       .answer = table_5_1},
       {.name = "contact",
        .description =
            "cloth that meets itself and bodies: pairs, CG in flight and at rest, times, balances, intersections, largest steps",
