@@ -36,9 +36,11 @@ using testing::DoubleNear;
 using testing::Each;
 using testing::ElementsAre;
 using testing::Field;
+using testing::Gt;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::IsNan;
+using testing::Lt;
 using testing::Not;
 using testing::SizeIs;
 using testing::StartsWith;
@@ -432,6 +434,25 @@ TEST_F(ProgramStudies, RestingOnTheBoxIsNoHarderThanSwinging) {
   EXPECT_THAT(all[2].columns, Contains(Field(&Column::name, "bdf2_contacts")));
   EXPECT_TRUE(all[2].for_file) << "every step";
   EXPECT_EQ(all[2].columns[0].cells.size() / 5, all[0].columns[0].cells.size());
+}
+
+TEST_F(ProgramStudies, VirtualParticlesKeepACoarseSheetOut) {
+  DRAPE_SLOW();
+  const auto all = tables("table-5.1");  // in the order of their names
+  ASSERT_THAT(all, SizeIs(3));
+  EXPECT_THAT(numbers(all[0], "virtual_particles", "scene", "round_table_100"), ElementsAre(Gt(10)));
+  EXPECT_THAT(numbers(all[0], "topology", "scene", "round_table_100"), ElementsAre(Gt(0)));
+  const auto divided = numbers(all[1], "divided", "method", "imex-euler"),
+             orders = numbers(all[1], "order", "method", "imex-euler");
+  ASSERT_THAT(divided, SizeIs(2));
+  EXPECT_EQ(divided[0], 0);
+  EXPECT_GT(divided[1], 0);
+  EXPECT_THAT(orders, SizeIs(2));
+  const auto distance = numbers(all[2], "distance", "scene", "round_table_100"),
+             penetration = numbers(all[2], "penetration", "scene", "round_table_100");
+  ASSERT_THAT(distance, SizeIs(2));
+  EXPECT_THAT(distance, Each(AllOf(Gt(0), Lt(0.02))));
+  EXPECT_GT(penetration[0], 10 * penetration[1]);
 }
 
 TEST_F(ProgramStudies, EveryCellOfTheAtlasEndsInAVerdict) {
