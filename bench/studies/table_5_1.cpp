@@ -357,9 +357,9 @@ constexpr ColumnOf<Jumps> jump_columns[] = {
     {"outcome", "outcome", "", "how the run with h = 0.01 s ended", Role::outcome, field<&Jumps::outcome>},
 };
 
-Jumps jumps_of(std::string_view method, bool adaptive, bool quick) {
-  const model::Scene scene = refined_scene(jump_scene, {{"contact.adaptive", adaptive ? "true" : "false"},
-                                                        {"end.time", fmt::format("{}", quick ? 0.05 : jump_end)}});
+Jumps jumps_of(std::string_view method, bool adaptive) {
+  const model::Scene scene =
+      refined_scene(jump_scene, {{"contact.adaptive", adaptive ? "true" : "false"}, {"end.time", fmt::format("{}", jump_end)}});
   Jumps row{std::string(method), adaptive, {}};
   std::vector<double> steps, differences;
   std::optional<Vectors> before;
@@ -405,10 +405,9 @@ std::vector<Job> table_5_1(const Question& question) {
                 return rows;
               },
               [](const std::vector<Worth>& rows) {
-                results::Table table = results::make_table(
-                    "table-5.1-worth", "Coarse sheets with and without virtual particles beside one of 10 000 particles",
-                    worth_columns, rows);
-                return table;
+                return results::make_table("table-5.1-worth",
+                                           "Coarse sheets with and without virtual particles beside the finest one",
+                                           worth_columns, rows);
               }),
           job(
               "table-5.1-jumps", 2 * static_cast<int>(tried.size()),
@@ -418,7 +417,7 @@ std::vector<Job> table_5_1(const Question& question) {
                   for (const bool adaptive : {false, true}) {
                     const std::string id = fmt::format("{} adaptive = {}", method.name, adaptive);
                     checkpoint.show(id);
-                    rows.push_back(checkpoint.once(id, [&] { return jumps_of(method.name, adaptive, quick); }));
+                    rows.push_back(checkpoint.once(id, [&] { return jumps_of(method.name, adaptive); }));
                     checkpoint.advance();
                   }
                 return rows;
