@@ -121,7 +121,7 @@ TEST(ProgramList, HasTheNamesThatOtherProgramsRelyOn) {
   EXPECT_THAT(methods, IsSupersetOf(of_the_thesis + others));
   EXPECT_EQ(program.output({"list", "methods"}), joined(methods, "\n") + "\n");
   EXPECT_THAT(lines(program.output({"list", "scenes"})),
-              AllOf(IsSupersetOf({"hung-edge", "hung-corners"}), Each(MatchesRegex("[a-z_-]+"))));
+              AllOf(IsSupersetOf({"hung-edge", "hung-corners"}), Each(MatchesRegex("[a-z0-9_-]+"))));
   EXPECT_THAT(lines(program.output({"list", "studies"})), AllOf(Contains("hung-sheets"), Each(MatchesRegex("[a-z0-9.-]+"))));
 }
 

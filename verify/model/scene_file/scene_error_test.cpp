@@ -201,7 +201,7 @@ const std::vector<BadScene> bad_scenes = {
     {"obstacle_that_is_none", "obstacles = ['sphere']", "a.toml:2: obstacles = 'sphere': expected a table"},
     {"unknown_key_in_an_obstacle", "[[obstacles]]\nshape = 'plane'\nheigth = 1", "a.toml:4: obstacles.heigth = 1: expected no such key; "},
     {"key_of_another_shape", "[[obstacles]]\nshape = 'sphere'\nradius = 1\nheight = 2",
-     "a.toml:5: obstacles.height = 2: expected no such key; a sphere has shape, radius, friction, position, rotation, motion"},
+     "a.toml:5: obstacles.height = 2: expected no such key; a sphere has shape, radius, vertices, friction, position, rotation, motion"},
     {"sphere_without_radius", "obstacles = [{shape = 'sphere'}]", "a.toml:2: obstacles = { shape = 'sphere' }: expected 'radius' in every sphere"},
     {"cylinder_without_height", "obstacles = [{shape = 'cylinder', radius = 1}]",
      "a.toml:2: obstacles = { radius = 1, shape = 'cylinder' }: expected 'height' in every cylinder"},
