@@ -199,7 +199,7 @@ struct Worth {
   std::string scene, outcome;
   int n = 0;
   bool adaptive = false;
-  std::optional<double> distance = {}, penetration = {}, energy = {};
+  std::optional<double> distance = {}, penetration = {}, height = {};
   double uncertainty = 0;       ///< of the distance [m]
   double time = 0, spread = 0;  ///< [ms/s]
   Verdict verdict = {};
@@ -217,8 +217,8 @@ constexpr ColumnOf<Worth> worth_columns[] = {
      field<&Worth::uncertainty>},
     {"penetration", "penetration", "m", "of the surface, with what is refined, into the obstacle: its deepest point",
      Role::quantity, field<&Worth::penetration>},
-    {"energy", "energy off", "1", "difference from the finest sheet at the end, over what that has lost", Role::quantity,
-     field<&Worth::energy>},
+    {"height", "height off", "m", "of the centre of mass, above that of the finest sheet: what it has more of potential energy",
+     Role::quantity, field<&Worth::height>},
     {"time", "time", "ms/s", "wall time a simulated second, median of interleaved runs", Role::time, field<&Worth::time>},
     {"spread", "±", "ms/s", "half their range", Role::time, field<&Worth::spread>},
     {"outcome", "outcome", "", "how the run ended", Role::outcome, field<&Worth::outcome>},
@@ -272,8 +272,10 @@ double penetration_of(const model::TriangleMesh& surface, const model::Scene& sc
   return std::max(0.0, -cloth.contacts->distances(t, x).minCoeff());
 }
 
-double energy_at_end(const results::RunRecord& run) {
-  return run.steps.back().potential_energy + run.steps.back().kinetic_energy;
+/// Of the centre of mass [m].
+double height_at_end(const model::Scene& scene, const results::RunRecord& run) {
+  const Eigen::VectorXd mass = model::compile(scene).ode.mass;
+  return mass.dot(run.final_state.x.col(2)) / mass.sum();
 }
 
 std::vector<Worth> worth_on(std::string_view name, bool quick, Checkpoint& checkpoint) {
@@ -289,7 +291,7 @@ std::vector<Worth> worth_on(std::string_view name, bool quick, Checkpoint& check
   const model::Scene fine_scene = sheet_scene(name, {finest, false}, quick);
   const results::RunRecord fine = kept(fine_scene, worth_step), doubled = kept(fine_scene, 2 * worth_step);
   const double uncertainty = distance_from(surface_at_end(fine_scene, doubled), fine.final_state.x);
-  const double lost = fine.steps.front().potential_energy + fine.steps.front().kinetic_energy - energy_at_end(fine);
+  const double height = height_at_end(fine_scene, fine);
   std::vector<Worth> rows;
   Group group;
   std::vector<std::size_t> counts;
@@ -302,7 +304,7 @@ std::vector<Worth> worth_on(std::string_view name, bool quick, Checkpoint& check
       const model::TriangleMesh surface = surface_at_end(scene, run);
       row.distance = distance_from(surface, fine.final_state.x);
       row.penetration = penetration_of(surface, scene, scene.end);
-      row.energy = (energy_at_end(run) - energy_at_end(fine)) / lost;
+      row.height = height_at_end(scene, run) - height;
     }
     group.push_back(refined_spec(scene, worth_method, worth_step));
     counts.push_back(std::max<std::size_t>(1, steps_to_time(run)));
