@@ -272,7 +272,7 @@ double penetration_of(const model::TriangleMesh& surface, const model::Scene& sc
   return std::max(0.0, -cloth.contacts->distances(t, x).minCoeff());
 }
 
-/// Of the centre of mass [m].
+/// Height of the centre of mass [m].
 double height_at_end(const model::Scene& scene, const results::RunRecord& run) {
   const Eigen::VectorXd mass = model::compile(scene).ode.mass;
   return mass.dot(run.final_state.x.col(2)) / mass.sum();
