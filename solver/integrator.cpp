@@ -357,10 +357,15 @@ void Integrator::remember(double h, bool restart) {
 }
 
 ContactReport Integrator::contacts() const {
-  if (step_.ode.relocate) return {relocated_.constrained, relocated_.impulse + forced_, relocated_.work};
-  if (contacts_) return {contacts_->constrained(), contacts_->impulse() + separated_ + forced_, contacts_->work()};
-  if (impacts_) return {impacts_->constrained(), impacts_->impulse() + separated_ + forced_, impacts_->work()};
-  return {0, forced_, 0};
+  ContactReport report;
+  if (step_.ode.relocate)
+    report = relocated_;
+  else if (contacts_)
+    report = {contacts_->constrained(), contacts_->impulse() + separated_, contacts_->work()};
+  else if (impacts_)
+    report = {impacts_->constrained(), impacts_->impulse() + separated_, impacts_->work()};
+  report.impulse += forced_;
+  return report;
 }
 
 /// Compensated summation: else the round-off of a million steps would reach the size of a step.

@@ -255,9 +255,8 @@ double distance_from(const model::TriangleMesh& surface, const Vectors& nodes) {
   return std::sqrt(sum / static_cast<double>(nodes.rows()));
 }
 
-/// The deepest point of a surface in obstacles, of points that are at most a hundredth of the sheet apart.
-double penetration_of(const model::TriangleMesh& surface, const model::Scene& scene, double t) {
-  const double spacing = model::size(scene) / 100;
+/// The deepest point of a surface in obstacles, of points that are at most `spacing` apart [m].
+double penetration_of(const model::TriangleMesh& surface, const model::Cloth& cloth, double spacing, double t) {
   std::vector<Eigen::Vector3d> points;
   for (const auto& triangle : surface.triangles) {
     const auto [a, b, c] = model::corners(surface, triangle);
@@ -268,13 +267,12 @@ double penetration_of(const model::TriangleMesh& surface, const model::Scene& sc
   }
   Vectors x(static_cast<Eigen::Index>(points.size()), 3);
   for (std::size_t k = 0; k < points.size(); ++k) x.row(static_cast<Eigen::Index>(k)) = points[k];
-  const model::Cloth cloth = model::compile(scene);
   return std::max(0.0, -cloth.contacts->distances(t, x).minCoeff());
 }
 
 /// Height of the centre of mass [m].
-double height_at_end(const model::Scene& scene, const results::RunRecord& run) {
-  const Eigen::VectorXd mass = model::compile(scene).ode.mass;
+double height_at_end(const model::Cloth& cloth, const results::RunRecord& run) {
+  const Eigen::VectorXd& mass = cloth.ode.mass;
   return mass.dot(run.final_state.x.col(2)) / mass.sum();
 }
 
@@ -291,7 +289,7 @@ std::vector<Worth> worth_on(std::string_view name, bool quick, Checkpoint& check
   const model::Scene fine_scene = sheet_scene(name, {finest, false}, quick);
   const results::RunRecord fine = kept(fine_scene, worth_step), doubled = kept(fine_scene, 2 * worth_step);
   const double uncertainty = distance_from(surface_at_end(fine_scene, doubled), fine.final_state.x);
-  const double height = height_at_end(fine_scene, fine);
+  const double height = height_at_end(model::compile(fine_scene), fine);
   std::vector<Worth> rows;
   Group group;
   std::vector<std::size_t> counts;
@@ -301,10 +299,11 @@ std::vector<Worth> worth_on(std::string_view name, bool quick, Checkpoint& check
     Worth& row = rows.emplace_back(Worth{std::string(name), ending(run.outcome, run.last_good_time), sheet.n, sheet.adaptive});
     row.uncertainty = uncertainty;
     if (run.succeeded()) {
+      const model::Cloth cloth = model::compile(scene);
       const model::TriangleMesh surface = surface_at_end(scene, run);
       row.distance = distance_from(surface, fine.final_state.x);
-      row.penetration = penetration_of(surface, scene, scene.end);
-      row.height = height_at_end(scene, run) - height;
+      row.penetration = penetration_of(surface, cloth, model::size(scene) / 100, scene.end);
+      row.height = height_at_end(cloth, run) - height;
     }
     group.push_back(refined_spec(scene, worth_method, worth_step));
     counts.push_back(std::max<std::size_t>(1, steps_to_time(run)));

@@ -98,10 +98,9 @@ void BodyContacts::add_faces(const Polygons& surface, int body, bool is_rigid) {
 }
 
 void BodyContacts::place(double t, Vectors& x) const {
-  for (const Body& body : bodies_) {
-    Eigen::Index i = body.first;
-    for (const Vector3d& vertex : body.posed.at(t).vertices) x.row(i++) = vertex;
-  }
+  std::vector<Vector3d> vertices;
+  for (const Body& body : bodies_) body.posed.add_vertices(t, vertices);
+  for (std::size_t i = 0; i < vertices.size(); ++i) x.row(static_cast<Eigen::Index>(i)) = vertices[i];
 }
 
 void BodyContacts::begin(double t, double h) {
