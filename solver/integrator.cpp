@@ -60,7 +60,7 @@ std::string describe(Outcome outcome, const StageResult& result, double t, doubl
 
 }  // namespace
 
-Integrator::Integrator(const SplitOde& ode, const Method& method, const Options& options, State y0, double t0)
+Integrator::Integrator(const SplitOde& ode, const Method& method, const Options& options, State y0, double t0, Start start)
     : options_(options),
       method_(method),
       own_(ode.memory || ode.step_forces ? std::optional<SplitOde>(ode) : std::nullopt),
@@ -108,6 +108,7 @@ Integrator::Integrator(const SplitOde& ode, const Method& method, const Options&
   }
   if (method.stages == Method::Stages::linearised) step_.linearised = &linearised_.emplace(step_.ode);
   if (method.stages == Method::Stages::exponential) step_.phi = &phi_.emplace(step_.ode);
+  step_.after_impact = start == Start::jump;
   ode.work->counter("history_states", "states before the current one that the method keeps") = method.history - 1;
 }
 

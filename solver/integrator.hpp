@@ -17,11 +17,17 @@ struct ContactReport {
   double work = 0;                                    ///< done on the particles by these impulses [J]
 };
 
+/// How the motion begins. After a jump, as where seams have merged particles or pins change their velocity, strains and
+/// velocities may jump from particle to particle: methods with history then begin with a step that damps, as after a hard
+/// impact.
+enum class Start { smooth, jump };
+
 /// Advances one ODE by one method. A step that fails leaves time and state as they were.
 class Integrator {
  public:
   /// Allocates the memory of all steps. Prescribed velocities are set in the initial state.
-  Integrator(const SplitOde& ode, const Method& method, const Options& options, State y0, double t0 = 0);
+  Integrator(const SplitOde& ode, const Method& method, const Options& options, State y0, double t0 = 0,
+             Start start = Start::smooth);
   Integrator(const Integrator&) = delete;
   Integrator& operator=(const Integrator&) = delete;
 

@@ -59,7 +59,7 @@ struct Step {
 
   double t = 0;
   double h = 0;
-  bool after_impact = false;  ///< no history because of a hard impact: velocities may jump from particle to particle
+  bool after_impact = false;  ///< no history after a hard impact or Start::jump: velocities may jump from particle to particle
   bool starting = false;      ///< whether another method takes the step, for lack of a history
   StageResult result = {};
 

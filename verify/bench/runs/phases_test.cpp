@@ -11,6 +11,7 @@
 #include "bench/runs/certified_reference.hpp"
 #include "bench/runs/record.hpp"
 #include "bench/runs/trajectory_observer.hpp"
+#include "bench/studies/contact/contact_watch.hpp"
 #include "model/scene_file/scene_file.hpp"
 
 namespace drape::verify::phases_test {
@@ -145,6 +146,20 @@ TEST(Seams, KeepMomentumWhereTheyMergeAndSayWhatIsLost) {
   EXPECT_NEAR(lost, kinetic_energy(open.ode, y.v) - kinetic_energy(sewn.ode, sewn.start.v), rounding);
   EXPECT_GT(lost, 0);
   EXPECT_EQ(sewn.begin, 0.2);
+}
+
+/// A step that conserves energy turns strains that jump into velocities: where seams have merged particles of the start, and
+/// where pins stop.
+TEST(Phases, ThatBeginByJumpsGiveNoEnergy) {
+  const std::pair<const char*, const char*> scenes[] = {{"dress", "0.05"}, {"curtain_drawn", "1.3"}};
+  for (const auto& [name, end] : scenes) {
+    bench::ContactWatch watch;
+    bench::Observer* const observers[] = {&watch};
+    const model::Override shorter[] = {{"end.time", end}};
+    const Scene jumps = model::load_scene(name, shorter);
+    ASSERT_TRUE(bench::record({jumps, "", &solver::method("sbdf2"), 0.01, {}}, observers, {}).succeeded()) << name;
+    EXPECT_THAT(watch.findings().energy_rise, testing::Optional(testing::Lt(1e-3))) << name;
+  }
 }
 
 TEST(Phases, HaveNoReference) {
