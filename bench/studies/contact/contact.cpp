@@ -65,11 +65,11 @@ constexpr const char* contact_scenes[] = {"stack",         "sphere_drop", "cloth
                                           "curtain_drawn", "box_swing",   "tablecloth",  "ball"};
 constexpr const char* contact_methods[] = {"sbdf2", "verlet", "imex-euler", "implicit-euler", "bdf2", "midpoint"};
 
-/// Garments meet themselves here, and not in the scenes.
-constexpr const char* self_contact_garments[] = {"dress", "sewn_dress", "walking_dress", "trousers"};
+constexpr const char* self_contact_garments[] = {"dress",        "sewn_dress", "walking_dress", "trousers",
+                                                 "circle_skirt", "t_shirt",    "sweater"};
 constexpr const char* self_contact_methods[] = {"sbdf2", "imex-euler"};
-constexpr const char* garment_thickness = "0.004";  // [m]
-constexpr double slowest_dress = 2000;              // wall time a simulated second [ms/s]
+constexpr double garment_thickness = 0.004;  // where the scene has none [m]
+constexpr double slowest_dress = 2000;       // wall time a simulated second [ms/s]
 
 bool is_garment(const std::string& name) { return std::ranges::count(self_contact_garments, name) > 0; }
 
@@ -89,9 +89,10 @@ std::span<const char* const> some_of(const char* const (&all)[n], bool quick, st
 model::Scene contact_scene(const std::string& name, bool quick, std::string_view response = contact_responses[0]) {
   std::vector<model::Override> changes{{"contact.response", std::string(response)}};
   if (name == "stack") return model::parse_scene(stack, name, changes);
-  if (is_garment(name)) changes.push_back({"contact.thickness", garment_thickness});
   if (quick) changes.push_back({"grid.n", "8"});
-  return model::load_scene(name, changes);
+  model::Scene scene = model::load_scene(name, changes);
+  if (is_garment(name) && scene.contact.thickness == 0) scene.contact.thickness = garment_thickness;
+  return scene;
 }
 
 /// Frames in which cloth is through itself or an obstacle; some may count twice.

@@ -243,8 +243,10 @@ TEST(KeptPatterns, CanBeSewn) {
 
 /// Built-in scenes have the panels and seams of the patterns from which they were made.
 TEST(KeptPatterns, AreThoseOfTheScenes) {
-  for (const std::string name : {"circle_skirt", "t_shirt"}) {
-    const auto sewn = model::sew(model::read_pattern(fmt::format("{}/model/patterns/{}.toml", DRAPE_SOURCE_DIR, name)), 0.02);
+  for (const auto& [name, spacing] :
+       {std::pair<std::string, double>("circle_skirt", 0.02), {"t_shirt", 0.02}, {"sweater", 0.0125}}) {
+    const auto sewn =
+        model::sew(model::read_pattern(fmt::format("{}/model/patterns/{}.toml", DRAPE_SOURCE_DIR, name)), spacing);
     const model::Scene scene = model::load_scene(name);
     ASSERT_EQ(scene.panels.size(), sewn.scene.panels.size());
     for (std::size_t k = 0; k < scene.panels.size(); ++k) {
