@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace drape::model {
 namespace {
@@ -156,7 +157,7 @@ int InsertionDraft::point(int face, const End& end) {
   const bool on_side = end.plane >= FacePrism::first_side, shared = on_side && end.shared;
   const int edge = on_side ? prisms_.sheet().sides(face)[end.plane - FacePrism::first_side] : -1;
   // A vertex of the obstacle is one point, whichever of its edges ends there.
-  const std::array key{shared ? -1 : face, edge, end.vertex < 0 ? -1 - end.particle.edge : end.vertex};
+  const Key key{shared ? -1 : face, edge, end.vertex < 0 ? -1 - end.particle.edge : end.vertex};
   const auto [found, is_new] = numbers_.try_emplace(key, static_cast<int>(points_.size()));
   if (is_new) points_.push_back({end.particle, key[0], edge, shared ? along(edge, end.particle.position) : 0});
   return found->second;

@@ -1,6 +1,8 @@
 #pragma once
 
-#include <map>
+#include <array>
+#include <cstddef>
+#include <deque>
 #include <optional>
 #include <unordered_map>
 #include <utility>
@@ -9,6 +11,7 @@
 #include "model/adaptive/edge_mesh.hpp"
 #include "model/adaptive/face_prism.hpp"
 #include "model/adaptive/insertion.hpp"
+#include "solver/base/hash.hpp"
 
 namespace drape::model {
 
@@ -16,11 +19,15 @@ namespace drape::model {
 class FacePrisms {
  public:
   /// `x`: positions of the nodes, N × 3 [m]. Both have to outlive this object.
-  FacePrisms(const EdgeMesh& sheet, const solver::Vectors& x) : sheet_(sheet), x_(x) {}
+  FacePrisms(const EdgeMesh& sheet, const solver::Vectors& x) : sheet_(sheet), x_(x), places_(sheet.triangles().size(), -1) {}
 
   const EdgeMesh& sheet() const { return sheet_; }
   const solver::Vectors& x() const { return x_; }
-  const FacePrism& of(int face) { return known_.try_emplace(face, sheet_, x_, face).first->second; }
+  const FacePrism& of(int face) {
+    int& place = places_[face];
+    if (place < 0) place = static_cast<int>(known_.size()), known_.emplace_back(sheet_, x_, face);
+    return known_[place];
+  }
 
   /// The image, in a face, of a point of the plane through one of its edges: along the edge, from its first end at 0 to its
   /// second at 1. Nothing if the point is beyond the centre of projection.
@@ -29,7 +36,8 @@ class FacePrisms {
  private:
   const EdgeMesh& sheet_;
   const solver::Vectors& x_;
-  std::unordered_map<int, FacePrism> known_;
+  std::vector<int> places_;      ///< of the faces in `known_`; −1: not there
+  std::deque<FacePrism> known_;  ///< as reached, so that references stay valid
 };
 
 /// Collects points on edges of an obstacle and joins those that faces share.
@@ -67,7 +75,13 @@ class InsertionDraft {
   double along(int edge, const Eigen::Vector3d& position);
 
   FacePrisms& prisms_;
-  std::map<std::array<int, 3>, int> numbers_;  ///< of points, by face and edge as in Point, and what is there
+  /// Face and edge as in Point, and what is there.
+  using Key = std::array<int, 3>;
+  struct KeyHash {
+    std::size_t operator()(const Key& key) const { return base::hash({reinterpret_cast<const char*>(key.data()), sizeof key}); }
+  };
+
+  std::unordered_map<Key, int, KeyHash> numbers_;  ///< of points
   std::vector<Point> points_;
   std::vector<Segment> segments_;
 };

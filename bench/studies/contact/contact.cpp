@@ -135,7 +135,8 @@ ContactParts parts_of(const WatchedRun& one) {
   std::size_t first = 0;
   while (first < all.size() && all[first].contacts == 0 && one.found.pairs[first] == 0) ++first;
   const std::size_t touching = all.size() - first;
-  const std::size_t at_rest = motion_at_end(all) <= resting ? std::min(most_at_rest, touching) : 0;
+  const bool rests = one.run.succeeded() && motion_at_end(all) <= resting;
+  const std::size_t at_rest = rests ? std::min(most_at_rest, touching) : 0;
   return {all.first(first), all.subspan(first, touching - at_rest), all.last(at_rest)};
 }
 
