@@ -13,7 +13,7 @@ StageSolver::StageSolver(const SplitOde& ode, const Options& options, ContactRes
     accelerated_ = std::make_unique<AcceleratedStage>(ode, options_, system_);
   else
     iteration_ = make_iteration(ode, options_, system_);
-  if (contacts != nullptr && !ode.pairs && options.stage->accelerated) in_contact_.emplace(ode.particles());
+  if (contacts != nullptr && options.stage->accelerated) in_contact_.emplace(ode.particles());
 }
 
 StageSolver::~StageSolver() = default;

@@ -88,8 +88,8 @@ std::span<const char* const> some_of(const char* const (&all)[n], bool quick, st
 /// For tests a scene is coarse where it has a grid of its own, and short.
 model::Scene contact_scene(const std::string& name, bool quick, std::string_view response = contact_responses[0]) {
   std::vector<model::Override> changes{{"contact.response", std::string(response)}};
+  if (quick) changes.push_back({"grid.n", name == "stack" ? "4" : "8"});
   if (name == "stack") return model::parse_scene(stack, name, changes);
-  if (quick) changes.push_back({"grid.n", "8"});
   model::Scene scene = model::load_scene(name, changes);
   if (is_garment(name) && scene.contact.thickness == 0) scene.contact.thickness = garment_thickness;
   return scene;
