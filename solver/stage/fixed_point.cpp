@@ -10,6 +10,10 @@ namespace {
 
 constexpr double worse = 4;  ///< growth of the residual, over the least one, that restarts an acceleration
 
+/// Updates in which contacts have not changed before acceleration begins. An accelerated iterate goes beyond the solution,
+/// where a pair may hold at a border of cells that the solution passes.
+constexpr int settled = 1, settled_pairs = 3;
+
 }  // namespace
 
 StageResult StageSolver::fixed_point(const Stage& stage, const Vectors* f_explicit, State& y) {
@@ -31,6 +35,7 @@ StageResult StageSolver::fixed_point(const Stage& stage, const Vectors* f_explic
   double least = std::numeric_limits<double>::infinity();
   StageSystem::Scale size{};
   bool coarse = false;
+  int quiet = 0;
   for (;; ++result.updates, ++work_.updates) {
     const bool accepted = passes > 0 && result.updates >= passes;
     if (accepted && !contacts) return y.x = stage.ax + stage.gamma * y.v, ended(Outcome::success);
@@ -60,7 +65,8 @@ StageResult StageSolver::fixed_point(const Stage& stage, const Vectors* f_explic
     const LinearResult system = system_.correct(coarse ? residual / 10 : solved_to);
     result.cg_iterations += system.iterations;
     if (anderson != nullptr) {
-      const bool restarts = changed || residual > worse * least;
+      quiet = changed ? 0 : quiet + 1;
+      const bool restarts = quiet < (ode_.pairs ? settled_pairs : settled) || residual > worse * least;
       if (restarts) anderson->restart();
       least = restarts ? residual : std::min(least, residual);
       anderson->advance(y.v, system_.correction());

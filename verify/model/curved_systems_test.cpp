@@ -11,6 +11,7 @@
 #include "model/scene_file/scene_file.hpp"
 #include "solver/linear/conjugate_gradients.hpp"
 #include "solver/linear/stage_matrix.hpp"
+#include "verify/support/slow.hpp"
 #include "verify/support/small_problems.hpp"
 
 namespace drape::verify::curved_systems_test {
@@ -53,6 +54,7 @@ TEST(MultigridOfCurvedPanels, NeedsHardlyMoreIterationsOnFineGrids) {
 }
 
 TEST(AutomaticChoice, FactorsWhereSpacingsVary) {
+  DRAPE_SLOW();
   const auto chosen = [](const solver::SparseMatrix& A) {
     const auto automatic = solver::make_automatic();
     EXPECT_EQ(automatic->factor(A), solver::Outcome::success);

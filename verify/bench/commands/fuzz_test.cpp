@@ -114,7 +114,7 @@ TEST(Fuzz, DamagedScenesAreScenesOrErrors) {
   int refused = 0, accepted = 0;
   for (const char* name : {"hung-edge", "wind", "tablecloth", "box_swing", "curtain"}) {
     const std::string good = model::to_toml(model::load_scene(name));
-    for (int k = 0; k < 200 * rounds; ++k) {
+    for (int k = 0; k < 100 * rounds; ++k) {
       write(file, mutated(good, random));
       ++(refuses<model::SceneError>([&] { model::load_scene(file.string()); }) ? refused : accepted);
     }

@@ -12,6 +12,7 @@
 #include "solver/methods.hpp"
 #include "verify/support/convergence.hpp"
 #include "verify/support/model_fixtures.hpp"
+#include "verify/support/slow.hpp"
 
 namespace drape::verify::cut_test {
 namespace {
@@ -91,6 +92,7 @@ TEST(Cuts, HaveTheEnergiesOfHomogeneousStrains) {
 
 /// z = u²/2 + v²: strips along the border end half a cell before it.
 TEST(Cuts, HaveEnergiesOfBendingOfOrderOne) {
+  DRAPE_SLOW();
   const double exact = std::numbers::pi * radius * radius * (0.06 * 1 + 0.04 * 4) / 2;
   Convergence c;
   for (const int n : {21, 41, 81, 161, 321}) {

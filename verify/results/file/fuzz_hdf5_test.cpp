@@ -28,7 +28,7 @@ using Random = std::mt19937_64;
 #ifdef DRAPE_SANITIZE
 constexpr int files = 3;  // sanitizers make them ten times slower
 #else
-constexpr int files = 20;
+constexpr int files = 12;
 #endif
 
 const fs::path data = fs::path(DRAPE_SOURCE_DIR) / "verify/data";

@@ -11,6 +11,8 @@
 #include "bench/runs/record.hpp"
 #include "bench/runs/reference_work.hpp"
 #include "model/collision/self_contacts.hpp"
+#include "reference/reference.hpp"
+#include "solver/base/statistics.hpp"
 #include "solver/contact/pair_search.hpp"
 #include "solver/contact/separation.hpp"
 #include "verify/support/contact_scenes.hpp"
@@ -99,28 +101,29 @@ Trial on_a_slope(double degrees, double friction) {
       9.81 * std::sin(a), -9.81 * std::cos(a), friction));
 }
 
-/// Across borders of cells, of which a step passes half of one at the end: where a step ends between them changes the speed by
-/// up to a tenth, whence means over steps.
+/// Across borders of cells, of which a step passes half of one at the end. A border may catch a particle for a step, which
+/// changes the speed by up to a tenth, with few steps: whence medians.
 TEST_P(SelfContactBy, SlidesAndSticksByCoulombsLaw) {
+  DRAPE_SLOW();
   const double a = 40 * M_PI / 180, time = 0.2;
-  const auto slide = [&](double friction, std::span<const int> counts) {
-    double speed = 0, way = 0;
-    for (const int steps : counts) {
-      const std::vector<Moment> moments = contact_scenes::run(on_a_slope(40, friction), GetParam(), time / steps);
-      const State &y0 = moments.front().y, &y = moments.back().y;
-      speed += y.v.bottomRows(25).col(0).mean() / std::ssize(counts);
-      way += (y.x - y0.x).bottomRows(25).col(0).mean() / std::ssize(counts);
-    }
-    return std::pair(speed, way);
+  const auto slide = [&](double friction, int steps) {
+    const std::vector<Moment> moments = contact_scenes::run(on_a_slope(40, friction), GetParam(), time / steps);
+    const State &y0 = moments.front().y, &y = moments.back().y;
+    return std::pair(y.v.bottomRows(25).col(0).mean(), (y.x - y0.x).bottomRows(25).col(0).mean());
   };
-  const std::vector<int> one{20}, several{18, 20, 21};
   for (const double friction : {0.0, 0.3}) {
     const double expected = time * 9.81 * (std::sin(a) - friction * std::cos(a));
-    const auto [speed, way] = slide(friction, friction > 0 ? several : one);
-    EXPECT_NEAR(speed, expected, 0.03 * expected) << friction;
-    EXPECT_NEAR(way, 0.5 * time * expected, 0.07 * 0.5 * time * expected) << friction;  // 5 % are Euler's error
+    std::vector<double> speeds, ways;
+    for (const int steps : {18, 20, 21, 22, 25}) {
+      const auto [speed, way] = slide(friction, steps);
+      EXPECT_NEAR(speed, expected, 0.13 * expected) << friction << ", " << steps;
+      speeds.push_back(speed), ways.push_back(way);
+    }
+    EXPECT_NEAR(base::quantile(speeds, 0.5), expected, 0.03 * expected) << friction;
+    EXPECT_NEAR(base::quantile(ways, 0.5), 0.5 * time * expected, 0.07 * 0.5 * time * expected)
+        << friction;  // 5 % are Euler's error
   }
-  EXPECT_LE(std::abs(slide(1, one).second), 5e-4) << "of 0.126 m without friction";
+  EXPECT_LE(std::abs(slide(1, 20).second), 5e-4) << "of 0.126 m without friction";
 }
 
 INSTANTIATE_TEST_SUITE_P(All, SelfContactBy,
@@ -130,6 +133,27 @@ INSTANTIATE_TEST_SUITE_P(All, SelfContactBy,
                            std::ranges::replace(name, '-', '_');
                            return name;
                          });
+
+TEST(SelfContact, IsAcceleratedToTheSameMotion) {
+  for (const char* method : {"implicit-euler", "bdf2", "midpoint"}) {
+    const auto solved = [&](const char* stage) {
+      const model::Override longer[] = {{"end.time", "0.1"}};
+      const Trial trial = plates(longer);
+      solver::Options options;
+      options.loop_tolerance = 1e-8;
+      options.stage = &solver::stage_kind(stage);
+      const std::vector<Moment> moments = contact_scenes::run(trial, method, 0.01, options);
+      EXPECT_GT(trial.cloth.ode.work->count("constrained_pairs"), 0);
+      return std::pair(moments.back().y, trial.cloth.ode.work->count("updates"));
+    };
+    const auto [plain, plain_updates] = solved("fixed-point");
+    for (const char* stage : {"anderson", "auto"}) {
+      const auto [accelerated, updates] = solved(stage);
+      EXPECT_LE(reference::rms_distance(accelerated.x, plain.x), 1e-5 * 0.2) << method << " " << stage;
+      EXPECT_LT(updates, 0.8 * static_cast<double>(plain_updates)) << method << " " << stage;
+    }
+  }
+}
 
 TEST(SelfContact, KeepsBothMomentaToRoundOff) {
   // Without forces between particles all changes are those of contacts; explicit and implicit response.
@@ -154,6 +178,7 @@ TEST(SelfContact, KeepsBothMomentaToRoundOff) {
 }
 
 TEST(SelfContact, HoldsAStackAtRest) {
+  DRAPE_SLOW();
   const Trial trial = compiled(
       "grid = { n = 8, size = 0.2 }\n"
       "material = { density = 0.3, tension = 200, damping = 0.2, shear = 10, bend = 1e-5 }\n"

@@ -172,6 +172,7 @@ TEST(ExponentialMethods, CutLongSteps) {
 }
 
 TEST(ExponentialMethods, SaySoWhereTheStepNeedsTooManyCuts) {
+  DRAPE_SLOW();
   const Row row = row_of_springs(100, 0);
   Integrator integrator(row.ode, solver::method("exponential-euler"), {}, row.start);
   EXPECT_EQ(integrator.step(1e9).outcome, Outcome::not_converged);
