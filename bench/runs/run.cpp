@@ -70,13 +70,17 @@ class ObservedRun {
     if (counts_) meter_.watch(*watched_);
     if (hook_) hook_(*watched_);
     integrator_.emplace(watched_ ? *watched_ : cloth_->ode, *spec_.method, spec_.options, cloth_->start, cloth_->begin,
-                        phase_ > 0 || is_sewn() ? solver::Start::jump : solver::Start::smooth);
+                        begins_by_jump() ? solver::Start::jump : solver::Start::smooth);
     for (Observer* observer : observers_) observer->begin(phase(), *cloth_, integrator_->state());
     begun_ = true;
   }
 
-  /// Whether seams have merged particles of the start.
-  bool is_sewn() const { return cloth_->garment->nodes() < cloth_->garment->particles(); }
+  /// Whether strains or velocities jump from particle to particle where the phase begins: seams have merged particles, or begin
+  /// to pull.
+  bool begins_by_jump() const {
+    const model::Garment& garment = *cloth_->garment;
+    return phase_ > 0 || garment.nodes() < garment.particles() || !garment.sewn_nodes().empty();
+  }
 
   /// Returns what is to be said of it.
   std::string enter_next_phase() {

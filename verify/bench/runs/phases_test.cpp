@@ -160,6 +160,9 @@ TEST(Phases, ThatBeginByJumpsGiveNoEnergy) {
     ASSERT_TRUE(bench::record({jumps, "", &solver::method("sbdf2"), 0.01, {}}, observers, {}).succeeded()) << name;
     EXPECT_THAT(watch.findings().energy_rise, testing::Optional(testing::Lt(1e-3))) << name;
   }
+  const model::Override beginning[] = {{"end.time", "0.2"}};
+  const bench::RunSpec pulled{model::load_scene("t_shirt", beginning), "", &solver::method("sbdf2"), 0.04, {}};
+  EXPECT_EQ(bench::record(pulled, {}, {}).outcome, solver::Outcome::success) << "seams begin to pull";
 }
 
 TEST(Phases, HaveNoReference) {
