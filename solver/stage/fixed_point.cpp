@@ -12,7 +12,7 @@ constexpr double worse = 4;  ///< growth of the residual, over the least one, th
 
 /// Updates in which contacts have not changed before acceleration begins. An accelerated iterate goes beyond the solution,
 /// where a pair may hold at a border of cells that the solution passes.
-constexpr int settled = 1, settled_pairs = 3;
+constexpr int quiet_updates = 1, quiet_pair_updates = 3;
 
 }  // namespace
 
@@ -66,7 +66,7 @@ StageResult StageSolver::fixed_point(const Stage& stage, const Vectors* f_explic
     result.cg_iterations += system.iterations;
     if (anderson != nullptr) {
       quiet = changed ? 0 : quiet + 1;
-      const bool restarts = quiet < (ode_.pairs ? settled_pairs : settled) || residual > worse * least;
+      const bool restarts = quiet < (ode_.pairs ? quiet_pair_updates : quiet_updates) || residual > worse * least;
       if (restarts) anderson->restart();
       least = restarts ? residual : std::min(least, residual);
       anderson->advance(y.v, system_.correction());
