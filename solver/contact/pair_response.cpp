@@ -14,7 +14,7 @@ constexpr double recovery = 0.2;      ///< part of what is missing of the thickn
 constexpr double worn = 0.95;         ///< part of the thickness below which a pair is missed
 constexpr double leaving = 1.5;       ///< thicknesses beyond which a pair of the step before is forgotten
 constexpr double turned = 0.95;       ///< cosine of the angle by which its normal may turn before it is
-constexpr int most_sweeps = 60;       ///< over all rows
+constexpr int most_sweeps = 400;      ///< over all rows
 constexpr double balance = 1e-4;      ///< force that may be left where rows push, over that of the residual
 constexpr double settled = 0.1;       ///< the same when the sweeps end, over what may be left
 constexpr double hard = 0.1;          ///< of the thickness: a pair that comes nearer than this in a step meets with an impact
@@ -237,9 +237,10 @@ bool PairResponse::find(const Stage& stage, const State& y) {
   return true;
 }
 
-/// Moves u, with multipliers, to where all rows and supports keep what is least. `rubs`: by Coulomb's law; otherwise what
-/// sticks keeps sticking, and what slides keeps its friction.
-void PairResponse::settle(const Eigen::VectorXd& mass, double noise, std::vector<Support>& supports) {
+/// Moves u, with multipliers, to where all rows and supports keep what is least. What sticks keeps sticking, and what slides
+/// keeps its friction. Returns what the sweeps leave undecided [N s]: where many rows push in few directions, multipliers move
+/// between them for thousands of sweeps.
+double PairResponse::settle(const Eigen::VectorXd& mass, double noise, std::vector<Support>& supports) {
   loose_ = free_;
   for (const Support& support : supports) loose_[support.particle] += support.normal * support.normal.transpose();
   const int directions = rubs_ ? 3 : 1;
@@ -260,7 +261,7 @@ void PairResponse::settle(const Eigen::VectorXd& mass, double noise, std::vector
       if (push.gain[c] < held_part * unheld) push.gain[c] = 0;  // pins and obstacles hold the pair
     }
   }
-  const double small = settled * noise / std::sqrt(rows_.size());
+  const double rows = std::sqrt(rows_.size()), small = settled * noise / rows;
   double most = small + 1;
   for (int sweep = 0; sweep < most_sweeps && most > small; ++sweep) {
     most = 0;
@@ -278,6 +279,7 @@ void PairResponse::settle(const Eigen::VectorXd& mass, double noise, std::vector
       most = std::max(most, std::abs(impulse));
     }
   }
+  return most > small ? most * rows : 0;
 }
 
 /// Decides by Coulomb's law how rows rub at velocities v; true if that changes.
@@ -323,11 +325,11 @@ bool PairResponse::update(State& y, const Vectors& r, const Eigen::VectorXd& bou
     force += pull.squaredNorm();
   }
   noise = std::max(noise, balance * std::sqrt(force));
-  settle(bounds, noise, supports);
+  const double undecided = settle(bounds, noise, supports);
   const bool changes =
       std::ranges::any_of(rows_, [&](const Row& row) { return row.lambda[0] > 0 ? !row.active : releases && row.active; }) ||
       std::ranges::any_of(supports, [](const Support& support) { return support.lambda == 0; });
-  if (changes && (bounds.asDiagonal() * (u_ - y.v)).norm() > 3 * noise) {
+  if (changes && (bounds.asDiagonal() * (u_ - y.v)).norm() > 3 * std::max(noise, undecided)) {
     y.v = u_;
     activate(releases);
   } else {

@@ -117,7 +117,7 @@ class PairResponse : public Projector {
   PairMotion motion_at(const Row& row, const Vectors& x) const;
   Row row_of(const PairContact& pair, const PairContact::Points& points) const;
   void leave(Row& row) const;
-  void settle(const Eigen::VectorXd& mass, double noise, std::vector<Support>& supports);
+  double settle(const Eigen::VectorXd& mass, double noise, std::vector<Support>& supports);
   void activate(bool releases);
   bool rub(const Vectors& v, double noise);
   void factorise();
