@@ -15,9 +15,7 @@ constexpr double no_plane = 0;
 constexpr double time_of_velocities = 1e-6;
 
 TriangleMesh mesh_of(const Polygons& polygons) {
-  TriangleMesh mesh{"its surface", polygons.vertices, {}};
-  for (const std::vector<int>& face : polygons.faces)
-    for (std::size_t k = 2; k < face.size(); ++k) mesh.triangles.push_back({face[0], face[k - 1], face[k]});
+  TriangleMesh mesh{"its surface", polygons.vertices, fan_triangles(polygons)};
   const PseudoNormals closed(mesh);
   turn_outward(mesh);
   require_volume(mesh);
