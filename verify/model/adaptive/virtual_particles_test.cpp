@@ -266,7 +266,7 @@ TEST(VirtualParticles, AreThoseOfAllPairsOfTriangles) {
     std::int64_t steps = 0;
     model::FacePrisms prisms(made.search.sheet(), made.x);
     std::vector<Vector3d> normals;
-    for (const auto& triangle : scene.body.triangles) normals.push_back(face_normal(corners(scene.body, triangle)));
+    for (const auto& triangle : scene.body.triangles) normals.push_back(model::face_normal(corners(scene.body, triangle)));
     model::SurfaceMarch march(prisms, made.search.obstacle(), scene.body.vertices, normals, *std::pmr::get_default_resource(),
                               steps);
     for (int face = 0; face < std::ssize(scene.sheet.faces); ++face)
