@@ -123,7 +123,7 @@ TEST(Rays, FindTheHalfSpacesOfAConvexBody) {
       "[0.1, 0, 0.2], rotation = [0, 0, 30] }]";
   solver::State y;
   y.x.resize(4, 3), y.v.resize(4, 3);
-  y.x << 0, 0, 0.555, 0.3, 0.2, 0.545, 0.3, 0.3, 0.556, -0.3, 0.1, 0.9;
+  y.x << 0, 0, 0.555, 0.3, 0.2, 0.545, 0.3, 0.3, 0.5525, -0.3, 0.1, 0.9;
   y.v << 0.1, 0, -0.5, 0.05, 0.1, 0.2, 0, 0, 0, 0, 0, -0.5;
   const auto rays = contacts_of(by_rays, box, y), half_spaces = contacts_of(by_half_spaces, box, y);
   ASSERT_EQ(rays.size(), 3u);  // the last is too high
