@@ -81,11 +81,11 @@ struct Depth {
 ///
 /// Rays: obstacles are the closed meshes that are drawn. A particle is a ball of radius d that goes straight from where it is
 /// to x + h v + h² g, in the frame of the obstacle; where it first touches the mesh, the half-space is behind the nearest
-/// point. The print has the ray go to the new position, which no step knows before contacts are solved (`passed` does); its
-/// centre alone would not see what rests at distance d, and slips between the displaced faces of an edge. The print also names
-/// the kind that is found face/particle: particles of the cloth in faces of the obstacle, not its corners in faces of the
-/// cloth. Limits: what forces of the cloth push farther than free flight is seen a step later, or not, if the obstacle is
-/// thinner than its way; so is what is more than d inside, and what lies on the border where its free flight leaves it.
+/// point. The print has the ray go to the new position, which no step knows before contacts are solved: only `passed` does so.
+/// A ray of the centre alone, as printed, would not see what rests at distance d; one against faces that are displaced by d
+/// would slip between those of an edge. Of what the print calls face/particle, particles of the cloth in faces of the obstacle
+/// are found, corners of the obstacle in faces of the cloth are not. Limits: what the forces of cloth push farther than free
+/// flight is found a step later, or not at all if the obstacle is thinner than this way; so is what is more than d inside.
 class Contacts {
  public:
   /// For this number of particles under this acceleration [m/s²]. Throws as met_parts.
