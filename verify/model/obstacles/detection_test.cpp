@@ -150,6 +150,18 @@ TEST(Rays, FindWhatHasSunkIn) {
   EXPECT_LE((found[0].normal - Vector3d::UnitZ()).norm(), 1e-12);
 }
 
+/// It falls along a wall, on which no way of its own would find it.
+TEST(Rays, FindWhatStandsOnTheBorder) {
+  solver::State y;
+  y.x.resize(1, 3), y.v.resize(1, 3);
+  y.x << 1.01 + 1e-9, 0, 0;
+  y.v << 0, 0, -1;
+  const auto found = contacts_of(by_rays, "shape = 'box', size = [2, 2, 1]", y);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_NEAR(found[0].gap, 1e-9, 1e-12);
+  EXPECT_LE((found[0].normal - Vector3d::UnitX()).norm(), 1e-12);
+}
+
 /// Heights of four particles over a plate of 1 mm at z = −0.2 after they were shot at it with 50 m/s, half a meter a step.
 Eigen::VectorXd heights_over_plate(const std::string& contact, const std::string& method) {
   const Trial trial = particles(contact +
