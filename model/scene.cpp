@@ -146,7 +146,7 @@ std::vector<solver::Pin> pins(const Scene& scene) {
 }
 
 Contacts contacts(const Scene& scene, solver::Counters& work) {
-  return {scene.obstacles, scene.contact, scene.sheet.gravity.norm(), Garment(scene).nodes(), work};
+  return {scene.obstacles, scene.contact, scene.sheet.gravity, Garment(scene).nodes(), work};
 }
 
 solver::State start_of(const Grid& grid, const Start& start) {

@@ -56,11 +56,10 @@ Readable read_obstacles(const results::RunRecord& run) {
   return read;
 }
 
-/// Corners of triangles, polygons cut into fans.
+/// Corners of triangles.
 std::vector<int> triangles(const model::Polygons& polygons) {
   std::vector<int> corners;
-  for (const std::vector<int>& face : polygons.faces)
-    for (std::size_t k = 2; k < face.size(); ++k) corners.insert(corners.end(), {face[0], face[k - 1], face[k]});
+  for (const auto& [a, b, c] : model::fan_triangles(polygons)) corners.insert(corners.end(), {a, b, c});
   return corners;
 }
 

@@ -52,6 +52,9 @@ std::span<const Study> studies() {
       {.name = "table-5.1",
        .description = "virtual particles: what they cost beside the thesis' figures, what they are worth, what their jumps do",
        .answer = table_5_1},
+      {.name = "detection",
+       .description = "particles that meet obstacles found by half-spaces and by rays: contacts, penetration, CG, time",
+       .answer = detection},
       {.name = "contact",
        .description =
            "cloth that meets itself and bodies: pairs, CG in flight and at rest, times, balances, intersections, largest steps",

@@ -61,6 +61,7 @@ std::vector<Job> figure_3_2(const Question& question);
 std::vector<Job> figure_3_3(const Question& question);
 std::vector<Job> figure_4_3(const Question& question);
 std::vector<Job> table_5_1(const Question& question);
+std::vector<Job> detection(const Question& question);
 std::vector<Job> contact(const Question& question);
 std::vector<Job> conditioning(const Question& question);
 std::vector<Job> limits(const Question& question);

@@ -239,10 +239,7 @@ model::TriangleMesh surface_at_end(const model::Scene& scene, const results::Run
       scene.contact.adaptive ? std::span(scene.obstacles) : std::span<const model::ObstacleRule>();
   const model::Polygons polygons =
       model::SheetRefinement(model::Garment(scene), met).polygons(run.last_good_time, run.final_state.x);
-  model::TriangleMesh mesh;
-  mesh.vertices = polygons.vertices;
-  for (const std::vector<int>& face : polygons.faces) mesh.triangles.push_back({face[0], face[1], face[2]});
-  return mesh;
+  return {"the sheet", polygons.vertices, model::fan_triangles(polygons)};
 }
 
 double distance_from(const model::TriangleMesh& surface, const Vectors& nodes) {

@@ -2,8 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <map>
+#include <numeric>
 #include <stdexcept>
 #include <string_view>
+
+#include "model/collision/box_tree.hpp"
+#include "model/collision/exact_intersection.hpp"
 
 namespace drape::model {
 namespace {
@@ -15,27 +22,70 @@ constexpr double no_plane = 0;
 constexpr double time_of_velocities = 1e-6;
 
 TriangleMesh mesh_of(const Polygons& polygons) {
-  TriangleMesh mesh{"its surface", polygons.vertices, {}};
-  for (const std::vector<int>& face : polygons.faces)
-    for (std::size_t k = 2; k < face.size(); ++k) mesh.triangles.push_back({face[0], face[k - 1], face[k]});
+  TriangleMesh mesh{"its surface", polygons.vertices, fan_triangles(polygons)};
   const PseudoNormals closed(mesh);
   turn_outward(mesh);
   require_volume(mesh);
   return mesh;
 }
 
+/// For each triangle the number of its body, by which triangles with common vertices are joined; in the order of the triangles.
+std::vector<int> bodies_of(const TriangleMesh& mesh) {
+  std::vector<int> joined(mesh.vertices.size());
+  std::iota(joined.begin(), joined.end(), 0);
+  const auto root = [&](int vertex) {
+    while (joined[vertex] != vertex) vertex = joined[vertex] = joined[joined[vertex]];
+    return vertex;
+  };
+  for (const auto& [a, b, c] : mesh.triangles) joined[root(b)] = joined[root(c)] = root(a);
+  std::map<int, int> numbers;
+  std::vector<int> bodies;
+  for (const auto& triangle : mesh.triangles)
+    bodies.push_back(numbers.try_emplace(root(triangle[0]), static_cast<int>(numbers.size())).first->second);
+  return bodies;
+}
+
+/// `owners`: the obstacle of each triangle, ascending; `name`: of an obstacle's body, of which it has 0, 1, …
+void require_apart(const TriangleMesh& mesh, const std::vector<int>& owners, const auto& name) {
+  const std::vector<int> bodies = bodies_of(mesh);
+  std::vector<Eigen::Vector3d> centres;
+  std::vector<Eigen::AlignedBox3d> boxes;
+  for (const auto& triangle : mesh.triangles) {
+    const auto [a, b, c] = corners(mesh, triangle);
+    centres.emplace_back((a + b + c) / 3);
+    boxes.emplace_back(a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c));
+  }
+  BoxTree tree(centres);
+  tree.refit(boxes);
+  const auto named = [&](int triangle) {
+    const int owner = owners[triangle];
+    const auto first = std::ranges::lower_bound(owners, owner) - owners.begin();
+    return name(owner, bodies[triangle] - bodies[first]);
+  };
+  tree.overlapping_pairs([&](int i, int j) {
+    if (bodies[i] == bodies[j] || !intersect(corners(mesh, mesh.triangles[i]), corners(mesh, mesh.triangles[j]))) return;
+    throw std::invalid_argument(
+        fmt::format("contact.adaptive: expected bodies that do not touch, {} and {} do", named(i), named(j)));
+  });
+}
+
 }  // namespace
 
 BodySurface::BodySurface(std::span<const ObstacleRule> obstacles) : mesh_{"obstacles", {}, {}} {
+  std::vector<int> owners;
   for (std::size_t k = 0; k < obstacles.size(); ++k) {
     const ObstacleRule& rule = obstacles[k];
     if (rule.kind->name == endless) continue;
     try {
       add(rule);
+      owners.resize(mesh_.triangles.size(), static_cast<int>(k));
     } catch (const std::invalid_argument& error) {
       throw std::invalid_argument(fmt::format("obstacles[{}] ({}): {}", k, rule.kind->name, error.what()));
     }
   }
+  require_apart(mesh_, owners, [&](int owner, int body) {
+    return fmt::format("body {} of obstacles[{}] ({})", body, owner, obstacles[owner].kind->name);
+  });
 }
 
 void BodySurface::add(const ObstacleRule& rule) {

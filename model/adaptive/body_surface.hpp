@@ -12,8 +12,8 @@ namespace drape::model {
 /// particle does.
 class BodySurface {
  public:
-  /// Throws std::invalid_argument, in one line that begins with the key of the obstacle, unless its surface is closed and its
-  /// triangles have areas and enclose a volume.
+  /// Throws std::invalid_argument, in one line that names the key of the obstacle, unless its surface is closed, its triangles
+  /// have areas and enclose a volume, and none of its bodies touches another one where the motion begins: by exact predicates.
   explicit BodySurface(std::span<const ObstacleRule> obstacles);
 
   bool empty() const { return mesh_.triangles.empty(); }

@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
+#include <memory_resource>
 #include <unordered_map>
 #include <utility>
 
@@ -146,7 +147,9 @@ class FlatFace {
   /// border have to stay as they are to it.
   double bulge_;
   Planar planar_;
-  std::unordered_map<int, Vertex> vertices_;
+  std::array<std::byte, 8192> buffer_;  ///< enough for most faces
+  std::pmr::monotonic_buffer_resource memory_{buffer_.data(), buffer_.size()};
+  std::pmr::unordered_map<int, Vertex> vertices_{&memory_};
 };
 
 }  // namespace

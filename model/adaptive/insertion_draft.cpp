@@ -18,7 +18,8 @@ int side_of(const EdgeMesh& mesh, int triangle, int edge) {
 /// Numbers what was drafted.
 class Assembly {
  public:
-  explicit Assembly(FacePrisms& prisms) : prisms_(prisms), sheet_(prisms.sheet()), x_(prisms.x()) {}
+  explicit Assembly(FacePrisms& prisms)
+      : prisms_(prisms), sheet_(prisms.sheet()), x_(prisms.x()), places_(sheet_.triangles().size(), -1) {}
 
   int add_inside(int face, const VirtualParticle& particle) {
     const int number = add(particle);
@@ -80,12 +81,16 @@ class Assembly {
   }
 
   Insertion finished() {
-    for (auto& [face, hit] : faces_) all_.faces.push_back(std::move(hit));
+    std::ranges::sort(all_.faces, {}, &HitFace::face);
     return std::move(all_);
   }
 
  private:
-  HitFace& hit(int face) { return faces_.try_emplace(face, HitFace{face, {}, {}, {}}).first->second; }
+  HitFace& hit(int face) {
+    int& place = places_[face];
+    if (place < 0) place = static_cast<int>(all_.faces.size()), all_.faces.push_back({face, {}, {}, {}});
+    return all_.faces[place];
+  }
 
   int add(const VirtualParticle& particle) {
     all_.particles.push_back(particle);
@@ -133,7 +138,7 @@ class Assembly {
   FacePrisms& prisms_;
   const EdgeMesh& sheet_;
   const solver::Vectors& x_;
-  std::map<int, HitFace> faces_;
+  std::vector<int> places_;  ///< of hit faces in those of `all_`; −1: not there
   Insertion all_;
 };
 

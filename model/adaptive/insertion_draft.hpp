@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <deque>
+#include <memory_resource>
 #include <optional>
 #include <unordered_map>
 #include <utility>
@@ -43,7 +44,8 @@ class FacePrisms {
 /// Collects points on edges of an obstacle and joins those that faces share.
 class InsertionDraft {
  public:
-  explicit InsertionDraft(FacePrisms& prisms) : prisms_(prisms) {}
+  /// `memory`: for what is needed until this object ends.
+  InsertionDraft(FacePrisms& prisms, std::pmr::memory_resource& memory) : prisms_(prisms), numbers_(&memory) {}
 
   /// An end of a segment.
   struct End {
@@ -71,17 +73,17 @@ class InsertionDraft {
     std::array<double, 2> parameters;
   };
 
-  int point(int face, const End& end);
-  double along(int edge, const Eigen::Vector3d& position);
-
-  FacePrisms& prisms_;
   /// Face and edge as in Point, and what is there.
   using Key = std::array<int, 3>;
   struct KeyHash {
     std::size_t operator()(const Key& key) const { return base::hash({reinterpret_cast<const char*>(key.data()), sizeof key}); }
   };
 
-  std::unordered_map<Key, int, KeyHash> numbers_;  ///< of points
+  int point(int face, const End& end);
+  double along(int edge, const Eigen::Vector3d& position);
+
+  FacePrisms& prisms_;
+  std::pmr::unordered_map<Key, int, KeyHash> numbers_;  ///< of points
   std::vector<Point> points_;
   std::vector<Segment> segments_;
 };

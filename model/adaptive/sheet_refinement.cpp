@@ -28,6 +28,7 @@ Polygons SheetRefinement::polygons(double t, const Vectors& x) {
 
 void require_bodies(const Scene& scene) {
   if (scene.contact.adaptive) const BodySurface bodies(scene.obstacles);
+  if (scene.contact.detection == DetectionKind::ray) met_parts(scene.obstacles, scene.contact);
 }
 
 }  // namespace drape::model

@@ -30,7 +30,8 @@ class SheetRefinement {
   std::vector<Eigen::Vector3d> vertices_, velocities_;
 };
 
-/// Throws std::invalid_argument as BodySurface does if a scene asks for virtual particles on what is no closed body.
+/// Throws std::invalid_argument as BodySurface and met_parts do if a scene asks for virtual particles or rays on what is no
+/// closed body.
 void require_bodies(const Scene& scene);
 
 }  // namespace drape::model

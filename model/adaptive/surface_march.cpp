@@ -13,10 +13,16 @@ constexpr double no_angle = 1e-9;  // [rad], far above rounding, far below the a
 }  // namespace
 
 SurfaceMarch::SurfaceMarch(FacePrisms& prisms, const EdgeMesh& obstacle, std::span<const Vector3d> vertices,
-                           std::int64_t& steps)
-    : prisms_(prisms), obstacle_(obstacle), vertices_(vertices), steps_(steps), draft_(prisms) {
-  for (const auto& [a, b, c] : obstacle.triangles()) normals_.push_back(face_normal({vertices[a], vertices[b], vertices[c]}));
-}
+                           std::span<const Vector3d> normals, std::pmr::memory_resource& memory, std::int64_t& steps)
+    : prisms_(prisms),
+      obstacle_(obstacle),
+      vertices_(vertices),
+      steps_(steps),
+      normals_(normals),
+      draft_(prisms, memory),
+      known_(&memory),
+      inserted_(&memory),
+      ahead_(&memory) {}
 
 bool SurfaceMarch::can_enter(int face, int triangle) {
   if (known_.contains(place(face, triangle))) return false;

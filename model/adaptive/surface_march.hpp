@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory_resource>
 #include <span>
 #include <unordered_set>
 #include <utility>
@@ -17,8 +18,10 @@ namespace drape::model {
 /// edges only, and none goes down to the far side.
 class SurfaceMarch {
  public:
-  /// `vertices`: of the obstacle, at the same time as the prisms [m]; `steps`: counts triangles that are clipped by a prism.
-  SurfaceMarch(FacePrisms& prisms, const EdgeMesh& obstacle, std::span<const Eigen::Vector3d> vertices, std::int64_t& steps);
+  /// `vertices` and unit `normals` of the triangles: of the obstacle, at the same time as the prisms [m]; `memory`: for what is
+  /// needed until this object ends; `steps`: counts triangles that are clipped by a prism.
+  SurfaceMarch(FacePrisms& prisms, const EdgeMesh& obstacle, std::span<const Eigen::Vector3d> vertices,
+               std::span<const Eigen::Vector3d> normals, std::pmr::memory_resource& memory, std::int64_t& steps);
 
   /// Whether there is something to find from a triangle of the obstacle that has a point in common with a face: it has not been
   /// visited there, is in front of the face, and comes from behind it. One that only touches the front is on the far side.
@@ -44,10 +47,11 @@ class SurfaceMarch {
   const EdgeMesh& obstacle_;
   std::span<const Eigen::Vector3d> vertices_;
   std::int64_t& steps_;
-  std::vector<Eigen::Vector3d> normals_;  ///< of the triangles of the obstacle
+  std::span<const Eigen::Vector3d> normals_;
   InsertionDraft draft_;
-  std::unordered_set<std::int64_t> known_, inserted_;  ///< numbers of pairs: of a face and a triangle, of a face and an edge
-  std::vector<std::pair<int, int>> ahead_;             ///< faces and triangles
+  std::pmr::unordered_set<std::int64_t> known_,
+      inserted_;                                 ///< numbers of pairs: of a face and a triangle, of a face and an edge
+  std::pmr::vector<std::pair<int, int>> ahead_;  ///< faces and triangles
 };
 
 }  // namespace drape::model

@@ -14,6 +14,7 @@ using solver::Vectors;
 
 std::vector<Corners> corners_at(const EdgeMesh& mesh, const auto& position) {
   std::vector<Corners> all;
+  all.reserve(mesh.triangles().size());
   for (const auto& [a, b, c] : mesh.triangles()) all.push_back({position(a), position(b), position(c)});
   return all;
 }
@@ -26,6 +27,7 @@ std::vector<Vector3d> centres_of(const std::vector<Corners>& triangles) {
 
 std::vector<Eigen::AlignedBox3d> boxes_of(const std::vector<Corners>& triangles) {
   std::vector<Eigen::AlignedBox3d> all;
+  all.reserve(triangles.size());
   for (const auto& [a, b, c] : triangles) all.emplace_back(a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c));
   return all;
 }
@@ -61,6 +63,8 @@ void VirtualParticles::move_obstacle(std::span<const Vector3d> vertices) {
   if (std::ranges::equal(vertices, vertices_)) return;
   vertices_.assign(vertices.begin(), vertices.end());
   body_ = corners_at(obstacle_, items_of(vertices));
+  normals_.clear();
+  for (const Corners& triangle : body_) normals_.push_back(face_normal(triangle));
   obstacle_tree_.refit(boxes_of(body_));
 }
 
@@ -68,11 +72,12 @@ Insertion VirtualParticles::find(const Vectors& x, std::span<const Vector3d> ver
   const std::vector<Corners> cloth = corners_at(sheet_, rows_of(x));
   sheet_tree_.refit(boxes_of(cloth));
   move_obstacle(vertices);
-  std::vector<std::array<int, 2>> near;
+  std::pmr::monotonic_buffer_resource memory(&memory_);
+  std::pmr::vector<std::array<int, 2>> near(&memory);
   sheet_tree_.overlapping_pairs(obstacle_tree_, [&](int face, int triangle) { near.push_back({face, triangle}); });
   std::ranges::sort(near);  // so that the order of particles does not depend on the trees
   FacePrisms prisms(sheet_, x);
-  SurfaceMarch march(prisms, obstacle_, vertices, steps_);
+  SurfaceMarch march(prisms, obstacle_, vertices, normals_, memory, steps_);
   for (const auto& [face, triangle] : near) {
     if (!march.can_enter(face, triangle)) continue;
     ++pairs_;

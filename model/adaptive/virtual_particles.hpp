@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory_resource>
 #include <span>
 #include <vector>
 
@@ -42,8 +43,10 @@ class VirtualParticles {
 
   EdgeMesh sheet_, obstacle_;
   BoxTree sheet_tree_, obstacle_tree_;
-  std::vector<Eigen::Vector3d> vertices_;  ///< of the obstacle where it was last; empty before
-  std::vector<Corners> body_;              ///< its triangles there
+  std::vector<Eigen::Vector3d> vertices_;          ///< of the obstacle where it was last; empty before
+  std::vector<Corners> body_;                      ///< its triangles there
+  std::vector<Eigen::Vector3d> normals_;           ///< of these, unit
+  std::pmr::unsynchronized_pool_resource memory_;  ///< what a search needs, kept for the next
   std::int64_t &pairs_, &steps_;
 };
 

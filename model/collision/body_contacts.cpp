@@ -18,13 +18,6 @@ Eigen::AlignedBox3d box_of_way(const std::array<int, 3>& corners, const Vectors&
   return {box.min() - around, box.max() + around};
 }
 
-std::vector<std::array<int, 3>> triangles_in(const Polygons& polygons) {
-  std::vector<std::array<int, 3>> all;
-  for (const std::vector<int>& face : polygons.faces)
-    for (std::size_t k = 2; k < face.size(); ++k) all.push_back({face[0], face[k - 1], face[k]});
-  return all;
-}
-
 /// Edges of triangles that are convex, or the border of one: all, if the surface may deform.
 std::set<std::array<int, 2>> searched_edges(const Polygons& surface, const std::vector<std::array<int, 3>>& triangles,
                                             bool is_rigid) {
@@ -81,7 +74,7 @@ BodyContacts::BodyContacts(const ClothSurface& cloth, std::span<const ObstacleRu
 }
 
 void BodyContacts::add_faces(const Polygons& surface, int body, bool is_rigid) {
-  const std::vector<std::array<int, 3>> triangles = triangles_in(surface);
+  const std::vector<std::array<int, 3>> triangles = fan_triangles(surface);
   std::set<std::array<int, 2>> edges = searched_edges(surface, triangles, is_rigid);
   std::set<int> vertices;
   for (const auto& [low, high] : edges) vertices.insert({low, high});

@@ -11,9 +11,8 @@ namespace {
 
 std::vector<Corners> triangles_of(const Polygons& polygons) {
   std::vector<Corners> all;
-  for (const std::vector<int>& face : polygons.faces)
-    for (std::size_t k = 2; k < face.size(); ++k)
-      all.push_back({polygons.vertices[face[0]], polygons.vertices[face[k - 1]], polygons.vertices[face[k]]});
+  for (const auto& [a, b, c] : fan_triangles(polygons))
+    all.push_back({polygons.vertices[a], polygons.vertices[b], polygons.vertices[c]});
   return all;
 }
 

@@ -1,11 +1,15 @@
 #include "model/obstacles/contacts.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <stdexcept>
 #include <utility>
 
+#include "model/obstacles/mesh_shape.hpp"
 #include "model/obstacles/obstacle_at_time.hpp"
 
 namespace drape::model {
@@ -13,17 +17,35 @@ namespace {
 
 constexpr double pose_step = 1e-4;  ///< over the time of a reaction: of the times whose poses give velocities
 
-std::vector<Obstacle> all_parts(std::span<const ObstacleRule> rules) {
-  std::vector<Obstacle> all;
-  for (const ObstacleRule& rule : rules) std::ranges::move(parts_of(rule), std::back_inserter(all));
-  return all;
+/// What stands on the border ends steps there but for round-off, and must be found again.
+constexpr double on_border = 1 + 1e-6;  ///< of the distance
+
+std::vector<Obstacle> mesh_parts(const ObstacleRule& rule, std::size_t index) {
+  try {
+    return mesh_parts_of(rule);
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(fmt::format("contact.detection: expected \"half-spaces\" with obstacles[{}] ({}): {}", index,
+                                            rule.kind->name, error.what()));
+  }
 }
 
 }  // namespace
 
-Contacts::Contacts(std::span<const ObstacleRule> obstacles, const ContactRule& rule, double gravity, int particles,
-                   solver::Counters& work)
-    : obstacles_(all_parts(obstacles)),
+std::vector<Obstacle> met_parts(std::span<const ObstacleRule> obstacles, const ContactRule& rule) {
+  const bool by_rays = rule.detection == DetectionKind::ray;
+  if (by_rays && rule.response != ResponseKind::constraint && !relocates(rule.response))
+    throw std::invalid_argument(
+        "contact.detection: expected \"half-spaces\", rays find what is met in a step, which is not what contact.response "
+        "asks");
+  std::vector<Obstacle> all;
+  for (std::size_t k = 0; k < obstacles.size(); ++k)
+    std::ranges::move(by_rays ? mesh_parts(obstacles[k], k) : parts_of(obstacles[k]), std::back_inserter(all));
+  return all;
+}
+
+Contacts::Contacts(std::span<const ObstacleRule> obstacles, const ContactRule& rule, const Eigen::Vector3d& gravity,
+                   int particles, solver::Counters& work)
+    : obstacles_(met_parts(obstacles, rule)),
       distance_(rule.distance),
       relaxation_(rule.relaxation),
       alters_(rule.response == ResponseKind::alteration),
@@ -35,6 +57,9 @@ Contacts::Contacts(std::span<const ObstacleRule> obstacles, const ContactRule& r
     const PosedMesh* mesh = obstacle.deforming();
     deforming_.push_back(mesh != nullptr ? std::optional(Deforming{*mesh, *mesh}) : std::nullopt);
   }
+  if (rule.detection != DetectionKind::ray) return;
+  rays_ = &work.counter("rays", "ways of particles on which an obstacle was searched");
+  boxes_ = &work.counter("ray_boxes", "boxes around triangles of obstacles that rays looked into");
 }
 
 void Contacts::Deforming::set_times(double t, double h) {
@@ -51,44 +76,91 @@ Contacts::Border Contacts::Deforming::border(const Eigen::Vector3d& p, const Mat
 }
 
 void Contacts::find(double t, double h, const solver::State& y, std::vector<solver::Contact>& found) {
-  const double fastest = h * y.v.rowwise().norm().maxCoeff() + h * h * gravity_;
-  for (std::size_t k = 0; k < obstacles_.size(); ++k) {
-    const Obstacle& obstacle = obstacles_[k];
-    std::optional<Deforming>& deforming = deforming_[k];
-    const Pose begin = obstacle.pose(t), end = obstacle.pose(t + h);
-    double deformed = 0, way = fastest;
-    if (deforming) {
-      deforming->set_times(t, h);
-      deformed = deforming->begin.moving().way(t);
-      way += deforming->begin.moving().way(t + h) - deformed;
-    }
-    for (int i = 0; i < y.x.rows(); ++i) {
-      const Eigen::Vector3d x = y.x.row(i), p = begin.to_body(x);
-      const double reach = 2 * (way + (end.to_world(p) - x).norm()) + distance_;
-      Answer& last = answers_[k][i];
-      const double changed = std::abs(deformed - last.way);
-      if (last.known && last.nearest.distance - (p - last.p).norm() - changed > distance_ + reach) continue;
-      std::optional<PosedMesh::Touch> touch;
-      if (deforming) touch = deforming->begin.touch(p);
-      last = {p, touch ? touch->nearest : obstacle.nearest(p), deformed, true};
-      ++queries_;
-      const double gap = last.nearest.distance - distance_;
-      if (!(gap <= reach) || (alters_ && gap >= 0)) continue;
-      const Eigen::Vector3d rigid = p - gap * last.nearest.normal;
-      const auto [border, border_at_end, outwards] =
-          touch ? deforming->border(p, touch->at, distance_) : Border{rigid, rigid, last.nearest.normal};
-      const Eigen::Vector3d at_end = end.to_world(border_at_end), normal = end.rotation * outwards;
-      found.push_back({.particle = i,
-                       .obstacle = static_cast<int>(k),
-                       .normal = normal,
-                       .gap = gap,
-                       .least = at_end.dot(normal) + (1 - relaxation_) * std::min(gap, 0.0),
-                       .velocity = (at_end - begin.to_world(border)) / h,
-                       .friction = obstacle.friction(),
-                       .alters = alters_});
-    }
+  for (int k = 0; k < std::ssize(obstacles_); ++k) {
+    const Ride ride{obstacles_[k].pose(t), obstacles_[k].pose(t + h), h};
+    if (rays_ != nullptr)
+      find_by_rays(k, ride, y, found);
+    else
+      find_half_spaces(k, t, ride, y, found);
   }
   std::ranges::stable_sort(found, {}, &solver::Contact::particle);
+}
+
+solver::Contact Contacts::contact(int particle, int obstacle, double gap, const Ride& ride, const Border& border) const {
+  const Eigen::Vector3d normal = ride.end.rotation * border.normal;
+  return {.particle = particle,
+          .obstacle = obstacle,
+          .normal = normal,
+          .gap = gap,
+          .least = ride.end.to_world(border.end).dot(normal) + (1 - relaxation_) * std::min(gap, 0.0),
+          .velocity = ride.velocity(border),
+          .friction = obstacles_[obstacle].friction(),
+          .alters = alters_};
+}
+
+void Contacts::find_half_spaces(int k, double t, const Ride& ride, const solver::State& y,
+                                std::vector<solver::Contact>& found) {
+  const auto& [begin, end, h] = ride;
+  std::optional<Deforming>& deforming = deforming_[k];
+  double deformed = 0, way = h * y.v.rowwise().norm().maxCoeff() + h * h * gravity_.norm();
+  if (deforming) {
+    deforming->set_times(t, h);
+    deformed = deforming->begin.moving().way(t);
+    way += deforming->begin.moving().way(t + h) - deformed;
+  }
+  for (int i = 0; i < y.x.rows(); ++i) {
+    const Eigen::Vector3d x = y.x.row(i), p = begin.to_body(x);
+    const double reach = 2 * (way + (end.to_world(p) - x).norm()) + distance_;
+    Answer& last = answers_[k][i];
+    const double changed = std::abs(deformed - last.way);
+    if (last.known && last.nearest.distance - (p - last.p).norm() - changed > distance_ + reach) continue;
+    std::optional<PosedMesh::Touch> touch;
+    if (deforming) touch = deforming->begin.touch(p);
+    last = {p, touch ? touch->nearest : obstacles_[k].nearest(p), deformed, true};
+    ++queries_;
+    const double gap = last.nearest.distance - distance_;
+    if (!(gap <= reach) || (alters_ && gap >= 0)) continue;
+    const Eigen::Vector3d rigid = p - gap * last.nearest.normal;
+    found.push_back(contact(i, k, gap, ride,
+                            touch ? deforming->border(p, touch->at, distance_) : Border{rigid, rigid, last.nearest.normal}));
+  }
+}
+
+void Contacts::find_by_rays(int k, const Ride& ride, const solver::State& y, std::vector<solver::Contact>& found) {
+  const Eigen::Vector3d fall = ride.h * ride.h * gravity_;
+  for (int i = 0; i < y.x.rows(); ++i) {
+    const Eigen::Vector3d x = y.x.row(i), free = x + ride.h * y.v.row(i).transpose() + fall, from = ride.begin.to_body(x);
+    if (const auto border = cast(k, from, ride.end.to_body(free)))
+      found.push_back(contact(i, k, (from - border->begin).dot(border->normal), ride, *border));
+  }
+}
+
+/// Where a ball of radius d first meets an obstacle on its way.
+std::optional<Contacts::Border> Contacts::cast(int obstacle, const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+  const PosedMesh& mesh = *obstacles_[obstacle].mesh();
+  ++*rays_;
+  const std::optional<double> part = mesh.first_within(from, to, on_border * distance_, *boxes_);
+  if (!part) return {};
+  ++queries_;
+  const Eigen::Vector3d at = from + *part * (to - from);
+  const auto [distance, normal] = mesh.nearest(at);
+  const Eigen::Vector3d border = at - (distance - distance_) * normal;
+  return Border{border, border, normal};
+}
+
+void Contacts::passed(double t, double h, const Vectors& x0, const Vectors& x1, std::vector<Depth>& found) {
+  found.clear();
+  for (int k = 0; k < std::ssize(obstacles_); ++k) {
+    const Ride ride{obstacles_[k].pose(t), obstacles_[k].pose(t + h), h};
+    for (int i = 0; i < x1.rows(); ++i) {
+      const Eigen::Vector3d to = ride.end.to_body(x1.row(i));
+      const auto border = cast(k, ride.begin.to_body(x0.row(i)), to);
+      if (!border) continue;
+      const double depth = (border->end - to).dot(border->normal);
+      if (depth > 0)
+        found.push_back({i, ride.end.rotation * border->normal, depth, ride.velocity(*border), obstacles_[k].friction()});
+    }
+  }
 }
 
 void Contacts::near(double t, const Vectors& x, double reach, std::vector<Depth>& found) {

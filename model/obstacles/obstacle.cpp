@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numbers>
 
+#include "model/obstacles/posed_mesh.hpp"
+
 namespace drape::model {
 namespace {
 
@@ -38,6 +40,11 @@ std::vector<Obstacle> parts_of(const ObstacleRule& rule) {
 }
 
 bool moves(const ObstacleRule& rule) { return rule.motion.size() > 1 || rule.shape->moves(); }
+
+const PosedMesh* Obstacle::deforming() const {
+  const PosedMesh* surface = mesh();
+  return surface != nullptr && surface->moving().moves() ? surface : nullptr;
+}
 
 Pose Obstacle::pose(double t) const {
   const Pose whole = pose_at(motion_, t);

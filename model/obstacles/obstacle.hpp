@@ -27,8 +27,8 @@ class Shape {
   /// Where it is nearest; of a shape that deforms, at its first key time.
   virtual Nearest nearest(const Eigen::Vector3d& p) const = 0;
 
-  /// The surface of a shape that deforms, at its first key time; null if it is rigid.
-  virtual const PosedMesh* deforming() const { return nullptr; }
+  /// The surface of a mesh, at its first key time; null if the shape is none.
+  virtual const PosedMesh* mesh() const { return nullptr; }
 };
 
 /// Position [m] and orientation of a rigid body.
@@ -112,7 +112,10 @@ class Obstacle {
 
   /// In the frame of the obstacle, as Shape has it.
   Nearest nearest(const Eigen::Vector3d& p) const { return shape_->nearest(p); }
-  const PosedMesh* deforming() const { return shape_->deforming(); }
+  const PosedMesh* mesh() const { return shape_->mesh(); }
+
+  /// That of a mesh that deforms, else null.
+  const PosedMesh* deforming() const;
 
  private:
   std::shared_ptr<const Shape> shape_;

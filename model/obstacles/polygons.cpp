@@ -10,6 +10,13 @@
 
 namespace drape::model {
 
+std::vector<std::array<int, 3>> fan_triangles(const Polygons& polygons) {
+  std::vector<std::array<int, 3>> all;
+  for (const std::vector<int>& face : polygons.faces)
+    for (std::size_t k = 2; k < face.size(); ++k) all.push_back({face[0], face[k - 1], face[k]});
+  return all;
+}
+
 Polygons square(double side) {
   const double a = side / 2;
   return {{{-a, -a, 0}, {a, -a, 0}, {a, a, 0}, {-a, a, 0}}, {{0, 1, 2, 3}}};

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <iosfwd>
 #include <vector>
 
@@ -11,6 +12,9 @@ struct Polygons {
   std::vector<Eigen::Vector3d> vertices;
   std::vector<std::vector<int>> faces;  ///< corners of a polygon, or the two ends of a line
 };
+
+/// The polygons as triangles: each is a fan around its first corner, so they should be convex. Lines have none.
+std::vector<std::array<int, 3>> fan_triangles(const Polygons& polygons);
 
 /// Around the origin at z = 0.
 Polygons square(double side);

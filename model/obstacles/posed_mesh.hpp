@@ -1,7 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "model/obstacles/moving_mesh.hpp"
 #include "model/obstacles/obstacle.hpp"
@@ -36,6 +38,12 @@ class PosedMesh {
 
   Nearest nearest(const Eigen::Vector3d& p) const;
   Touch touch(const Eigen::Vector3d& p) const;
+
+  /// As TriangleHierarchy.
+  std::optional<double> first_within(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double distance,
+                                     std::int64_t& boxes) const {
+    return hierarchy_.first_within(from, to, distance, boxes);
+  }
 
   /// Place of a point and orientation of its triangle.
   Pose pose(const MaterialPoint& at) const;

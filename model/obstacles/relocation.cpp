@@ -9,7 +9,10 @@ Relocation::Relocation(std::shared_ptr<Contacts> contacts, const ContactRule& ru
     : contacts_(std::move(contacts)), rule_(rule) {}
 
 bool Relocation::operator()(double t, double h, const solver::State& y0, solver::State& y1) {
-  contacts_->near(t + h, y1.x, rule_.distance, inside_);
+  if (rule_.detection == DetectionKind::ray)
+    contacts_->passed(t, h, y0.x, y1.x, inside_);
+  else
+    contacts_->near(t + h, y1.x, rule_.distance, inside_);
   found_ = y1.x;
   const double e = rule_.response == ResponseKind::reflect ? rule_.restitution : 0;
   const bool counteracts = rule_.response == ResponseKind::impulse;

@@ -14,8 +14,8 @@ namespace drape::model {
 ///     impulse:     w_n − h F_n / m       [Provot 1997; Etzmuß 2002, 4.2]
 ///
 /// unless they leave already. F = m (v − v⁻)/h estimates the force of the step, v⁻ being the velocity when it began, as far as
-/// it presses: what is set counteracts it in the next step. None has friction. Nothing is tested on the way: thin obstacles may
-/// be passed.
+/// it presses: what is set counteracts it in the next step. None has friction. Only rays test anything on the way: by
+/// half-spaces thin obstacles may be passed.
 class Relocation {
  public:
   Relocation(std::shared_ptr<Contacts> contacts, const ContactRule& rule);

@@ -17,6 +17,39 @@ constexpr int most_in_leaf = 4;  ///< triangles
 /// Halving 2^31 triangles takes 31 levels, each of which leaves one child to be visited later.
 constexpr int most_pending = 32;
 
+/// The part of a way after which it comes into a box that is larger by `margin` on all sides; infinite if it does not.
+double part_to_box(const AlignedBox3d& box, const Vector3d& from, const Vector3d& way, double margin) {
+  constexpr double never = std::numeric_limits<double>::infinity();
+  double in = 0, out = 1;
+  for (int c = 0; c < 3; ++c) {
+    const double low = box.min()[c] - margin - from[c], high = box.max()[c] + margin - from[c];
+    if (way[c] == 0) {
+      if (low > 0 || high < 0) return never;
+      continue;
+    }
+    const auto [near, far] = std::minmax({low / way[c], high / way[c]});
+    in = std::max(in, near), out = std::min(out, far);
+  }
+  return in <= out ? in : never;
+}
+
+/// The same for what is within `distance` of a triangle. That is convex, and so is the distance along the way: Newton's method
+/// from its beginning comes nearer to the first such place and never passes it.
+double part_to_triangle(const Corners& corners, const Vector3d& from, const Vector3d& way, double distance) {
+  constexpr double round_off = 1e-12;
+  for (double part = 0; part <= 1;) {
+    const Vector3d p = from + part * way, away = p - nearest_on_triangle(corners, p).point;
+    const double r = away.norm();
+    if (r <= (1 + round_off) * distance) return part;
+    const double approach = -away.dot(way) / r;
+    if (approach <= 0) break;
+    const double next = part + (r - distance) / approach;
+    if (next == part) return part;
+    part = next;
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
 }  // namespace
 
 TriangleHierarchy::TriangleHierarchy(const TriangleMesh& mesh) : order_(mesh.triangles.size()), corners_(order_.size()) {
@@ -93,6 +126,34 @@ TriangleHierarchy::Found TriangleHierarchy::nearest(const Vector3d& p) const {
     }
   }
   return found;
+}
+
+std::optional<double> TriangleHierarchy::first_within(const Vector3d& from, const Vector3d& to, double distance,
+                                                      std::int64_t& boxes) const {
+  const Vector3d way = to - from;
+  struct Pending {
+    int node;
+    double part;
+  };
+  const auto pending_at = [&](int node) { return Pending{node, part_to_box(nodes_[node].box, from, way, distance)}; };
+  std::array<Pending, most_pending> pending{pending_at(0)};
+  int count = 1;
+  double first = std::numeric_limits<double>::infinity();
+  while (count > 0) {
+    const auto [at, part] = pending[--count];
+    if (part >= first) continue;
+    ++boxes;
+    const Node& node = nodes_[at];
+    if (node.right > 0) {
+      Pending near = pending_at(at + 1), far = pending_at(node.right);
+      if (far.part < near.part) std::swap(near, far);
+      pending[count++] = far;
+      pending[count++] = near;
+      continue;
+    }
+    for (int k = node.begin; k < node.end; ++k) first = std::min(first, part_to_triangle(corners_[k], from, way, distance));
+  }
+  return first <= 1 ? std::optional(first) : std::nullopt;
 }
 
 }  // namespace drape::model

@@ -26,6 +26,7 @@ constexpr std::string_view friction_kinds[] = {"dahl", "jenkin"};
 constexpr std::string_view stretch_laws[] = {"linear", "tables"};
 constexpr std::string_view rest_shapes[] = {"flat", "start"};
 constexpr std::string_view planes[] = {"horizontal", "vertical"};
+constexpr std::string_view detections[] = {"half-spaces", "ray"};
 constexpr std::string_view responses[] = {"constraint", "reaction", "penalty", "field",
                                           "reposition", "reflect",  "impulse", "alteration"};
 
@@ -430,6 +431,8 @@ std::span<const SceneKey> scene_key_table() {
        in_contact<&ContactRule::faces>, check::flag},
       {"contact.response", "", "\"constraint\" (of velocities in the linear systems), \"alteration\" (of what is inside when a step begins), forces: \"reaction\" (damped springs instead of others), \"penalty\" (a steep potential), \"field\" (exponential, damped), or changes after a step: \"reposition\" (to the border, at rest), \"reflect\", \"impulse\" (against the force)",
        in_contact<&ContactRule::response>, check::one_of<responses>},
+      {"contact.detection", "", "of particles that may touch an obstacle: \"half-spaces\" (behind its nearest points) or \"ray\" (at which each ends its free flight, or its step; obstacles are the closed, rigid meshes that are drawn)",
+       in_contact<&ContactRule::detection>, check::one_of<detections>},
       {"contact.reaction_time", "s", "τ: the springs of reactions have k = m/τ² and d = 2m/τ",
        in_contact<&ContactRule::reaction_time>, check::positive},
       {"contact.push", "m/s²", "c: force of penalty and field on a unit of mass at distance d from an obstacle",

@@ -153,6 +153,16 @@ const std::vector<BadInput> bad_inputs = {
     {"VirtualParticlesWithCurves",
      run_with("--set", {"material.weft_curve=[[0, 0], [1, 2]]", "--set", "contact.adaptive=true"}),
      {"contact.adaptive: expected tension by the moduli alone"}},
+    {"BodiesThatOverlap",
+     run_with("--scene", {"overlapping.toml"}),
+     {"overlapping.toml: contact.adaptive: expected bodies that do not touch, ", "of obstacles[0] (mannequin) and body "}},
+    {"BodiesThatTouch",
+     run_with("--scene", {"touching.toml"}),
+     {"touching.toml: contact.adaptive: expected bodies that do not touch, body 0 of obstacles[1] (box) and body 0 of "
+      "obstacles[2] (box) do"}},
+    {"RaysAtAPlane",
+     run_with("--set", {"obstacles=[{ shape = 'plane', position = [0, 0, -5] }]", "--set", "contact.detection=ray"}),
+     {"hung-edge: contact.detection: expected \"half-spaces\" with obstacles[0] (plane): ", "expected a closed mesh"}},
     {"FewVerticesOfASphere",
      run_with("--set", {"obstacles=[{ shape = 'sphere', radius = 0.1, vertices = 19, position = [0, 0, -5] }]"}),
      {"obstacles.vertices = 19", "0 or a whole number from 20 to 100000"}},
@@ -207,6 +217,11 @@ void fill(const BenchIntegrators& program) {
                                       "{ shape = 'mesh', file = 'open.obj', position = [0, 0, -5] }]\n");
   program.write("flat_body.toml",
                 "name = \"a\"\n" + adaptive + "{ shape = 'mesh', file = 'flat.obj', position = [0, 0, -5] }]\n");
+  program.write("overlapping.toml", "name = \"a\"\n" + adaptive + "{ shape = 'mannequin', position = [0, 0, -5] }]\n");
+  program.write("touching.toml", "name = \"a\"\n" + adaptive +
+                                     "{ shape = 'plane', position = [0, 0, -9] },"
+                                     "{ shape = 'box', size = [1, 1, 1], position = [0, 0, -5] },"
+                                     "{ shape = 'box', size = [1, 1, 1], position = [0.5, 1, -4.5] }]\n");
   program.write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   program.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 1 4 2\nf 2 4 3\nf 3 4 1\n");
   program.write("exists.h5", "a user's results");

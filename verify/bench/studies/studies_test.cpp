@@ -455,6 +455,24 @@ TEST_F(ProgramStudies, VirtualParticlesKeepACoarseSheetOut) {
   EXPECT_GT(penetration[0], 10 * penetration[1]);
 }
 
+TEST_F(ProgramStudies, RaysFindWhatHalfSpacesFind) {
+  const auto all = tables("detection");
+  ASSERT_THAT(all, SizeIs(1));
+  ASSERT_EQ(rows(all[0]), 4u);  // two detections, twice
+  const auto of = [&](const std::string& column, const std::string& detection) {
+    return numbers(all[0], column, "detection", detection);
+  };
+  EXPECT_THAT(of("constrained", "ray"), Each(Gt(1)));
+  EXPECT_THAT(of("time", "ray"), Each(Gt(0)));
+  EXPECT_THAT(of("inside", "half-spaces"), Each(0));
+  EXPECT_THAT(of("inside", "ray"), Each(0));
+  EXPECT_THAT(of("distance", "ray"), AllOf(SizeIs(2), Each(Lt(1e-3))));
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_LT(of("found", "ray")[k], of("found", "half-spaces")[k]);
+    EXPECT_LT(of("distances", "ray")[k], of("distances", "half-spaces")[k]);
+  }
+}
+
 TEST_F(ProgramStudies, EveryCellOfTheAtlasEndsInAVerdict) {
   DRAPE_SLOW();
   const auto all = tables("stability");  // in the order of their names

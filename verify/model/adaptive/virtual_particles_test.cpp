@@ -8,6 +8,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <map>
+#include <memory_resource>
 #include <random>
 #include <set>
 #include <string>
@@ -264,7 +265,10 @@ TEST(VirtualParticles, AreThoseOfAllPairsOfTriangles) {
   for_random_scenes(200, [&](const SheetOverBody& scene, const Refinement& made) {
     std::int64_t steps = 0;
     model::FacePrisms prisms(made.search.sheet(), made.x);
-    model::SurfaceMarch march(prisms, made.search.obstacle(), scene.body.vertices, steps);
+    std::vector<Vector3d> normals;
+    for (const auto& triangle : scene.body.triangles) normals.push_back(model::face_normal(corners(scene.body, triangle)));
+    model::SurfaceMarch march(prisms, made.search.obstacle(), scene.body.vertices, normals, *std::pmr::get_default_resource(),
+                              steps);
     for (int face = 0; face < std::ssize(scene.sheet.faces); ++face)
       for (int triangle = 0; triangle < std::ssize(scene.body.triangles); ++triangle)
         if (march.can_enter(face, triangle) &&

@@ -228,6 +228,8 @@ const std::vector<BadScene> bad_scenes = {
     {"no_relaxation", "contact.relaxation = 0", "a.toml:2: contact.relaxation = 0: expected a number above 0"},
     {"unknown_response", "contact.response = 'spring'",
      "a.toml:2: contact.response = 'spring': expected one of \"constraint\", \"reaction\", \"penalty\", \"field\", \"reposition\", \"reflect\", \"impulse\", \"alteration\""},
+    {"unknown_detection", "contact.detection = 'rays'",
+     "a.toml:2: contact.detection = 'rays': expected one of \"half-spaces\", \"ray\""},
     {"restitution_above_one", "contact.restitution = 1.5", "a.toml:2: contact.restitution = 1.5: expected a number from 0 to 1"},
     {"no_reaction_time", "contact.reaction_time = 0", "a.toml:2: contact.reaction_time = 0: expected a number above 0"},
 

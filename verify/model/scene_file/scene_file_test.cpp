@@ -97,6 +97,7 @@ height = 0.05
 distance = 2e-3
 relaxation = 1
 response = "reaction"
+detection = "ray"
 reaction_time = 0.01
 push = 20
 exponent = 12
@@ -180,6 +181,7 @@ void expect_complete(const Scene& scene) {
   EXPECT_EQ(scene.contact.distance, 2e-3);
   EXPECT_EQ(scene.contact.relaxation, 1);
   EXPECT_EQ(scene.contact.response, model::ResponseKind::reaction);
+  EXPECT_EQ(scene.contact.detection, model::DetectionKind::ray);
   EXPECT_EQ(scene.contact.reaction_time, 0.01);
   EXPECT_EQ(scene.contact.push, 20);
   EXPECT_EQ(scene.contact.exponent, 12);
