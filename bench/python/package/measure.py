@@ -64,7 +64,7 @@ class Measurement:
                  ("Largest usable steps of a sheet hung by two corners", self.stability)]
         texts = [f"{title}\n{_shown(frame)}" for title, frame in parts if frame is not None]
         if self.files:
-            texts.append(f"report: bench/run report {' '.join(map(str, self.files))}")
+            texts.append(f"report: bench/run report {' '.join(map(str, self.files))} --out report")
         return "\n\n".join(texts)
 
 

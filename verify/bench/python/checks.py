@@ -229,6 +229,7 @@ class Measured(unittest.TestCase):
             found = drape.measure(explicit_euler, scenes=drape.scene("hung-corners", KEYS), steps=[0.001], beside=["verlet"],
                                   stability=False, repetitions=1, out=out)
             self.assertEqual([file.name for file in found.files], ["runs.h5", "orders.h5"])
+            self.assertIn(f"bench/run report {out}/runs.h5 {out}/orders.h5 --out report", str(found))
             tables = drape.read(out / "runs.h5")
             self.assertEqual(list(tables["runs"].method), ["mine", "verlet"])
             self.assertEqual((tables["steps"].run == 0).sum(), 200)
