@@ -42,6 +42,11 @@ std::string program_hash() {
   return base::hash_text(bytes);
 }
 
+std::vector<Fact>& further_makers() {
+  static std::vector<Fact> facts;
+  return facts;
+}
+
 constexpr std::array<std::string_view, 6> of_a_start{"started", "command_line", "cores", "host_os", "resumed", "finished"};
 
 }  // namespace
@@ -69,6 +74,8 @@ std::string why_not_resumed(const Provenance& theirs, const Provenance& ours) {
   return {};
 }
 
+void also_made_by(Fact fact) { further_makers().push_back(std::move(fact)); }
+
 Provenance provenance(std::string command_line, std::string sweep) {
   Provenance facts{
 // Both are written by CMake: rows {name, value, description}.
@@ -76,6 +83,7 @@ Provenance provenance(std::string command_line, std::string sweep) {
 #include "results/git_commit.inc"
   };
   facts.push_back({"program_hash", program_hash(), "hash of the program file"});
+  std::ranges::copy(further_makers(), std::back_inserter(facts));
   facts.push_back({"cpu", cpu_model(), "model of the processor"});
   facts.push_back({"cores", std::to_string(std::thread::hardware_concurrency()), "number of cores this program may use"});
   facts.push_back({"host_os", operating_system(), "operating system, release and architecture of the host"});

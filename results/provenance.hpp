@@ -24,6 +24,9 @@ std::string value_of(const Provenance& facts, std::string_view name);
 /// nothing else.
 Provenance provenance(std::string command_line, std::string sweep = "none");
 
+/// From now on this is a part of provenance(): what else computes results.
+void also_made_by(Fact fact);
+
 /// Whether a sweep starts from the beginning or continues what a process before it has recorded, if there is something.
 enum class Start { fresh, resumed };
 

@@ -1,8 +1,14 @@
 #include "solver/methods.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <iterator>
+#include <stdexcept>
+#include <string>
+#include <vector>
 
+#include "solver/added_methods.hpp"
+#include "solver/base/printable.hpp"
 #include "solver/base/registry.hpp"
 
 namespace drape::solver {
@@ -347,6 +353,24 @@ constexpr auto thesis_rows =
 static_assert(std::all_of(method_rows, method_rows + thesis_rows, [](const Method& m) { return m.in_thesis; }),
               "those of the thesis first");
 
+constexpr std::size_t most_added = 64;
+
+/// The rows, and those that are added. Its memory does not move: rows are known by their addresses.
+std::vector<Method>& method_table() {
+  static std::vector<Method> all = [] {
+    std::vector<Method> rows;
+    rows.reserve(std::size(method_rows) + most_added);
+    rows.assign(std::begin(method_rows), std::end(method_rows));
+    return rows;
+  }();
+  return all;
+}
+
+bool is_name(std::string_view text) {
+  const auto plain = [](unsigned char c) { return std::islower(c) != 0 || std::isdigit(c) != 0 || c == '-'; };
+  return !text.empty() && text.size() <= 60 && std::ranges::all_of(text, plain);
+}
+
 }  // namespace
 
 std::string_view Method::family() const {
@@ -358,7 +382,22 @@ std::string_view Method::family() const {
   return history > 1 ? "implicit multi-step" : "implicit one-step";
 }
 
-std::span<const Method> methods() { return method_rows; }
+std::span<const Method> methods() { return method_table(); }
+
+void add_methods(std::span<const Method> rows) {
+  std::vector<Method>& all = method_table();
+  for (const Method& row : rows) {
+    const std::string name = "method '" + base::quoted(row.name) + "': ";
+    if (!is_name(row.name)) throw std::invalid_argument(name + "expected a name of small letters, digits and '-', 60 at most");
+    if (std::ranges::find(all, row.name, &Method::name) != all.end())
+      throw std::invalid_argument(name + "there is one of this name; expected another");
+    if (row.step == nullptr || row.order < 1) throw std::invalid_argument(name + "expected a step and an order from 1 on");
+    if (row.in_thesis) throw std::invalid_argument(name + "expected in_thesis = false: these are ours");
+    if (all.size() == all.capacity())
+      throw std::invalid_argument(name + "expected at most " + std::to_string(most_added) + " that are added");
+    all.push_back(row);
+  }
+}
 
 std::span<const Method> thesis_methods() { return methods().first(thesis_rows); }
 

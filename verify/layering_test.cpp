@@ -81,6 +81,7 @@ const std::vector<Room> rooms = {
     {"bench/score", {"bench/score/"}, {"bench/studies"}},
     {"bench/commands", {"bench/commands/"}, {"bench/score", "bench/report", "model/pattern"}},
     {"bench/kernels", {"bench/kernels/"}, {"model/scene_file"}},
+    {"bench/python", {"bench/python/"}, {"bench/commands"}},
     {"bench", {"bench/"}, {"bench/commands"}},
 
     {"verify", {"verify/"}, {"bench", "solver/methods"}},

@@ -19,6 +19,7 @@
 #include "bench/commands/argument_checks.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/help.hpp"
+#include "bench/commands/plugin.hpp"
 #include "bench/runs/available_memory.hpp"
 #include "bench/runs/interruption.hpp"
 #include "model/scene_file/scene_file.hpp"
@@ -106,6 +107,11 @@ int run_command_line(int argc, const char* const* argv) {
   app.require_subcommand(0, 1);
   app.formatter(std::make_shared<HelpFormat>());
   app.set_version_flag("--version", version_text, "show the version");
+  app.add_option_function<std::vector<std::string>>(
+         "--plugin", [](const std::vector<std::string>& files) { std::ranges::for_each(files, load_plugin); },
+         "load methods from a shared library (repeatable; bench/plugin)")
+      ->type_name("FILE.so")
+      ->allow_extra_args(false);
   int exit_code = 0;
   add_commands(app, command_line, exit_code);
   app.footer(

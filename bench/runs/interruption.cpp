@@ -18,6 +18,8 @@ void note_interruptions() {
   for (const int signal : {SIGINT, SIGTERM}) sigaction(signal, &action, nullptr);
 }
 
+void forget_interruptions() { noted_signal = 0; }
+
 void check_interruption() {
   if (const int signal = noted_signal; signal != 0) throw Interrupted{signal};
 }

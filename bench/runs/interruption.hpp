@@ -14,6 +14,9 @@ struct Interrupted {
 /// From now on SIGINT and SIGTERM are only noted, except a second one, which kills.
 void note_interruptions();
 
+/// Those noted so far count no more: for programs that go on after one.
+void forget_interruptions();
+
 /// Throws Interrupted if there was one.
 void check_interruption();
 

@@ -144,7 +144,7 @@ OrdersOnScene compute_orders(const model::Scene& scene, double most_work, const 
     for (const bool events : {false, true}) {
       if (events && !ends_at_kinks) continue;
       constexpr double more_work = 16;  // a sheet has kinks by the hundred, and a step ends at each
-      RunSpec spec = tight(scene, name);
+      RunSpec spec = tight(scene, *method);
       spec.options.ends_at_kinks = events;
       auto curve =
           refine(spec, events ? name + ", events" : name, cloth, reference, (events ? more_work : 1) * most_work, checkpoint);
@@ -167,12 +167,17 @@ model::Scene smooth_scene() {
                                                                         {"end.time", "0.6"}});
 }
 
-RunSpec tight(const model::Scene& scene, const std::string& name) {
-  RunSpec spec{scene, "", nullptr, scene.end, solver::thesis_options()};
+RunSpec tight(const model::Scene& scene, const solver::Method& method) {
+  RunSpec spec{scene, "", &method, scene.end, solver::thesis_options()};
   spec.options.loop_tolerance = 1e-11;
   spec.options.cg_tolerance = 1e-12;
   spec.options.stage_accuracy = 1e-4;
   spec.options.linear_solver = &solver::linear_solver("cholesky");
+  return spec;
+}
+
+RunSpec tight(const model::Scene& scene, const std::string& name) {
+  RunSpec spec = tight(scene, solver::methods().front());
   choose_method(spec, name);
   return spec;
 }

@@ -20,6 +20,9 @@ model::Scene smooth_scene();
 /// linear solvers or without. Throws std::invalid_argument as choose_method() does.
 RunSpec tight(const model::Scene& scene, const std::string& name);
 
+/// The same with the usual solvers of a method, which need not be one of the table.
+RunSpec tight(const model::Scene& scene, const solver::Method& method);
+
 /// A run of one method with one step.
 struct RefinedRun {
   std::string scene, method;
