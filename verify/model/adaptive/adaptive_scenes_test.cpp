@@ -9,6 +9,7 @@
 #include "model/adaptive/sheet_refinement.hpp"
 #include "model/collision/exact_intersection.hpp"
 #include "verify/support/contact_scenes.hpp"
+#include "verify/support/slow.hpp"
 
 namespace drape::verify::adaptive_scenes_test {
 namespace {
@@ -63,23 +64,41 @@ const std::vector<std::string> scenes{"box_four", "round_table_100", "square_tab
 class AdaptiveScene : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(, AdaptiveScene, testing::ValuesIn(scenes), [](const auto& test) { return test.param; });
 
-TEST_P(AdaptiveScene, HasNoFaceThroughItsObstacle) {
-  const Trial trial = builtin(GetParam());
+/// Frames of a run.
+struct Frames {
+  int all = 0;
+  int whole = 0;                ///< those in which the coarse sheet intersects the obstacle
+  std::vector<double> refined;  ///< times of those in which the refined sheet does
+};
+
+Frames frames_of(const Trial& trial, const std::string& method, double step) {
   model::SheetRefinement refinement(*trial.cloth.garment, trial.scene.obstacles);
   model::SheetRefinement coarse(*trial.cloth.garment, {});
   const Triangles obstacle = obstacle_of(trial.scene);
-  int whole = 0, refined = 0, frames = 0;
-  std::vector<double> bad;
-  for (const Moment& moment : run(trial, "implicit-euler", 0.01)) {
-    whole += intersections(sheet_of(coarse.polygons(moment.t, moment.y.x)), obstacle) > 0 ? 1 : 0;
-    const int count = intersections(sheet_of(refinement.polygons(moment.t, moment.y.x)), obstacle);
-    refined += count > 0 ? 1 : 0;
-    if (count > 0) bad.push_back(moment.t);
-    ++frames;
+  Frames frames;
+  for (const Moment& moment : run(trial, method, step)) {
+    frames.whole += intersections(sheet_of(coarse.polygons(moment.t, moment.y.x)), obstacle) > 0 ? 1 : 0;
+    if (intersections(sheet_of(refinement.polygons(moment.t, moment.y.x)), obstacle) > 0) frames.refined.push_back(moment.t);
+    ++frames.all;
   }
-  EXPECT_EQ(refined, 0) << "of " << frames << " frames, at " << testing::PrintToString(bad);
-  EXPECT_GT(whole, frames / 4) << "there is something to refine";
-  EXPECT_GT(trial.cloth.ode.work->counter("divided_springs", ""), frames) << "and forces depend on it";
+  return frames;
+}
+
+TEST_P(AdaptiveScene, HasNoFaceThroughItsObstacle) {
+  const Trial trial = builtin(GetParam());
+  const Frames frames = frames_of(trial, "implicit-euler", 0.01);
+  EXPECT_THAT(frames.refined, testing::IsEmpty()) << "of " << frames.all << " frames";
+  EXPECT_GT(frames.whole, frames.all / 4) << "there is something to refine";
+  EXPECT_GT(trial.cloth.ode.work->counter("divided_springs", ""), frames.all) << "and forces depend on it";
+}
+
+TEST_P(AdaptiveScene, HasNoneByOtherMethodsAndSteps) {
+  DRAPE_SLOW();
+  for (const std::string& method : methods())
+    for (const double step : {0.005, 0.02}) {
+      const Trial trial = builtin(GetParam());
+      EXPECT_THAT(frames_of(trial, method, step).refined, testing::IsEmpty()) << method << ", " << step;
+    }
 }
 
 /// [Etzmuß 2002, 5.2, fig. 5.13]
