@@ -134,6 +134,8 @@ def measure(step: Step | type | str, name: str | None = None, *, order: int | No
     every = [scene("hung-corners", n=10, damping=5, time=0.3)] if scenes is None else [scenes] if isinstance(scenes, Scene) else list(scenes)
     if not every:
         raise ValueError("scenes: expected at least one drape.scene(...)")
+    if isinstance(beside, str) or any(not isinstance(method, str) for method in beside):
+        raise ValueError("beside: expected a list of names of methods, [\"bdf2\", \"verlet\"]")
     if any(not isinstance(one, Scene) for one in every):
         raise ValueError("scenes: expected drape.scene(...), or a list of such")
     sizes = [float(h) for h in (steps if steps is not None else (0.01, 0.005, 0.0025, 0.00125))]

@@ -13,6 +13,7 @@
 #include "results/file/run_file.hpp"
 #include "solver/integrator.hpp"
 #include "verify/support/bench_integrators.hpp"
+#include "verify/support/slow.hpp"
 
 namespace drape::verify::plugin_test {
 namespace {
@@ -146,6 +147,7 @@ void expect_the_same_by_libraries(const Installed& installed) {
 }
 
 TEST(Installed, IsAllThatPluginsAndProgramsNeed) {  // one test, since installing and compiling take longer than the rest
+  DRAPE_SLOW();
   const Installed installed;
   ASSERT_FALSE(HasFailure());
   expect_rows_of_the_built_in_method(installed);

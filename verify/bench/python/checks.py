@@ -348,6 +348,7 @@ class Refusals(unittest.TestCase):
         self.refused("^steps: RK45 chooses its own", drape.measure, "RK45", steps=[0.1])
         self.refused("^step: expected a positive number of seconds, not -1", drape.measure, explicit_euler, scenes=scene, steps=[-1])
         self.refused("unknown method 'bdf9'", drape.measure, explicit_euler, scenes=scene, beside=["bdf9"])
+        self.refused("^beside: expected a list of names", drape.measure, explicit_euler, scenes=scene, beside="bdf2")
         self.refused("^scenes: expected", drape.measure, explicit_euler, scenes=["hung-corners"])
         self.refused("one with contact$", drape.measure, explicit_euler, scenes=drape.scene("box_swing"))
         self.refused(r"^step: expected it to return y = \(x, v\), or an object that has both, not NoneType$", drape.measure,
