@@ -120,7 +120,7 @@ TEST_F(Shifted, HasTheDistancesOfTheRigidMesh) {
 }
 
 model::Contacts contacts_of(const ObstacleRule& rule, int particles, solver::Counters& work) {
-  return {std::vector{rule}, {.distance = 0.01}, 9.81, particles, work};
+  return {std::vector{rule}, {.distance = 0.01}, {0, 0, -9.81}, particles, work};
 }
 
 void expect_same(const std::vector<solver::Contact>& one, const std::vector<solver::Contact>& other) {

@@ -86,7 +86,7 @@ TEST(Mannequin, StretchesItsArmsToTheSides) {
 TEST(Mannequin, GivesContactsWithAllPartsInReach) {
   solver::Counters work;
   const ObstacleRule rule = mannequin(", arms = 10, friction = 0.2");
-  model::Contacts contacts(std::vector{rule}, {.distance = 0.1}, 0, 1, work);
+  model::Contacts contacts(std::vector{rule}, {.distance = 0.1}, Vector3d::Zero(), 1, work);
   solver::State y;
   y.x = Eigen::RowVector3d(0.2, 0.01, 1.1);
   y.v = Eigen::RowVector3d::Zero();
@@ -191,7 +191,7 @@ TEST(WalkingMannequin, HasTheVelocityOfItsParts) {
   model::ContactRule rule;
   solver::Counters work;
   const std::vector<ObstacleRule> rules{mannequin(", walk = 1.2, walk_from = 0.5, arms = 30")};
-  model::Contacts contacts(rules, rule, 9.81, 1, work);
+  model::Contacts contacts(rules, rule, {0, 0, -9.81}, 1, work);
   const auto parts = walking();
   const double t = 2.2, h = 1e-4;
   const Vector3d knee(0.095, -0.005 - 0.052 - 0.004, 0.5);  // before the knee
