@@ -78,7 +78,8 @@ build() {
 run_tests() {
   local status=0
   seq 0 7 | GTEST_TOTAL_SHARDS=8 xargs -P "$(nproc)" -I '{}' env GTEST_SHARD_INDEX='{}' \
-    timeout 1200 "$root/build/$1/verify/verify" --gtest_brief=1 "${@:2}" | sed -u '/: Skipped$/,+1d' || status=$?
+    timeout 1200 "$root/build/$1/verify/verify" --gtest_brief=1 "${@:2}" | sed -u '/: Skipped$/,+1d' | tee "$root/build/tests.log" || status=$?
+  [[ $(grep -c 'tests\? from .* ran' "$root/build/tests.log") -eq 8 ]] || status=1  # a program that ends before its tests has passed none
   [[ $status -eq 0 ]] && echo "all tests passed" || echo "tests failed"
   return "$status"
 }
