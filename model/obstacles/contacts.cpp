@@ -17,7 +17,7 @@ namespace {
 
 constexpr double pose_step = 1e-4;  ///< over the time of a reaction: of the times whose poses give velocities
 
-/// What stands on the border ends steps there but for round-off, and must be found again.
+/// What stands on the border ends steps there except for round-off, and must be found again.
 constexpr double on_border = 1 + 1e-6;  ///< of the distance
 
 std::vector<Obstacle> mesh_parts(const ObstacleRule& rule, std::size_t index) {

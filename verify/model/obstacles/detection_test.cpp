@@ -174,7 +174,7 @@ TEST(Rays, CatchWhatFliesThroughAThinBodyInAStep) {
   for (const char* response : {"reposition", "reflect", "impulse"}) {
     const std::string contact = fmt::format("contact = {{ distance = 1e-3, response = '{}'", response);
     EXPECT_GE(heights_over_plate(contact + ", detection = 'ray' }\n", "bdf2").minCoeff(), 1.5e-3 - 1e-9) << response;
-    EXPECT_LT(heights_over_plate(contact + " }\n", "bdf2").maxCoeff(), -1) << response;  // seen by nobody
+    EXPECT_LT(heights_over_plate(contact + " }\n", "bdf2").maxCoeff(), -1) << response;  // not seen
   }
   for (const std::string& method : methods())
     EXPECT_GE(heights_over_plate("contact = { distance = 1e-3, detection = 'ray' }\n", method).minCoeff(), 1.5e-3 - 1e-6)
