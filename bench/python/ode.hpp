@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <stdexcept>
 
 #include "bench/python/arrays.hpp"
 #include "model/cloth.hpp"

@@ -14,7 +14,7 @@ constexpr double recovery = 0.2;      ///< part of what is missing of the thickn
 constexpr double worn = 0.95;         ///< part of the thickness below which a pair is missed
 constexpr double leaving = 1.5;       ///< thicknesses beyond which a pair of the step before is forgotten
 constexpr double turned = 0.95;       ///< cosine of the angle by which its normal may turn before it is
-constexpr int most_sweeps = 400;      ///< over all rows
+constexpr int most_sweeps = 60;       ///< over all rows
 constexpr double balance = 1e-4;      ///< force that may be left where rows push, over that of the residual
 constexpr double settled = 0.1;       ///< the same when the sweeps end, over what may be left
 constexpr double hard = 0.1;          ///< of the thickness: a pair that comes nearer than this in a step meets with an impact
@@ -27,6 +27,11 @@ using Compressed = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
 auto coordinates(const Vectors& v) { return Eigen::VectorXd::Map(v.data(), v.size()); }
 auto coordinates(Vectors& v) { return Eigen::VectorXd::Map(v.data(), v.size()); }
+
+/// What shows why stacks need many systems: where many rows push in few directions, their set goes on changing.
+std::int64_t& undecided_updates(Counters& work) {
+  return work.counter("undecided_pairs", "updates of pairs whose sweeps ended before these had settled");
+}
 
 }  // namespace
 
@@ -130,6 +135,7 @@ PairResponse::PairResponse(const SplitOde& ode)
   pinned_.assign(ode.particles(), false);
   for (const Pin& pin : ode.pins) pinned_[pin.particle] = true;
   u_.setZero(ode.particles(), 3);
+  undecided_updates(*ode.work);
 }
 
 PairResponse::~PairResponse() = default;
@@ -325,11 +331,11 @@ bool PairResponse::update(State& y, const Vectors& r, const Eigen::VectorXd& bou
     force += pull.squaredNorm();
   }
   noise = std::max(noise, balance * std::sqrt(force));
-  const double undecided = settle(bounds, noise, supports);
+  if (settle(bounds, noise, supports) > 0) ++undecided_updates(*ode_.work);
   const bool changes =
       std::ranges::any_of(rows_, [&](const Row& row) { return row.lambda[0] > 0 ? !row.active : releases && row.active; }) ||
       std::ranges::any_of(supports, [](const Support& support) { return support.lambda == 0; });
-  if (changes && (bounds.asDiagonal() * (u_ - y.v)).norm() > 3 * std::max(noise, undecided)) {
+  if (changes && (bounds.asDiagonal() * (u_ - y.v)).norm() > 3 * noise) {
     y.v = u_;
     activate(releases);
   } else {
