@@ -18,7 +18,7 @@ namespace {
 constexpr double pose_step = 1e-4;  ///< over the time of a reaction: of the times whose poses give velocities
 
 /// What stands on the border ends steps there except for round-off, and must be found again.
-constexpr double on_border = 1 + 1e-6;  ///< of the distance
+constexpr double touching_border = 1 + 1e-6;  ///< of the distance
 
 std::vector<Obstacle> mesh_parts(const ObstacleRule& rule, std::size_t index) {
   try {
@@ -139,7 +139,7 @@ void Contacts::find_by_rays(int k, const Ride& ride, const solver::State& y, std
 std::optional<Contacts::Border> Contacts::cast(int obstacle, const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
   const PosedMesh& mesh = *obstacles_[obstacle].mesh();
   ++*rays_;
-  const std::optional<double> part = mesh.first_within(from, to, on_border * distance_, *boxes_);
+  const std::optional<double> part = mesh.first_within(from, to, touching_border * distance_, *boxes_);
   if (!part) return {};
   ++queries_;
   const Eigen::Vector3d at = from + *part * (to - from);
