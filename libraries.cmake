@@ -1,26 +1,28 @@
 # What the libraries need, for our own build and for find_package(drape) of the installed ones.
 
 # --- Libraries: each by its Debian package, with the reason it is here --------------------------------------------------
+function(say_missing what debian_package)
+  message(FATAL_ERROR "${what} is missing: install the Debian package ${debian_package} (apt-get install ${debian_package}), "
+                      "or let bench/run install all that is needed.")
+endfunction()
 function(require_package name debian_package)
   find_package(${name} ${ARGN} QUIET)
   if(NOT ${name}_FOUND)
-    message(FATAL_ERROR "${name} is missing: install the Debian package ${debian_package} (apt-get install ${debian_package}), "
-                        "or let bench/run install all that is needed.")
+    say_missing(${name} ${debian_package})
   endif()
   set(${name}_VERSION "${${name}_VERSION}" PARENT_SCOPE)
 endfunction()
 function(require_module prefix module debian_package)
   pkg_check_modules(${prefix} QUIET IMPORTED_TARGET ${module})
   if(NOT ${prefix}_FOUND)
-    message(FATAL_ERROR "${module} is missing: install the Debian package ${debian_package} (apt-get install ${debian_package}), "
-                        "or let bench/run install all that is needed.")
+    say_missing(${module} ${debian_package})
   endif()
   set(${prefix}_VERSION "${${prefix}_VERSION}" PARENT_SCOPE)
 endfunction()
 
 find_package(PkgConfig QUIET)
 if(NOT PkgConfig_FOUND)
-  message(FATAL_ERROR "pkg-config is missing: install the Debian package pkg-config (apt-get install pkg-config).")
+  say_missing(pkg-config pkg-config)
 endif()
 find_package(Threads REQUIRED)
 find_package(OpenMP REQUIRED)                                  # threads for large grids; part of g++
@@ -42,8 +44,7 @@ function(require_library name library header debian_package)
   find_library(${name}_LIBRARY ${library})
   find_path(${name}_INCLUDE_DIR ${header} PATH_SUFFIXES suitesparse)
   if(NOT ${name}_LIBRARY OR NOT ${name}_INCLUDE_DIR)
-    message(FATAL_ERROR "${name} is missing: install the Debian package ${debian_package} (apt-get install ${debian_package}), "
-                        "or let bench/run install all that is needed.")
+    say_missing(${name} ${debian_package})
   endif()
   add_library(${name} INTERFACE IMPORTED)
   target_link_libraries(${name} INTERFACE ${${name}_LIBRARY})

@@ -1,13 +1,8 @@
 # Writes a header that says which source code and which arithmetic a reference was computed with.
 #   cmake -D OUTPUT=<header> -D ROOT=<folder> -D FILES=<sources, sorted> -D COMPILER=<c++> -D FLAGS=<its flags> -P fingerprint.cmake
 
-set(listing "")
-foreach(file IN LISTS FILES)
-  file(SHA256 ${file} hash)
-  file(RELATIVE_PATH name ${ROOT} ${file})
-  string(APPEND listing "${hash} ${name}\n")
-endforeach()
-string(SHA256 sources "${listing}")
+include(${CMAKE_CURRENT_LIST_DIR}/../solver/base/hash_of_files.cmake)
+hash_of_files(sources ${ROOT} ${FILES})
 
 # -march=native is another machine on every machine, and an updated compiler has the old name: its macros tell.
 separate_arguments(arguments UNIX_COMMAND "${FLAGS}")

@@ -1,10 +1,15 @@
 # For our own build and, installed, for find_package(drape).
 
-# Tells sources that include solver/plugin.hpp what a target is compiled with: `flags` are the options of ours.
-function(drape_tell_flags target flags)
+# Sets a variable to the flags of this build and these options, without warnings: those that change what is computed.
+function(drape_flags_text variable options)
   string(TOUPPER "${CMAKE_BUILD_TYPE}" config)
-  target_compile_definitions(${target} PRIVATE
-    "DRAPE_COMPILE_FLAGS=\"${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${config}} $<JOIN:$<FILTER:${flags},EXCLUDE,^-W>, >\"")
+  set(${variable} "${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${config}} $<JOIN:$<FILTER:${options},EXCLUDE,^-W>, >" PARENT_SCOPE)
+endfunction()
+
+# Tells sources that include solver/plugin.hpp what a target is compiled with: `options` are those of ours.
+function(drape_tell_flags target options)
+  drape_flags_text(flags "${options}")
+  target_compile_definitions(${target} PRIVATE "DRAPE_COMPILE_FLAGS=\"${flags}\"")
 endfunction()
 
 # A shared library with methods. The functions of the solver that it calls are those in the program: only headers and flags are its own.

@@ -2,15 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <map>
-#include <numeric>
 #include <stdexcept>
 #include <string_view>
 
 #include "model/collision/box_tree.hpp"
 #include "model/collision/exact_intersection.hpp"
+#include "solver/base/disjoint_sets.hpp"
 
 namespace drape::model {
 namespace {
@@ -31,39 +30,29 @@ TriangleMesh mesh_of(const Polygons& polygons) {
 
 /// For each triangle the number of its body, by which triangles with common vertices are joined; in the order of the triangles.
 std::vector<int> bodies_of(const TriangleMesh& mesh) {
-  std::vector<int> joined(mesh.vertices.size());
-  std::iota(joined.begin(), joined.end(), 0);
-  const auto root = [&](int vertex) {
-    while (joined[vertex] != vertex) vertex = joined[vertex] = joined[joined[vertex]];
-    return vertex;
-  };
-  for (const auto& [a, b, c] : mesh.triangles) joined[root(b)] = joined[root(c)] = root(a);
+  base::DisjointSets joined(static_cast<int>(mesh.vertices.size()));
+  for (const auto& [a, b, c] : mesh.triangles) joined.join(a, b), joined.join(a, c);
   std::map<int, int> numbers;
   std::vector<int> bodies;
   for (const auto& triangle : mesh.triangles)
-    bodies.push_back(numbers.try_emplace(root(triangle[0]), static_cast<int>(numbers.size())).first->second);
+    bodies.push_back(numbers.try_emplace(joined.root(triangle[0]), static_cast<int>(numbers.size())).first->second);
   return bodies;
 }
 
 /// `owners`: the obstacle of each triangle, ascending; `name`: of an obstacle's body, of which it has 0, 1, …
 void require_apart(const TriangleMesh& mesh, const std::vector<int>& owners, const auto& name) {
   const std::vector<int> bodies = bodies_of(mesh);
-  std::vector<Eigen::Vector3d> centres;
-  std::vector<Eigen::AlignedBox3d> boxes;
-  for (const auto& triangle : mesh.triangles) {
-    const auto [a, b, c] = corners(mesh, triangle);
-    centres.emplace_back((a + b + c) / 3);
-    boxes.emplace_back(a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c));
-  }
-  BoxTree tree(centres);
-  tree.refit(boxes);
+  std::vector<Corners> triangles;
+  for (const auto& triangle : mesh.triangles) triangles.push_back(corners(mesh, triangle));
+  BoxTree tree(centres_of(triangles));
+  tree.refit(boxes_of(triangles));
   const auto named = [&](int triangle) {
     const int owner = owners[triangle];
     const auto first = std::ranges::lower_bound(owners, owner) - owners.begin();
     return name(owner, bodies[triangle] - bodies[first]);
   };
   tree.overlapping_pairs([&](int i, int j) {
-    if (bodies[i] == bodies[j] || !intersect(corners(mesh, mesh.triangles[i]), corners(mesh, mesh.triangles[j]))) return;
+    if (bodies[i] == bodies[j] || !intersect(triangles[i], triangles[j])) return;
     throw std::invalid_argument(
         fmt::format("contact.adaptive: expected bodies that do not touch, {} and {} do", named(i), named(j)));
   });

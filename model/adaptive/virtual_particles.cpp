@@ -19,19 +19,6 @@ std::vector<Corners> corners_at(const EdgeMesh& mesh, const auto& position) {
   return all;
 }
 
-std::vector<Vector3d> centres_of(const std::vector<Corners>& triangles) {
-  std::vector<Vector3d> all;
-  for (const auto& [a, b, c] : triangles) all.emplace_back((a + b + c) / 3);
-  return all;
-}
-
-std::vector<Eigen::AlignedBox3d> boxes_of(const std::vector<Corners>& triangles) {
-  std::vector<Eigen::AlignedBox3d> all;
-  all.reserve(triangles.size());
-  for (const auto& [a, b, c] : triangles) all.emplace_back(a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c));
-  return all;
-}
-
 auto rows_of(const Vectors& x) {
   return [&x](int node) { return Vector3d(x.row(node)); };
 }

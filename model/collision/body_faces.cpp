@@ -25,14 +25,8 @@ std::vector<Corners> triangles_of(const ClothSurface& surface, const Vectors& x)
 
 /// A tree of the boxes around triangles, which are larger by `margin` [m] on all sides.
 BoxTree tree_of(const std::vector<Corners>& triangles, double margin) {
-  std::vector<Eigen::Vector3d> centres;
-  std::vector<Eigen::AlignedBox3d> boxes;
-  for (const auto& [a, b, c] : triangles) {
-    centres.emplace_back((a + b + c) / 3);
-    boxes.emplace_back(a.cwiseMin(b).cwiseMin(c).array() - margin, a.cwiseMax(b).cwiseMax(c).array() + margin);
-  }
-  BoxTree tree(centres);
-  tree.refit(boxes);
+  BoxTree tree(centres_of(triangles));
+  tree.refit(boxes_of(triangles, margin));
   return tree;
 }
 

@@ -109,6 +109,21 @@ Vector3d face_normal(const Corners& corners) {
   return (b - a).cross(c - a).normalized();
 }
 
+std::vector<Vector3d> centres_of(std::span<const Corners> triangles) {
+  std::vector<Vector3d> all;
+  all.reserve(triangles.size());
+  for (const auto& [a, b, c] : triangles) all.emplace_back((a + b + c) / 3);
+  return all;
+}
+
+std::vector<Eigen::AlignedBox3d> boxes_of(std::span<const Corners> triangles, double margin) {
+  std::vector<Eigen::AlignedBox3d> all;
+  all.reserve(triangles.size());
+  for (const auto& [a, b, c] : triangles)
+    all.emplace_back(a.cwiseMin(b).cwiseMin(c).array() - margin, a.cwiseMax(b).cwiseMax(c).array() + margin);
+  return all;
+}
+
 PseudoNormals::PseudoNormals(const TriangleMesh& mesh)
     : neighbours_(mesh.triangles.size()), first_(mesh.vertices.size() + 1, 0), around_(3 * mesh.triangles.size()) {
   const std::vector<HalfEdge> edges = half_edges(mesh);

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <array>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -26,6 +28,12 @@ Corners corners(const TriangleMesh& mesh, const std::array<int, 3>& triangle);
 
 /// Unit; 0 if the triangle has no area.
 Eigen::Vector3d face_normal(const Corners& corners);
+
+/// The means of the corners of triangles [m].
+std::vector<Eigen::Vector3d> centres_of(std::span<const Corners> triangles);
+
+/// The boxes around triangles, larger by `margin` on all sides [m].
+std::vector<Eigen::AlignedBox3d> boxes_of(std::span<const Corners> triangles, double margin = 0);
 
 /// Parts of a triangle: its face, the edges from corner k to the next, the corners.
 inline constexpr int face_part = 0, first_edge_part = 1, first_corner_part = 4;

@@ -28,11 +28,6 @@ using Compressed = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 auto coordinates(const Vectors& v) { return Eigen::VectorXd::Map(v.data(), v.size()); }
 auto coordinates(Vectors& v) { return Eigen::VectorXd::Map(v.data(), v.size()); }
 
-/// What shows why stacks need many systems: where many rows push in few directions, their set goes on changing.
-std::int64_t& undecided_updates(Counters& work) {
-  return work.counter("undecided_pairs", "updates of pairs whose sweeps ended before these had settled");
-}
-
 }  // namespace
 
 /// W Cᵀ (C W Cᵀ)⁻¹ with a diagonal W, of the constrained rows without those that depend on others.
@@ -129,13 +124,13 @@ PairResponse::PairResponse(const SplitOde& ode)
       rubs_(ode.pairs->rubs()),
       constrained_pairs_(ode.work->counter("constrained_pairs", "pairs of the cloth constrained, summed over steps")),
       changes_(ode.work->counter("pair_changes", "changes of the set of constrained pairs")),
-      sweeps_(ode.work->counter("pair_sweeps", "sweeps over all pairs that may be constrained")) {
+      sweeps_(ode.work->counter("pair_sweeps", "sweeps over all pairs that may be constrained")),
+      undecided_(ode.work->counter("undecided_pairs", "updates of pairs whose sweeps ended before these had settled")) {
   if (allowed_.empty()) allowed_.assign(ode.particles(), Eigen::Matrix3d::Identity());
   free_ = allowed_;
   pinned_.assign(ode.particles(), false);
   for (const Pin& pin : ode.pins) pinned_[pin.particle] = true;
   u_.setZero(ode.particles(), 3);
-  undecided_updates(*ode.work);
 }
 
 PairResponse::~PairResponse() = default;
@@ -244,9 +239,9 @@ bool PairResponse::find(const Stage& stage, const State& y) {
 }
 
 /// Moves u, with multipliers, to where all rows and supports keep what is least. What sticks keeps sticking, and what slides
-/// keeps its friction. Returns what the sweeps leave undecided [N s]: where many rows push in few directions, multipliers move
-/// between them for thousands of sweeps.
-double PairResponse::settle(const Eigen::VectorXd& mass, double noise, std::vector<Support>& supports) {
+/// keeps its friction. False if the sweeps end before that: where many rows push in few directions, multipliers move between
+/// them for thousands of sweeps.
+bool PairResponse::settle(const Eigen::VectorXd& mass, double noise, std::vector<Support>& supports) {
   loose_ = free_;
   for (const Support& support : supports) loose_[support.particle] += support.normal * support.normal.transpose();
   const int directions = rubs_ ? 3 : 1;
@@ -267,7 +262,7 @@ double PairResponse::settle(const Eigen::VectorXd& mass, double noise, std::vect
       if (push.gain[c] < held_part * unheld) push.gain[c] = 0;  // pins and obstacles hold the pair
     }
   }
-  const double rows = std::sqrt(rows_.size()), small = settled * noise / rows;
+  const double small = settled * noise / std::sqrt(rows_.size());
   double most = small + 1;
   for (int sweep = 0; sweep < most_sweeps && most > small; ++sweep) {
     most = 0;
@@ -285,7 +280,7 @@ double PairResponse::settle(const Eigen::VectorXd& mass, double noise, std::vect
       most = std::max(most, std::abs(impulse));
     }
   }
-  return most > small ? most * rows : 0;
+  return most <= small;
 }
 
 /// Decides by Coulomb's law how rows rub at velocities v; true if that changes.
@@ -331,7 +326,7 @@ bool PairResponse::update(State& y, const Vectors& r, const Eigen::VectorXd& bou
     force += pull.squaredNorm();
   }
   noise = std::max(noise, balance * std::sqrt(force));
-  if (settle(bounds, noise, supports) > 0) ++undecided_updates(*ode_.work);
+  if (!settle(bounds, noise, supports)) ++undecided_;
   const bool changes =
       std::ranges::any_of(rows_, [&](const Row& row) { return row.lambda[0] > 0 ? !row.active : releases && row.active; }) ||
       std::ranges::any_of(supports, [](const Support& support) { return support.lambda == 0; });

@@ -117,7 +117,7 @@ class PairResponse : public Projector {
   PairMotion motion_at(const Row& row, const Vectors& x) const;
   Row row_of(const PairContact& pair, const PairContact::Points& points) const;
   void leave(Row& row) const;
-  double settle(const Eigen::VectorXd& mass, double noise, std::vector<Support>& supports);
+  bool settle(const Eigen::VectorXd& mass, double noise, std::vector<Support>& supports);
   void activate(bool releases);
   bool rub(const Vectors& v, double noise);
   void factorise();
@@ -138,7 +138,7 @@ class PairResponse : public Projector {
   std::vector<Push> pushes_;
   Vectors u_;
   std::unique_ptr<Factor> factor_;
-  std::int64_t &constrained_pairs_, &changes_, &sweeps_;
+  std::int64_t &constrained_pairs_, &changes_, &sweeps_, &undecided_;
 };
 
 }  // namespace drape::solver

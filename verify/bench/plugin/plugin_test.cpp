@@ -4,13 +4,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 
 #include "model/cloth.hpp"
 #include "model/scene_file/scene_file.hpp"
 #include "results/file/run_file.hpp"
+#include "solver/base/input_file.hpp"
 #include "solver/integrator.hpp"
 #include "verify/support/bench_integrators.hpp"
 #include "verify/support/slow.hpp"
@@ -22,10 +22,7 @@ namespace fs = std::filesystem;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-std::string bytes_of(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
+std::string bytes_of(const fs::path& file) { return base::content_of(file, std::uintmax_t{1} << 30); }
 
 /// What is installed in a new folder, and projects of others that are built with it.
 class Installed {

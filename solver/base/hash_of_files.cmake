@@ -1,0 +1,11 @@
+# Sets a variable to a hash of files, of their contents and of their names under a folder; sorted, they always have the same.
+function(hash_of_files variable root)
+  set(listing "")
+  foreach(file IN LISTS ARGN)
+    file(SHA256 ${file} hash)
+    file(RELATIVE_PATH name ${root} ${file})
+    string(APPEND listing "${hash} ${name}\n")
+  endforeach()
+  string(SHA256 hash "${listing}")
+  set(${variable} ${hash} PARENT_SCOPE)
+endfunction()
