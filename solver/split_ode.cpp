@@ -5,7 +5,8 @@ namespace drape::solver {
 double kinetic_energy(const SplitOde& ode, const Vectors& v) { return 0.5 * ode.mass.dot(v.rowwise().squaredNorm()); }
 
 double stored_energy(const SplitOde& ode, double t, const State& y) {
-  return ode.potential_energy(t, y.x) + (ode.memory ? ode.memory->energy(y) : 0);
+  return ode.potential_energy(t, y.x) + (ode.memory ? ode.memory->energy(y) : 0) +
+         (ode.step_forces ? ode.step_forces->energy(t, y.x) : 0);
 }
 
 void prescribe(const std::vector<Pin>& pins, Vectors& v) {

@@ -131,7 +131,7 @@ struct SplitOde {
 /// Kinetic energy ½ Σ m v² [J].
 double kinetic_energy(const SplitOde& ode, const Vectors& v);
 
-/// Potential energy with what memory stores [J].
+/// Potential energy with what memory and the forces of the last step store [J].
 double stored_energy(const SplitOde& ode, double t, const State& y);
 
 /// Sets the prescribed velocities in v.

@@ -26,6 +26,9 @@ class StepForces {
 
   /// Sets f (N × 3) to the forces that obstacles exert on particles by them [N], all of them or without what K x + D v has.
   virtual void of_obstacles(Part part, double t, const State& y, Vectors& f) const = 0;
+
+  /// What is stored by them more than SplitOde::potential_energy has [J].
+  virtual double energy(double t, const Vectors& x) const = 0;
 };
 
 }  // namespace drape::solver

@@ -46,15 +46,15 @@ function paretoFront(rows) {
 }
 
 /** One curve of time against error, with the quartiles of the times as bars. */
-export function workPrecisionTrace(name, rows, look, text, mode = "lines+markers") {
+export function workPrecisionTrace(name, rows, look, text, unit = "ms") {
   return {
     type: "scatter",
-    mode,
+    mode: "lines+markers",
     name,
     x: rows.map((row) => row.error),
     y: rows.map((row) => row.time),
     text: rows.map(text),
-    hovertemplate: "%{text}<br>error %{x:.3e}, %{y:.4g} ms<extra></extra>",
+    hovertemplate: `%{text}<br>error %{x:.3e}, %{y:.4g} ${unit}<extra></extra>`,
     error_y: {
       type: "data",
       symmetric: false,
@@ -86,54 +86,55 @@ const sideLooks = [{symbol: "circle", width: 6}, {symbol: "diamond", width: 2.5}
 const curveSymbols = ["square", "triangle-up", "triangle-down", "star", "cross", "pentagon", "hexagon"];
 
 /** A study's trials: all of them as dots, and those that no other of a side or a kind beats in both as curves. */
-function trialsFigure(file, table) {
+function trialsFigures(file, table) {
   const [x, y, lower, upper, side] = ["x", "y", "lower", "upper", "side"].map((part) => partOf(table, part));
-  const details = detailsOf(table), caption = partOf(table, "caption");
-  const rows =
+  const details = detailsOf(table), caption = partOf(table, "caption"), figure = figureOf(table);
+  const all =
       rowsOf(table)
           .map(
               (row) =>
                   ({...row, error: row[x.name], time: row[y.name], lower: row[lower.name], upper: row[upper.name]}))
           .filter((row) => finitePositive(row.error) && finitePositive(row.time));
-  if (!rows.length) return [];
-  const sides = [...groupBy(rows, (row) => row[side.name])],
-        kinds = partsOf(table, "curve")
-                    .flatMap(({name}) => [...groupBy(rows.filter((row) => row[name]), (row) => row[name])]);
-  const uncertainty = largestUncertainty(table, rows);
-  const make = (width, colours) => {
-    const dots = ([name, of], k) => ({
-      type: "scatter",
-      mode: "markers",
-      name: `all of ${name}`,
-      x: of.map((row) => row.error),
-      y: of.map((row) => row.time),
-      text: of.map(details),
-      hovertemplate: "%{text}<br>error %{x:.3e}, %{y:.4g} ms<extra></extra>",
-      marker: {color: "#999999", size: 3, symbol: dotSymbols[k % dotSymbols.length]}
-    });
-    const best = ([name, of], look, title = name) =>
-        workPrecisionTrace(title, paretoFront(of), {...style(name), ...look}, details);
-    const curves = labelled(
-        [
-          ...sides.map((any, k) => best(any, sideLooks[k % sideLooks.length], `best of ${any[0]}`)),
-          ...kinds.map((any, k) => best(any, {symbol: curveSymbols[k % curveSymbols.length]}))
-        ],
-        width, along);
-    return {
-      data: [...sides.map(dots), ...curves],
-      layout: workPrecisionLayout(
-          width, colours, rows, uncertainty, curves.length + sides.length, {x: axisTitle(x), y: axisTitle(y)})
+  return [...groupBy(all, figure)].map(([title, rows]) => {
+    const sides = [...groupBy(rows, (row) => row[side.name])],
+          kinds = partsOf(table, "curve")
+                      .flatMap(({name}) => [...groupBy(rows.filter((row) => row[name]), (row) => row[name])]);
+    const uncertainty = largestUncertainty(table, rows);
+    const make = (width, colours) => {
+      const dots = ([name, of], k) => ({
+        type: "scatter",
+        mode: "markers",
+        name: `all of ${name}`,
+        x: of.map((row) => row.error),
+        y: of.map((row) => row.time),
+        text: of.map(details),
+        hovertemplate: `%{text}<br>error %{x:.3e}, %{y:.4g} ${y.unit}<extra></extra>`,
+        marker: {color: "#999999", size: 3, symbol: dotSymbols[k % dotSymbols.length]}
+      });
+      const best = ([name, of], look, title = name) =>
+          workPrecisionTrace(title, paretoFront(of), {...style(name), ...look}, details, y.unit);
+      const curves = labelled(
+          [
+            ...sides.map((any, k) => best(any, sideLooks[k % sideLooks.length], `best of ${any[0]}`)),
+            ...kinds.map((any, k) => best(any, {symbol: curveSymbols[k % curveSymbols.length]}))
+          ],
+          width, along);
+      return {
+        data: [...sides.map(dots), ...curves],
+        layout: workPrecisionLayout(
+            width, colours, rows, uncertainty, curves.length + sides.length, {x: axisTitle(x), y: axisTitle(y)})
+      };
     };
-  };
-  return [{
-    file,
-    make,
-    title: `Work–precision: ${table.description}`,
-    columns: () => table.columns.map(exactCells),
-    says: "Lower is quicker, further right more accurate; curves join what no other of its kind beats in both. " +
-        `${explained(x)}. ${explained(y)}, with quartiles as bars. In the grey band, below 10 × the reference's ` +
-        `uncertainty of ${shortNumber(uncertainty)}, errors say nothing. ${caption ? rows[0][caption.name] : ""}`,
-  }];
+    return {
+      file,
+      make,
+      title: [`Work–precision: ${table.description}`, title].filter((text) => text).join(": "),
+      columns: () => columnsWhere(table, (row) => figure(row) === title),
+      says: "Lower is quicker, further right more accurate; curves join what no other of its kind beats in both. " +
+          `${explained(x)}. ${explained(y)}, with quartiles as bars. In the grey band, below 10 × the reference's ` +
+          `uncertainty of ${shortNumber(uncertainty)}, errors say nothing. ${caption ? rows[0][caption.name] : ""}`,
+    };
+  });
 }
 
 /** Straight lines of the orders that were fitted, through the middle of the errors. */
@@ -453,7 +454,7 @@ const winnersWords = {
 
 const figureMakers = {
   "convergence": convergenceFigures,
-  "work-precision": trialsFigure,
+  "work-precision": trialsFigures,
   "stability": (file, table) => mapFigures(file, table, stabilityWords),
   "map": (file, table) => mapFigures(file, table, winnersWords),
   "over time": overTimeFigure,

@@ -201,7 +201,7 @@ struct Worth {
   bool adaptive = false;
   std::optional<double> distance = {}, penetration = {}, height = {};
   std::optional<double> uncertainty = {};  ///< of the distance [m]; nothing if a run of the finest sheet fails
-  double time = 0, spread = 0;             ///< [ms/s]
+  double time = 0, lower = 0, upper = 0;   ///< quartiles [ms/s]
   Verdict verdict = {};
 };
 
@@ -209,19 +209,20 @@ constexpr ColumnOf<Worth> worth_columns[] = {
     {"scene", "scene", "", "built-in, until 2 s, by BDF(2), h = 0.005 s", Role::key, field<&Worth::scene>},
     {"particles", "particles", "1", "of the sheet", Role::key,
      [](const Worth& row) { return results::to_datum(row.n * row.n); }},
-    {"adaptive", "virtual", "", "whether there are virtual particles", Role::key,
-     [](const Worth& row) { return results::to_datum(std::string(row.adaptive ? "yes" : "no")); }},
+    {"sheet", "sheet", "", "virtual: with virtual particles", Role::key,
+     [](const Worth& row) { return results::to_datum(std::string(row.adaptive ? "virtual" : "plain")); }},
     {"distance", "distance", "m", "of the nodes of the finest sheet from the surface at the end, root mean square", Role::error,
      field<&Worth::distance>},
     {"uncertainty", "± ref", "m",
-     "the same between the finest sheet and itself by twice the step, or by the midpoint rule: the larger", Role::quantity,
+     "the same between the finest sheet and itself by twice the step, or by the midpoint rule: the larger", Role::uncertainty,
      field<&Worth::uncertainty>},
     {"penetration", "penetration", "m", "of the surface, with what is refined, into the obstacle: its deepest point",
      Role::quantity, field<&Worth::penetration>},
     {"height", "height off", "m", "of the centre of mass, above that of the finest sheet: what it has more of potential energy",
      Role::quantity, field<&Worth::height>},
     {"time", "time", "ms/s", "wall time a simulated second, median of interleaved runs", Role::time, field<&Worth::time>},
-    {"spread", "±", "ms/s", "half their range", Role::time, field<&Worth::spread>},
+    {"lower", "from", "ms/s", "lower quartile", Role::time, field<&Worth::lower>},
+    {"upper", "to", "ms/s", "upper quartile", Role::time, field<&Worth::upper>},
     {"outcome", "outcome", "", "how the run ended", Role::outcome, field<&Worth::outcome>},
     {"verdict", "C-28", "", "whether 400 adaptive particles are as near to the finest sheet as 2500 plain ones", Role::verdict,
      [](const Worth& row) { return row.n == claimed && row.adaptive ? results::to_datum(row.verdict) : Datum(); }},
@@ -318,7 +319,8 @@ std::vector<Worth> worth_on(std::string_view name, bool quick, Checkpoint& check
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const double seconds = static_cast<double>(counts[k]) * worth_step;
     rows[k].time = base::quantile(times[k], 0.5) / seconds;
-    rows[k].spread = (base::quantile(times[k], 1) - base::quantile(times[k], 0)) / 2 / seconds;
+    rows[k].lower = base::quantile(times[k], 0.25) / seconds;
+    rows[k].upper = base::quantile(times[k], 0.75) / seconds;
   }
   const auto row_of = [&](int n, bool adaptive) {
     return std::ranges::find_if(rows, [&](const Worth& row) { return row.n == n && row.adaptive == adaptive; });
@@ -331,6 +333,22 @@ std::vector<Worth> worth_on(std::string_view name, bool quick, Checkpoint& check
                                           *few->distance / *many->distance, few->time / many->time);
   few->verdict = results::check(*few->distance <= *many->distance + *few->uncertainty, figures, figures);
   return rows;
+}
+
+results::Table worth_table(const std::vector<Worth>& rows) {
+  results::Table table = results::make_table(
+      "table-5.1-worth", "Coarse sheets with and without virtual particles beside the finest one", worth_columns, rows);
+  using results::Part;
+  draw(table, results::Figure::work_precision,
+       {{Part::figure, "scene"},
+        {Part::side, "sheet"},
+        {Part::x, "distance"},
+        {Part::y, "time"},
+        {Part::lower, "lower"},
+        {Part::upper, "upper"},
+        {Part::detail, "particles"},
+        {Part::detail, "penetration"}});
+  return table;
 }
 
 // --- What forces that jump do ------------------------------------------------------------------------------------------------
@@ -410,11 +428,7 @@ std::vector<Job> table_5_1(const Question& question) {
                   std::ranges::move(worth_on(one.scene, quick, checkpoint), std::back_inserter(rows));
                 return rows;
               },
-              [](const std::vector<Worth>& rows) {
-                return results::make_table("table-5.1-worth",
-                                           "Coarse sheets with and without virtual particles beside the finest one",
-                                           worth_columns, rows);
-              }),
+              worth_table),
           job(
               "table-5.1-jumps", 2 * static_cast<int>(tried.size()),
               [=](Checkpoint& checkpoint) {

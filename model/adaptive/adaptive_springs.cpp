@@ -127,6 +127,22 @@ void AdaptiveSprings::of_obstacles(Part part, double t, const solver::State& y, 
   for (const End& end : ends_) f.row(end.node) += pull(end, part, t, y.x, y.v);
 }
 
+/// Without parts between virtual particles, on which no equation depends.
+double AdaptiveSprings::energy(double t, const Vectors& x) const {
+  const auto of = [](const Strand& strand, const Eigen::Vector3d& d) {
+    const double elongation = d.norm() - strand.length;
+    return strand.length == 0 ? 0 : strand.k / strand.length * elongation * elongation / 2;
+  };
+  double sum = 0;
+  for (const int s : divided_) {
+    const auto& [ends, strand, first] = springs_[s];
+    sum -= of(strand, x.row(ends[1]) - x.row(ends[0]));
+    for (const End& end : {ends_[first], ends_[first + 1]})
+      sum += of(end.strand, end.place(t - t_) - x.row(end.node).transpose());
+  }
+  return sum;
+}
+
 void AdaptiveSprings::visit(double t, const Vectors& x, const Vectors& v, const JacobianEntries& entries) const {
   using Eigen::Matrix3d, Eigen::Vector3d;
   const bool damped = d_.any(), turns = damped && projected_ && entries.exact();

@@ -28,6 +28,7 @@ class AdaptiveSprings : public solver::StepForces {
   const SparseMatrix& stiffness() const override { return stiffness_; }
   const SparseMatrix& damping() const override { return damping_; }
   void of_obstacles(Part part, double t, const solver::State& y, Vectors& f) const override;
+  double energy(double t, const Vectors& x) const override;
 
   /// Adds the forces to f (N × 3) [N], all of them or what is not in K x + D v.
   void add(double t, const Vectors& x, const Vectors& v, Vectors& f) const { add(Part::whole, t, x, v, f); }

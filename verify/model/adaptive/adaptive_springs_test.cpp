@@ -178,6 +178,25 @@ TEST(AdaptiveSprings, HaveTheirJacobian) {
   }
 }
 
+TEST(AdaptiveSprings, HaveTheEnergyOfTheirForces) {
+  const Trial over = trial(over_a_moving_bar(3, 10), "linear", {"material.damping=0"});
+  const solver::SplitOde& ode = over.cloth.ode;
+  ode.step_forces->begin(0, over.cloth.start);
+  ASSERT_GT(divided(over), 0);
+  const State y = later(over);
+  const double t = 0.01, step = 1e-6;
+  Vectors f;
+  ode.force(t, y.x, y.v, f);
+  for (Eigen::Index k = 0; k < y.x.size(); ++k) {
+    const auto energy = [&](double by) {
+      State moved = y;
+      moved.x.data()[k] += by;
+      return solver::stored_energy(ode, t, moved);
+    };
+    EXPECT_NEAR(f.data()[k], (energy(-step) - energy(step)) / (2 * step), 1e-5 * f.norm()) << k;
+  }
+}
+
 /// Also where parts are compressed: a bar in a slack sheet.
 TEST(AdaptiveSprings, LeaveNewtonMatricesPositiveDefinite) {
   for (const std::string& form : damping_forms) {
