@@ -77,7 +77,8 @@ EnergyGuard::EnergyGuard(const model::Scene& scene, const model::Cloth& cloth)
 
 double EnergyGuard::kinetic_and_elastic(double t, const State& y) const {
   const double gravity = -weight_.cwiseProduct(y.x).sum();
-  return solver::kinetic_energy(cloth_.ode, y.v) + solver::stored_energy(cloth_.ode, t, y) - gravity;
+  const double divided = cloth_.ode.step_forces ? cloth_.ode.step_forces->energy(t, y.x) : 0;  // what their forces do is given
+  return solver::kinetic_energy(cloth_.ode, y.v) + solver::stored_energy(cloth_.ode, t, y) - divided - gravity;
 }
 
 /// What a wind may have done in a step that is longer than its swing [J].
