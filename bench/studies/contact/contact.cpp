@@ -16,14 +16,13 @@
 
 #include "bench/runs/certified_reference.hpp"
 #include "bench/runs/costs.hpp"
-#include "bench/runs/record.hpp"
 #include "bench/runs/timing.hpp"
-#include "bench/studies/contact/contact_watch.hpp"
+#include "bench/studies/contact/contact_runs.hpp"
+#include "bench/studies/contact/responses.hpp"
 #include "bench/studies/draping.hpp"
 #include "bench/studies/step_means.hpp"
 #include "bench/studies/studies.hpp"
 #include "model/phases.hpp"
-#include "model/scene_file/scene_file.hpp"
 #include "results/columns.hpp"
 #include "results/verdict.hpp"
 
@@ -39,111 +38,14 @@ using results::Standing;
 using results::StepRecord;
 using results::Verdict;
 
-constexpr double contact_step = 0.01;                                  // [s]
 constexpr double contact_steps[] = {0.04, 0.02, 0.01, 0.005, 0.0025};  // [s], of which the largest usable one is sought
-constexpr double resting = 1e-2;                                       // kinetic energy over the largest one
-
-/// Three sheets that fall onto each other and the floor. They begin stretched and swing while they fall: systems of sheets that
-/// only fall need no iterations.
-constexpr std::string_view stack = R"(
-name = "stack"
-grid = { n = 8, size = 0.2 }
-material = { density = 0.3, tension = 200, damping = 0.2, shear = 10, bend = 1e-5 }
-forces = { gravity = [0, 0, -9.81] }
-obstacles = [{ shape = "plane" }]
-contact = { distance = 0.005, thickness = 0.005 }
-start = { stretch = 1.02 }
-end = { time = 0.8 }
-panels = [
-  { name = "lower", start.position = [0, 0, 0.08] },
-  { name = "middle", start.position = [0.0071, 0.0043, 0.095] },
-  { name = "upper", start.position = [0.0031, 0.0133, 0.11] },
-]
-)";
 
 constexpr const char* contact_scenes[] = {"stack",         "sphere_drop", "cloth_stack", "twist",
                                           "curtain_drawn", "box_swing",   "tablecloth",  "ball"};
 constexpr const char* contact_methods[] = {"sbdf2", "verlet", "imex-euler", "implicit-euler", "bdf2", "midpoint"};
 
-constexpr const char* self_contact_garments[] = {"dress",        "sewn_dress", "walking_dress", "trousers",
-                                                 "circle_skirt", "t_shirt",    "sweater"};
 constexpr const char* self_contact_methods[] = {"sbdf2", "imex-euler"};
-constexpr double garment_thickness = 0.004;  // where the scene has none [m]
-constexpr double slowest_dress = 2000;       // wall time a simulated second [ms/s]
-
-bool is_garment(const std::string& name) { return std::ranges::count(self_contact_garments, name) > 0; }
-
-/// Values of contact.response; the others are compared with the first.
-constexpr std::string_view contact_responses[] = {"constraint", "alteration", "reaction", "penalty",
-                                                  "field",      "reposition", "reflect",  "impulse"};
-constexpr const char* response_scenes[] = {"box_swing", "tablecloth", "ball"};
-constexpr const char* response_methods[] = {"sbdf2", "imex-euler", "implicit-euler", "bdf2", "midpoint"};
-
-/// All values of a table, or for tests the first ones.
-template <std::size_t n>
-std::span<const char* const> some_of(const char* const (&all)[n], bool quick, std::size_t first) {
-  return std::span(all).first(quick ? first : n);
-}
-
-/// For tests a scene is coarse where it has a grid of its own, and short.
-model::Scene contact_scene(const std::string& name, bool quick, std::string_view response = contact_responses[0]) {
-  std::vector<model::Override> changes{{"contact.response", std::string(response)}};
-  if (quick) changes.push_back({"grid.n", name == "stack" ? "4" : "8"});
-  if (name == "stack") return model::parse_scene(stack, name, changes);
-  model::Scene scene = model::load_scene(name, changes);
-  if (is_garment(name) && scene.contact.thickness == 0) scene.contact.thickness = garment_thickness;
-  return scene;
-}
-
-/// Frames in which cloth is through itself or an obstacle; some may count twice.
-int intersections(const ContactFindings& found) { return found.intersecting + found.in_bodies + found.through_bodies; }
-
-/// A run and what contacts did to it.
-struct WatchedRun {
-  RunRecord run;
-  ContactFindings found;
-
-  bool usable() const { return run.succeeded() && intersections(found) == 0; }
-};
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(WatchedRun, run, found)
-
-RunSpec contact_spec(const model::Scene& scene, std::string_view method, double step = contact_step) {
-  return {scene, "", &solver::method(method), step, solver::thesis_options()};
-}
-
-WatchedRun watched(const RunSpec& spec) {
-  ContactWatch watch;
-  Observer* const observers[] = {&watch};
-  RunRecord run = record(spec, observers);
-  return {std::move(run), watch.findings()};
-}
-
-/// Kinetic energy over the largest one.
-double motion_at_end(Steps steps) {
-  return steps.empty() ? 0
-                       : steps.back().kinetic_energy / std::ranges::max(steps, {}, &StepRecord::kinetic_energy).kinetic_energy;
-}
-
-/// The steps of a run: before anything touches, the last ones of a run that ends at rest, and those between.
-struct ContactParts {
-  Steps flight, impact, rest;
-};
-
-ContactParts parts_of(const WatchedRun& one) {
-  constexpr std::size_t most_at_rest = 20;
-  const Steps all = one.run.steps;
-  std::size_t first = 0;
-  while (first < all.size() && all[first].contacts == 0 && one.found.pairs[first] == 0) ++first;
-  const std::size_t touching = all.size() - first;
-  const bool rests = one.run.succeeded() && motion_at_end(all) <= resting;
-  const std::size_t at_rest = rests ? std::min(most_at_rest, touching) : 0;
-  return {all.first(first), all.subspan(first, touching - at_rest), all.last(at_rest)};
-}
-
-std::optional<double> iterations_of(Steps steps) {
-  if (steps.empty()) return {};
-  return iterations(steps);
-}
+constexpr double slowest_dress = 2000;  // wall time a simulated second [ms/s]
 
 /// A method on a scene.
 struct ContactRun {
@@ -388,80 +290,12 @@ std::vector<results::Table> present_contact(const ContactStudy& study) {
           std::move(moments)};
 }
 
-// --- Responses ---------------------------------------------------------------------------------------------------------------
-
-/// A method with a response to obstacles.
-struct ResponseRun {
-  std::string scene, method, response, outcome;
-  std::int64_t systems = 0, cg_iterations = 0;
-  std::optional<double> rest = {};  ///< CG iterations a step
-  double clearance = 0, energy_rise = 0;
-  Verdict verdict = {};
-};
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ResponseRun, scene, method, response, outcome, systems, cg_iterations, rest, clearance,
-                                   energy_rise)
-
-constexpr ColumnOf<ResponseRun> response_columns[] = {
-    {"scene", "scene", "", "built-in", Role::key, field<&ResponseRun::scene>},
-    {"method", "method", "", "time integrator, h = 0.01 s, with the thesis' solvers", Role::key, field<&ResponseRun::method>},
-    {"response", "response", "", "contact.response", Role::key, field<&ResponseRun::response>},
-    {"systems", "systems", "1", "linear systems", Role::counter, field<&ResponseRun::systems>},
-    {"cg_iterations", "CG", "1", "iterations of conjugate gradients", Role::counter, field<&ResponseRun::cg_iterations>},
-    {"rest", "rest", "1", "CG iterations a step in the last 20, if the cloth rests then", Role::counter,
-     field<&ResponseRun::rest>},
-    {"clearance", "clearance", "m", "least distance of a particle from an obstacle", Role::quantity,
-     field<&ResponseRun::clearance>},
-    {"energy_rise", "energy rise", "1", "largest rise of the total energy, over the run's energies", Role::quantity,
-     field<&ResponseRun::energy_rise>},
-    {"outcome", "outcome", "", "how the run ended", Role::outcome, field<&ResponseRun::outcome>},
-    {"verdict", "verdict", "", "whether the constraint needs no more CG iterations at rest than this response", Role::verdict,
-     [](const ResponseRun& row) { return row.response == contact_responses[0] ? Datum() : results::to_datum(row.verdict); }},
-};
-
-ResponseRun response_row(const std::string& name, std::string_view method, std::string_view response, bool quick) {
-  const WatchedRun one = watched(contact_spec(contact_scene(name, quick, response), method));
-  const RunRecord& run = one.run;
-  return {name,
-          std::string(method),
-          std::string(response),
-          ending(run.outcome, run.last_good_time),
-          work_count(run, "updates"),
-          work_count(run, "cg_iterations"),
-          iterations_of(parts_of(one).rest),
-          run.contact->clearance,
-          run.contact->energy_rise};
-}
-
-Verdict beside_constraint(const ResponseRun& constraint, const ResponseRun& other) {
-  if (!constraint.rest || !other.rest) return {Standing::open, "does not rest"};
-  return results::check(*constraint.rest <= *other.rest, "constraint needs no more CG at rest",
-                        "constraint needs more CG at rest");
-}
-
-std::vector<ResponseRun> compare_responses(std::span<const char* const> scenes, std::span<const char* const> methods,
-                                           bool quick, Checkpoint& checkpoint) {
-  std::vector<ResponseRun> rows;
-  for (const std::string scene : scenes)
-    for (const std::string_view method : methods) {
-      const auto constraint = rows.size();
-      for (const std::string_view response : contact_responses) {
-        const std::string id = fmt::format("{} {} {}", scene, method, response);
-        checkpoint.show(id);
-        rows.push_back(checkpoint.once(id, [&] { return response_row(scene, method, response, quick); }));
-        rows.back().verdict = beside_constraint(rows[constraint], rows.back());
-      }
-      checkpoint.advance();
-    }
-  return rows;
-}
-
 }  // namespace
 
 std::vector<Job> contact(const Question& question) {
   const bool quick = question.quick;
   const auto scenes = some_of(contact_scenes, quick, 1), methods = some_of(contact_methods, quick, 2);
   const auto garments = some_of(self_contact_garments, quick, 0), garment_methods = some_of(self_contact_methods, quick, 0);
-  const auto compared = some_of(response_scenes, quick, 1), compared_methods = some_of(response_methods, quick, 1);
   return {job(
               "contact", static_cast<int>(scenes.size() * methods.size() + garments.size() * garment_methods.size()),
               [=](Checkpoint& checkpoint) {
@@ -471,13 +305,7 @@ std::vector<Job> contact(const Question& question) {
                 return study;
               },
               present_contact),
-          job(
-              "contact-responses", static_cast<int>(compared.size() * compared_methods.size()),
-              [=](Checkpoint& checkpoint) { return compare_responses(compared, compared_methods, quick, checkpoint); },
-              [](const std::vector<ResponseRun>& rows) {
-                return results::make_table("contact-responses", "Responses to obstacles: what resting costs", response_columns,
-                                           rows);
-              })};
+          compare_responses(quick)};
 }
 
 }  // namespace drape::bench

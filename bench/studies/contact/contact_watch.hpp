@@ -19,7 +19,7 @@ struct ContactFindings {
   int through_bodies = 0;            ///< frames in which faces of cloth intersect those of obstacles
 
   /// Largest rise of the total energy above what it was before, over the energies, while pins and obstacles rest; nothing if
-  /// they never do, or if obstacles divide springs, whose energies are not known.
+  /// they never do, or if obstacles divide springs, whose energies jump.
   std::optional<double> energy_rise = {};
 
   /// What the change of momentum is off from forces, by the trapezoidal rule, and the obstacles' impulses, over the impulse of
