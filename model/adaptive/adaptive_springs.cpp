@@ -136,7 +136,8 @@ double AdaptiveSprings::energy(double t, const Vectors& x) const {
   double sum = 0;
   for (const int s : divided_) {
     const auto& [ends, strand, first] = springs_[s];
-    sum -= of(strand, x.row(ends[1]) - x.row(ends[0]));
+    const auto [i, j] = ends;
+    sum -= of(strand, x.row(j) - x.row(i));
     for (const End& end : {ends_[first], ends_[first + 1]})
       sum += of(end.strand, end.place(t - t_) - x.row(end.node).transpose());
   }
