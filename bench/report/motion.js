@@ -161,13 +161,21 @@ function surfaceGeometry(surface) {
   return (surface.geometry = geometry);
 }
 
-/** A grey body with its sharp edges drawn, which tells it from the sheet on light and dark pages alike. */
+/**
+ * A grey body with its sharp edges drawn, which tells it from the sheet on light and dark pages alike. It is drawn a
+ * little farther away than it is: a refined sheet lies on its faces exactly.
+ */
 function makeObstacle({surface, poses}) {
   const geometry = surfaceGeometry(surface), body = new THREE.Group();
-  body.add(new THREE.Mesh(
-      geometry,
-      new THREE.MeshPhongMaterial(
-          {color: 0x76828e, shininess: 0, flatShading: !surface.smooth, side: THREE.DoubleSide})));
+  body.add(new THREE.Mesh(geometry, new THREE.MeshPhongMaterial({
+    color: 0x76828e,
+    shininess: 0,
+    flatShading: !surface.smooth,
+    side: THREE.DoubleSide,
+    polygonOffset: true,
+    polygonOffsetFactor: 1,
+    polygonOffsetUnits: 1
+  })));
   if (!surface.smooth)
     body.add(
         new THREE.LineSegments(new THREE.EdgesGeometry(geometry, 40), new THREE.LineBasicMaterial({color: 0x4a5560})));
