@@ -63,7 +63,7 @@ function provenanceLine() {
 function showHeader() {
   const about = subject();
   document.title = `${about} – drape`;
-  document.querySelector("h1").textContent = about[0].toUpperCase() + about.slice(1);
+  document.querySelector("h1").textContent = about;
   section("header").append(
       element("p", {className: "quiet"}, `${provenanceLine()} · `, element("a", {href: "#sources"}, "all of it")));
   const unclean = files.filter((file) => fact(file, "sanitizers") !== "none");
