@@ -3,7 +3,7 @@
 import {cellsOf, groupBy, partOf, partsOf, rowsOf, shortNumber, titleOf, unique, unitOf, withRole} from "./data.js";
 import {looks} from "./looks.js";
 import {along, axis, baseLayout, labelled, lineStyle, logRange, logTicks} from "./plots.js";
-import {moreCurves, plotText, style, uncertainBand} from "./plots.js";
+import {isNarrow, moreCurves, plotText, style, uncertainBand} from "./plots.js";
 import {columnsWhere, exactCells} from "./tables.js";
 
 export const finitePositive = (value) => value > 0 && Number.isFinite(value);
@@ -76,7 +76,7 @@ export function workPrecisionLayout(width, colours, rows, uncertainty, curves, e
   const range = logRange(rows.map((row) => row.error), true);
   return {
     ...baseLayout(width, colours, entries),
-    xaxis: axis(titles.x, colours, {type: "log", range}),
+    xaxis: axis(titles.x, colours, {type: "log", range, dtick: isNarrow(width) && range[0] - range[1] > 6 ? 2 : 1}),
     yaxis: axis(titles.y, colours, logTicks(curves.filter(({visible}) => visible === true).flatMap(({y}) => y))),
     shapes: uncertainBand(10 * uncertainty, 10 ** range[1], colours),
   };

@@ -102,7 +102,7 @@ function pageColours() {
 
 const paperWidth = 700;  // what A4 and Letter leave between their margins
 
-const isNarrow = (width) => width < 600;
+export const isNarrow = (width) => width < 600;
 
 /** A text for Plotly, its indices set. */
 export const plotText = (text) => text.replaceAll("ν_h", "ν<sub>h</sub>");
@@ -118,6 +118,7 @@ export function axis(title, colours, more = {}) {
     ticks: "outside",
     tickcolor: colours.line,
     automargin: true,
+    tickangle: 0,
     ...exponents,
     ...more
   };
