@@ -48,7 +48,7 @@ enum class Part {
   colour,   ///< its classes are the colours of a map
   outline,  ///< lines go round where it is not the first of its classes
   detail,   ///< users see it where they point
-  caption,  ///< its first value is said below the figure
+  caption,  ///< its first value is said below the figure; of a headline table each is a sentence of the conclusion
 };
 
 /// The part as files name it, for example "curve".

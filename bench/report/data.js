@@ -1,6 +1,7 @@
-// What is in the page: the files, their tables by column, and the texts that numbers are shown as.
+// What is in the page: the files, their tables by column, the overview of them, words that the program explains, and
+// the texts that numbers are shown as.
 
-export const {files, overview} = JSON.parse(document.getElementById("data").textContent);
+export const {files, overview, words} = JSON.parse(document.getElementById("data").textContent);
 
 /** An element with properties and children; strings become text, never HTML. */
 export function element(name, properties = {}, ...children) {
@@ -35,6 +36,14 @@ export function shortNumber(value) {
   const trimmed = digits.includes(".") ? digits.replace(/\.?0+$/, "") : digits;
   if (exponent) return `${trimmed}e${exponent}`;
   return Math.abs(value) < 1e-4 ? value.toExponential(3).replace(/\.?0+e/, "e") : trimmed;
+}
+
+const lengths = [["m", 1], ["mm", 1e-3], ["µm", 1e-6], ["nm", 1e-9]];
+
+/** A length with three digits, in the unit in which it is between 1 and 1000. */
+export function lengthText(metres) {
+  const [unit, size] = lengths.find(([, any]) => metres >= 0.9995 * any) ?? lengths[lengths.length - 1];
+  return metres === 0 ? "0 m" : `${shortNumber(Number((metres / size).toPrecision(3)))} ${unit}`;
 }
 
 /** The cells of a column, numbers as numbers. */

@@ -1,8 +1,9 @@
 // Figures of tables: a table names its figure.
 
 import {cellsOf, groupBy, partOf, partsOf, rowsOf, shortNumber, titleOf, unique, unitOf, withRole} from "./data.js";
+import {looks} from "./looks.js";
 import {along, axis, baseLayout, labelled, lineStyle, logRange, logTicks} from "./plots.js";
-import {moreCurves, style, uncertainBand} from "./plots.js";
+import {isNarrow, moreCurves, plotText, style, uncertainBand} from "./plots.js";
 import {columnsWhere, exactCells} from "./tables.js";
 
 export const finitePositive = (value) => value > 0 && Number.isFinite(value);
@@ -70,20 +71,19 @@ export function workPrecisionTrace(name, rows, look, text, unit = "ms") {
   };
 }
 
-/** `titles`: of both axes. */
-export function workPrecisionLayout(width, colours, rows, uncertainty, entries, titles) {
+/** `curves`: what is drawn of the rows, with `entries` in the legend. `titles`: of both axes. */
+export function workPrecisionLayout(width, colours, rows, uncertainty, curves, entries, titles) {
   const range = logRange(rows.map((row) => row.error), true);
   return {
     ...baseLayout(width, colours, entries),
-    xaxis: axis(titles.x, colours, {type: "log", range}),
-    yaxis: axis(titles.y, colours, logTicks(rows.map((row) => row.time))),
+    xaxis: axis(titles.x, colours, {type: "log", range, dtick: isNarrow(width) && range[0] - range[1] > 6 ? 2 : 1}),
+    yaxis: axis(titles.y, colours, logTicks(curves.filter(({visible}) => visible === true).flatMap(({y}) => y))),
     shapes: uncertainBand(10 * uncertainty, 10 ** range[1], colours),
   };
 }
 
-// Curves in marks that black and white tell apart; those of sides lie below others that they consist of.
-const sideLooks = [{symbol: "circle", width: 6}, {symbol: "diamond", width: 2.5}], dotSymbols = ["circle", "x"];
-const curveSymbols = ["square", "triangle-up", "triangle-down", "star", "cross", "pentagon", "hexagon"];
+// Curves of sides lie below others that they consist of.
+const sideWidths = [6, 2.5], dotSymbols = ["circle", "x"];
 
 /** A study's trials: all of them as dots, and those that no other of a side or a kind beats in both as curves. */
 function trialsFigures(file, table) {
@@ -111,18 +111,18 @@ function trialsFigures(file, table) {
         hovertemplate: `%{text}<br>error %{x:.3e}, %{y:.4g} ${y.unit}<extra></extra>`,
         marker: {color: "#999999", size: 3, symbol: dotSymbols[k % dotSymbols.length]}
       });
-      const best = ([name, of], look, title = name) =>
-          workPrecisionTrace(title, paretoFront(of), {...style(name), ...look}, details, y.unit);
+      const best = ([name, of], title = name, lineWidth = undefined) =>
+          workPrecisionTrace(title, paretoFront(of), {...style(name), width: lineWidth}, details, y.unit);
       const curves = labelled(
           [
-            ...sides.map((any, k) => best(any, sideLooks[k % sideLooks.length], `best of ${any[0]}`)),
-            ...kinds.map((any, k) => best(any, {symbol: curveSymbols[k % curveSymbols.length]}))
+            ...sides.map((any, k) => best(any, `best of ${any[0]}`, sideWidths[k % sideWidths.length])),
+            ...kinds.map((any) => best(any))
           ],
           width, along);
       return {
         data: [...sides.map(dots), ...curves],
         layout: workPrecisionLayout(
-            width, colours, rows, uncertainty, curves.length + sides.length, {x: axisTitle(x), y: axisTitle(y)})
+            width, colours, rows, uncertainty, curves, curves.length + sides.length, {x: axisTitle(x), y: axisTitle(y)})
       };
     };
     return {
@@ -216,6 +216,12 @@ const classLooks = [
   ["#009E73", "△"], ["#E69F00", "□"]
 ];
 
+/** The look of a class: that of its place, in its own colour if it has one in all figures. */
+function classLook(name, place) {
+  const [color, mark] = classLooks[place % classLooks.length];
+  return [looks.kinds[name]?.[0] ?? color, mark];
+}
+
 const isPowerOfTen = (value) =>
     !Number.isFinite(value) || Math.abs(Math.log10(value) - Math.round(Math.log10(value))) < 1e-9;
 
@@ -237,19 +243,23 @@ function failingBorders(failing, x, y, colour) {
   return lines;
 }
 
-/** The heat map of one curve in its place k of the figure; xs and ys: the values that there are, from the least on. */
-function mapPanel(table, rows, xs, ys, k, colours) {
+/**
+ * The heat map of one curve in its place k of the figure; xs and ys: the values that there are, from the least on.
+ * `ends`: whether the map is the lowest of its column and the first of its line, which have the labels for the others.
+ */
+function mapPanel(table, rows, xs, ys, k, ends, colours) {
   const [x, y, colour, outline] = ["x", "y", "colour", "outline"].map((part) => partOf(table, part));
-  const details = detailsOf(table), looks = colour.classes.map((_, v) => classLooks[v % classLooks.length]);
+  const details = detailsOf(table), classes = colour.classes.map(classLook);
   const suffix = k ? String(k + 1) : "", grid = () => ys.map(() => xs.map(() => null));
   const z = grid(), text = grid(), hover = grid(), failing = ys.map(() => xs.map(() => false));
   for (const row of rows) {
     const i = ys.indexOf(row[y.name]), j = xs.indexOf(row[x.name]), at = colour.classes.indexOf(row[colour.name]);
-    z[i][j] = at, text[i][j] = looks[at]?.[1] ?? "", failing[i][j] = outline.classes.indexOf(row[outline.name]) > 0;
-    hover[i][j] = `${titleOf(y)} = ${cellText(y, row)}, ${titleOf(x)} = ${cellText(x, row)}<br><b>${
-        row[colour.name]}</b>; ${titleOf(outline)}: ${row[outline.name]}<br>${details(row)}`;
+    z[i][j] = at, text[i][j] = classes[at]?.[1] ?? "", failing[i][j] = outline.classes.indexOf(row[outline.name]) > 0;
+    hover[i][j] = plotText(`${titleOf(y)} = ${cellText(y, row)}, ${titleOf(x)} = ${cellText(x, row)}<br><b>${
+        row[colour.name]}</b>; ${titleOf(outline)}: ${row[outline.name]}<br>${details(row)}`);
   }
-  const last = looks.length - 1, scale = looks.flatMap(([of], v) => [[v / (last + 1), of], [(v + 1) / (last + 1), of]]);
+  const last = classes.length - 1,
+        scale = classes.flatMap(([of], v) => [[v / (last + 1), of], [(v + 1) / (last + 1), of]]);
   const map = {
     type: "heatmap",
     z,
@@ -278,7 +288,8 @@ function mapPanel(table, rows, xs, ys, k, colours) {
     xaxis: `x${suffix}`,
     yaxis: `y${suffix}`
   };
-  const ticks = (values) => ({
+  const ticks = (values, showticklabels) => ({
+    showticklabels,
     tickvals: values.map((_, at) => at),
     ticktext: ticksOf(values),
     showgrid: false,
@@ -294,7 +305,7 @@ function mapPanel(table, rows, xs, ys, k, colours) {
     traces: [map, letters],
     failing,
     shapes: failingBorders(failing, `x${suffix}`, `y${suffix}`, "#000000"),
-    axes: {[`xaxis${suffix}`]: ticks(xs), [`yaxis${suffix}`]: ticks(ys)}
+    axes: {[`xaxis${suffix}`]: ticks(xs, ends.lowest), [`yaxis${suffix}`]: ticks(ys, ends.first)}
   };
 }
 
@@ -308,9 +319,10 @@ function mapFigures(file, table, words) {
     const make = (width, colours) => {
       const columns = Math.min(methods.length, Math.max(1, Math.min(4, Math.floor(width / 180)))),
             lines = Math.ceil(methods.length / columns);
-      const panels = methods.map(([, of], k) => mapPanel(table, of, xs, ys, k, colours));
+      const ends = (k) => ({lowest: k + columns >= methods.length, first: k % columns === 0});
+      const panels = methods.map(([, of], k) => mapPanel(table, of, xs, ys, k, ends(k), colours));
       const legend = colour.classes.map((name, v) => {
-        const [color, mark] = classLooks[v % classLooks.length];
+        const [color, mark] = classLook(name, v);
         return {
           type: "scatter",
           mode: "markers",
@@ -333,7 +345,7 @@ function mapFigures(file, table, words) {
                                    font: {size: 11, color: colours.text}
                                  }));
       const notes = [{
-        text: `across: ${explained(x)}; up: ${explained(y)}`,
+        text: plotText(`across: ${explained(x)}; up: ${explained(y)}`),
         showarrow: false,
         xref: "paper",
         yref: "paper",
@@ -462,4 +474,5 @@ const figureMakers = {
 };
 
 /** All figures of a table; none if it is only to be read. */
-export const figuresOfTable = (file, table) => figureMakers[table.figure]?.(file, table) ?? [];
+export const figuresOfTable = (file, table) =>
+    (figureMakers[table.figure]?.(file, table) ?? []).map((figure) => ({...figure, kind: table.figure}));

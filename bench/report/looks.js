@@ -1,5 +1,6 @@
-// How curves look: one colour for each method or package, one mark and one dash for each way to solve its stages, in
-// every figure.
+// How curves look: one colour for each method, one mark and one dash for each way to solve its stages; a package, a
+// family or another kind of settings has all three for itself. In every figure, and in every report. No mark is an open
+// one, as open ones mean errors below what the reference resolves.
 export const looks = {
   "methods": {
     "imex-euler": "#E69F00",
@@ -42,38 +43,48 @@ export const looks = {
     "kang": "#BCAAA4",
     "strain-limited": "#78909C",
     "exponential-euler": "#283593",
-    "epirk4s3a": "#7986CB",
-    "cvode-bdf": "#C2185B",
-    "cvode-adams": "#E57373",
-    "arkode-dirk": "#6D4C41",
-    "arkode-esdirk": "#D84315",
-    "arkode-imex": "#9E9D24",
-    "arkode-erk": "#558B2F",
-    "ida-bdf": "#607D8B",
-    "ours": "#7A7A7A",
-    "automatic": "#1F77B4",
-    "explicit": "#009E73",
-    "thesis": "#D62728",
-    "SUNDIALS": "#AA4499"
+    "epirk4s3a": "#7986CB"
   },
   "solvers": {
     "": ["circle", "solid"],
     "ic0": ["square", "dash"],
-    "fixed-point/ic0": ["square", "dash"],
+    "fixed-point/ic0": ["diamond", "longdash"],
     "cholesky": ["cross", "dot"],
-    "fixed-point/cholesky": ["square-open", "dashdot"],
-    "anderson": ["triangle-up", "dot"],
-    "newton": ["diamond", "dashdot"],
-    "tension-newton": ["diamond-open", "dashdot"],
-    "multigrid": ["star", "longdash"],
-    "mic0": ["x", "longdash"]
+    "fixed-point/cholesky": ["triangle-down", "dashdot"],
+    "anderson": ["triangle-up", "3px,2px"],
+    "newton": ["star", "longdashdot"],
+    "tension-newton": ["hexagram", "10px,3px,3px,3px,3px,3px"],
+    "multigrid": ["star-diamond", "2px,6px"],
+    "mic0": ["x", "8px,2px"]
+  },
+  "kinds": {
+    "cvode-bdf": ["#C2185B", "square", "dash"],
+    "cvode-adams": ["#E57373", "triangle-up", "dot"],
+    "arkode-dirk": ["#6D4C41", "triangle-down", "dashdot"],
+    "arkode-esdirk": ["#D84315", "star", "longdash"],
+    "arkode-imex": ["#9E9D24", "cross", "longdashdot"],
+    "arkode-erk": ["#558B2F", "pentagon", "3px,2px"],
+    "ida-bdf": ["#607D8B", "hexagon", "8px,2px"],
+    "SUNDIALS": ["#AA4499", "diamond", "solid"],
+    "ours": ["#7A7A7A", "circle", "solid"],
+    "automatic": ["#1F77B4", "square", "solid"],
+    "explicit": ["#009E73", "triangle-up", "dot"],
+    "thesis": ["#D62728", "x", "dash"],
+    "all methods": ["#7A7A7A", "circle", "solid"],
+    "semi-implicit": ["#E69F00", "square", "dash"],
+    "linearly implicit": ["#E57373", "triangle-up", "dot"],
+    "implicit one-step": ["#A1887F", "triangle-down", "dashdot"],
+    "implicit multi-step": ["#56B4E9", "star", "longdash"],
+    "position-based": ["#DA70D6", "cross", "longdashdot"],
+    "exponential": ["#5C6BC0", "pentagon", "3px,2px"],
+    "none": ["#DDDDDD", "x-thin", "solid"]
   },
   "other_colours": [
     "#17BECF", "#E377C2", "#9467BD", "#9CCC65", "#EF6C00", "#5C6BC0", "#BCBD22", "#26A69A", "#C62828", "#7B1FA2",
     "#0277BD", "#6B8E23", "#FFB347", "#455A64", "#DA70D6", "#5D4037"
   ],
   "other_marks": [
-    ["triangle-down", "dash"], ["pentagon", "dot"], ["hexagon", "dashdot"], ["star-diamond", "longdash"],
-    ["hourglass", "dash"]
+    ["pentagon", "6px,6px"], ["hexagon", "2px,2px,8px,2px"], ["hourglass", "12px,4px"], ["bowtie", "1px,3px"],
+    ["octagon", "9px,3px,1px,3px"]
   ]
 };

@@ -313,11 +313,31 @@ export function makeView(run, surfaces) {
   return {run, motion, canvas, says, box, ...makeScene(motion)};
 }
 
-/** The box around all that moves, over all frames. */
-export function bounds(views) {
-  const box = new THREE.Box3(), point = new THREE.Vector3();
-  for (const {motion} of views)
-    for (let i = 0; i < motion.positions.length; i += 3)
-      box.expandByPoint(point.set(...motion.positions.subarray(i, i + 3)));
-  return box.getBoundingSphere(new THREE.Sphere());
+/**
+ * How a camera with a field of view, in degrees, sees all that moves from a direction, from as near as it fits over all
+ * frames: the `target` it looks at, its `distance` from that, and the `aspect` of its picture.
+ */
+export function framing(views, direction, up, field) {
+  const right = new THREE.Vector3().crossVectors(up, direction).normalize(),
+        above = new THREE.Vector3().crossVectors(direction, right);
+  const along = [right, above, direction], low = along.map(() => Infinity), high = along.map(() => -Infinity);
+  const point = new THREE.Vector3();
+  const forEach = (visit) => views.forEach(({motion: {positions}}) => {
+    for (let i = 0; i < positions.length; i += 3) visit(point.fromArray(positions, i));
+  });
+  forEach(() => along.forEach((axis, k) => {
+    const place = point.dot(axis);
+    low[k] = Math.min(low[k], place), high[k] = Math.max(high[k], place);
+  }));
+  const middle = along.map((_, k) => (low[k] + high[k]) / 2), size = along.map((_, k) => high[k] - low[k]);
+  const target = new THREE.Vector3();
+  along.forEach((axis, k) => target.addScaledVector(axis, middle[k]));
+  const aspect = Math.max(0.75, Math.min(1.5, size[0] / size[1] || 1));
+  const slope = 0.93 * Math.tan(field * Math.PI / 360);
+  let distance = 0;
+  forEach(() => {
+    const [x, y, z] = along.map((axis, k) => point.dot(axis) - middle[k]);
+    distance = Math.max(distance, z + Math.max(Math.abs(y), Math.abs(x) / aspect) / slope);
+  });
+  return {target, distance, aspect};
 }

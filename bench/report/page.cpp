@@ -11,10 +11,14 @@
 #include "bench/report/base64.hpp"
 #include "bench/report/embedded.hpp"
 #include "bench/report/obstacles.hpp"
+#include "model/scene_file/scene_file.hpp"
 #include "results/analysis/runs_table.hpp"
 #include "results/analysis/work_precision.hpp"
 #include "results/file/schema.hpp"
 #include "results/verdict.hpp"
+#include "solver/linear/preconditioner.hpp"
+#include "solver/methods.hpp"
+#include "solver/options.hpp"
 
 namespace drape::bench {
 namespace {
@@ -173,6 +177,25 @@ Json page_table(const results::Table& table) {
           {"columns", std::move(columns)}};
 }
 
+/// What the program's own tables say of the names of methods and solvers, and of the scenes that were run.
+Json page_words(std::span<const results::Recording> recordings) {
+  Json words = Json::array();
+  const auto add = [&](std::string_view name, std::string_view says) {
+    words.push_back({{"word", std::string(name)}, {"says", std::string(says)}});
+  };
+  for (const solver::Method& method : solver::methods()) add(method.name, method.description);
+  for (const solver::StageKind& kind : solver::stage_kinds()) add(kind.name, kind.description);
+  for (const solver::LinearSolver& linear : solver::linear_solvers()) add(linear.name, linear.description);
+  const auto is_run = [&](std::string_view scene) {
+    return std::ranges::any_of(recordings, [&](const results::Recording& recording) {
+      return std::ranges::find(recording.runs, scene, &results::RunRecord::scene) != recording.runs.end();
+    });
+  };
+  for (const model::BuiltinScene& scene : model::builtin_scenes())
+    if (is_run(scene.name)) add(scene.name, model::parse_scene(scene.toml, scene.name).description);
+  return words;
+}
+
 /// All that a report shows of one HDF5 file: its provenance, its tables, a table of its runs, and of each run its fields, steps
 /// (at most 500 of them, evenly chosen), errors and trajectory, whose obstacles have the surfaces of a list that the runs
 /// share. Numbers that are not finite are null (NaN) or the texts "inf" and "-inf", which JSON has no numbers for.
@@ -195,6 +218,7 @@ std::string report_page(std::span<const std::string> names, std::span<const resu
   nlohmann::ordered_json data{{"files", nlohmann::ordered_json::array()}, {"overview", nlohmann::ordered_json::array()}};
   for (std::size_t k = 0; k < names.size(); ++k) data["files"].push_back(page_data(names[k], recordings[k]));
   for (const results::Table& table : overview) data["overview"].push_back(page_table(table));
+  data["words"] = page_words(recordings);
 
   std::string page(embedded::head_html);
   page.append("<style>\n").append(embedded::style_css).append("</style>\n").append(embedded::body_html);

@@ -1,11 +1,12 @@
 // Motions side by side: one camera, one time, each run coloured by its distance from the one chosen as the truth.
 
-import {commandLine, element, files, groupBy, shortNumber, unique} from "./data.js";
-import {bounds, carry, colourAt, colourScale, constraints, constraintsAt, distances, hasMarks, makeView} from "./motion.js";
+import {commandLine, element, files, groupBy, lengthText, shortNumber, unique} from "./data.js";
+import {carry, colourAt, colourScale, constraints, constraintsAt, distances, framing, hasMarks, makeView} from "./motion.js";
 import {markPicture, particleName, particleOf, placeMarks, placeObstacle, placeRefined} from "./motion.js";
 import {positionsAt, rootMeanSquare, runLabel, viridis} from "./motion.js";
 import {along, axis, baseLayout, labelled, lineStyle, logTicks, style, timeAxis} from "./plots.js";
 import {comparedRuns} from "./run_figures.js";
+import {marked} from "./tips.js";
 
 /** Writes positions and colours of time t into a view. */
 function updateView(view, player) {
@@ -28,7 +29,7 @@ function updateView(view, player) {
   const ended = player.t > motion.times[motion.times.length - 1] + 1e-9 ?
       `; ended at ${shortNumber(motion.times[motion.times.length - 1])} s` :
       "";
-  const distance = `RMS ${rootMeanSquare(view.off).toExponential(2)} m off`;
+  const distance = `${lengthText(rootMeanSquare(view.off))} off (root mean square)`;
   view.says.textContent = (view === player.truth ? "the others are measured from this one" : distance) + ended;
 }
 
@@ -36,15 +37,15 @@ function updateView(view, player) {
 function renderViews(player) {
   const {renderer, camera} = player;
   for (const {canvas, scene, marks} of player.views) {
-    const size = Math.round(canvas.clientWidth * devicePixelRatio);
-    if (!size) continue;
-    if (canvas.width !== size) canvas.width = canvas.height = size;
+    const width = Math.round(canvas.clientWidth * devicePixelRatio), height = Math.round(width / camera.aspect);
+    if (!width) continue;
+    if (canvas.width !== width || canvas.height !== height) canvas.width = width, canvas.height = height;
     for (const {mark, points} of marks)
       points.material.size = Math.max(3, Math.min(mark.size, canvas.clientWidth / 40)) * devicePixelRatio;
-    renderer.setSize(size, size, false);
+    renderer.setSize(width, height, false);
     renderer.render(scene, camera);
     const context = canvas.getContext("2d");
-    context.clearRect(0, 0, size, size);
+    context.clearRect(0, 0, width, height);
     context.drawImage(renderer.domElement, 0, 0);
   }
 }
@@ -59,21 +60,33 @@ export function showTime(player, t) {
 
 /** Plays from the time shown to the end, slowed down or sped up by a factor. */
 function play(player) {
+  player.used = true;
   if (player.playing) return void (player.playing = false);
   player.playing = true;
   player.button.textContent = "Pause";
   let last = performance.now(), t = player.t >= player.end ? 0 : player.t;
   const step = (now) => {
+    if (!player.playing) return void (player.button.textContent = "Play");
     t = Math.min(player.end, t + (now - last) / 1000 * Number(player.speed.value));
     last = now;
     showTime(player, t);
-    if (t >= player.end) player.playing = false;
-    if (player.playing)
-      requestAnimationFrame(step);
-    else
-      player.button.textContent = "Play";
+    player.playing = t < player.end;
+    requestAnimationFrame(step);
   };
   requestAnimationFrame(step);
+}
+
+/** Plays once when the motions come into view, unless they were used before or the user wants no motion. */
+export function playWhenSeen(player) {
+  if (matchMedia("(prefers-reduced-motion: reduce)").matches) return;
+  const seen = new IntersectionObserver(([entry]) => {
+    if (!entry.isIntersecting) return;
+    seen.disconnect();
+    if (player.used) return;
+    player.t = 0;
+    play(player);
+  }, {threshold: 0.3});
+  seen.observe(player.grid);
 }
 
 /** The particle below the pointer with its numbers. */
@@ -91,7 +104,7 @@ function hover(player, view, event) {
   const place = [...array.subarray(3 * i, 3 * i + 3)].map((x) => x.toFixed(4)).join(", ");
   const constrained = constraints.find(({kind}) => kind === constraintsAt(view.motion, player.t)[i]);
   view.canvas.title = view.says.textContent = `${particleName(view.motion, i)}${
-      constrained ? `, ${constrained.name}` : ""}: (${place}) m, ${view.off[i].toExponential(2)} m off`;
+      constrained ? `, ${constrained.name}` : ""}: (${place}) m, ${lengthText(view.off[i])} off`;
 }
 
 /** The arrow keys turn the camera. */
@@ -107,12 +120,14 @@ function turn(player, event) {
 }
 
 function makeCamera(player, grid) {
-  const {center, radius} = bounds(player.views);
-  player.camera = new THREE.PerspectiveCamera(35, 1, radius / 50, radius * 50);
-  player.camera.up.set(0, 0, 1);
-  player.camera.position.copy(center).add(new THREE.Vector3(1.85, -2.65, 1.3).multiplyScalar(radius));
+  const up = new THREE.Vector3(0, 0, 1), direction = new THREE.Vector3(1.85, -2.65, 1.3).normalize(), field = 35;
+  const {target, distance, aspect} = framing(player.views, direction, up, field);
+  player.camera = new THREE.PerspectiveCamera(field, aspect, distance / 100, 100 * distance);
+  player.camera.up.copy(up);
+  player.camera.position.copy(target).addScaledVector(direction, distance);
+  for (const {canvas} of player.views) canvas.style.aspectRatio = aspect;
   player.controls = new THREE.OrbitControls(player.camera, grid);
-  player.controls.target.copy(center);
+  player.controls.target.copy(target);
   player.controls.enableKeys = false;
   player.controls.update();
   player.controls.saveState();
@@ -133,7 +148,7 @@ function scaleElement(player) {
   bar.style.background = `linear-gradient(to right, ${viridis.join(", ")})`;
   const labels = [0, 1, 2, 3, 4].map(
       (k) => element(
-          "span", {}, `${k ? "" : "≤ "}${shortNumber(Number((player.scale.top * 10 ** (k - 4)).toPrecision(2)))} m`));
+          "span", {}, `${k ? "" : "≤ "}${lengthText(Number((player.scale.top * 10 ** (k - 4)).toPrecision(2)))}`));
   return element("div", {}, bar, element("div", {className: "scale-labels"}, ...labels));
 }
 
@@ -159,7 +174,11 @@ function makeControls(player) {
     value: 0,
     "aria-label": "time"
   });
-  player.slider.addEventListener("input", () => showTime(player, Number(player.slider.value)));
+  player.slider.addEventListener("input", () => {
+    player.used = true;
+    player.playing = false;
+    showTime(player, Number(player.slider.value));
+  });
   player.clock = element("output", {});
   player.speed = element(
       "select", {"aria-label": "speed"},
@@ -238,16 +257,19 @@ function playerElement(file, name, runs, id) {
         "aria-label": "Motions; drag or use the arrow keys to turn them"
       },
       ...views.map((view) => view.box));
+  player.grid = grid;
   makeCamera(player, grid);
   const controls = makeControls(player);
   for (const view of views) view.canvas.addEventListener("pointermove", (event) => hover(player, view, event));
   new ResizeObserver(() => renderViews(player)).observe(grid);
   const says = `Drag to turn, wheel to come nearer, point at a particle for its numbers. Colours are distances from ${
       runLabel(truth.run)}, ${
-      truth.run.error ? `which has the least error of these runs, ${shortNumber(truth.run.error.rms)} at the end` :
+      truth.run.error ? `which has the least error of these runs, ${
+                            shortNumber(100 * truth.run.error.rms)} % of the size at the end` :
                         "one of the least step"}.`;
   const figure = element(
-      "figure", {id}, element("figcaption", {}, element("h3", {}, `Motion: ${name}`), element("p", {}, says)), grid,
+      "figure", {id},
+      element("figcaption", {}, element("h3", {}, `Motion: ${name}`), element("p", {}, ...marked(says))), grid,
       controls, scaleElement(player), legendElement(player), commandLine(file));
   return {figure, player, more: views.length > 1 ? [distanceFigure(file, name, player)] : []};
 }

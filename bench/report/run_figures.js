@@ -47,7 +47,10 @@ function runWorkPrecision(file, name, runs) {
                 (row) => `${method}, h = ${shortNumber(row.step)} s`)),
         width);
     const titles = {x: "error over the scene's size", y: "solver time [ms]"};
-    return {data: curves, layout: workPrecisionLayout(width, colours, rows, uncertainty, curves.length, titles)};
+    return {
+      data: curves,
+      layout: workPrecisionLayout(width, colours, rows, uncertainty, curves, curves.length, titles)
+    };
   };
   return [{
     file,
@@ -232,14 +235,16 @@ function clearanceFigure(file, name, runs) {
 
 /** All figures of the runs of a file. */
 export function figuresOfRuns(file) {
+  const kind = (name, figures) => figures.map((figure) => ({...figure, kind: name}));
   return comparedRuns(file).flatMap(([name, runs]) => {
     const overTime = quantities.flatMap((quantity) => {
       const known = runs.filter((run) => quantity.of(run));
       return known.length && worthSeeing(quantity, known) ? [timeFigure(file, name, known, quantity)] : [];
     });
     return [
-      ...runWorkPrecision(file, name, runs), ...overTime,
-      ...clearanceFigure(file, name, runs.filter((run) => run.contact))
+      ...kind("runs", runWorkPrecision(file, name, runs)),
+      ...kind("clearance", clearanceFigure(file, name, runs.filter((run) => run.contact))),
+      ...kind("steps", overTime).map((figure) => ({...figure, fold: `Step by step: ${name}`}))
     ];
   });
 }

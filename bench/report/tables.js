@@ -1,6 +1,7 @@
 // Tables that sort by a click on a column's head.
 
 import {cellsOf, commandLine, csvLink, element, rowsOf, shortNumber, titleOf, unitOf} from "./data.js";
+import {explain, explanationOf, typeset} from "./tips.js";
 
 function compareCells(a, b) {
   const number = (value) => typeof value === "number";
@@ -32,15 +33,16 @@ function sortBy(head, body, values) {
 
 function columnHead(column, body) {
   const values = column.shown && !column.numeric ? column.shown : cellsOf(column);
-  const head = element("th", {scope: "col", className: column.numeric ? "number" : "", title: column.description});
-  head.append(
-      element("button", {type: "button", on: {click: () => sortBy(head, body, values)}}, titleOf(column)),
-      unitOf(column) && element("small", {}, unitOf(column)));
+  const head = element("th", {scope: "col", className: column.numeric ? "number" : ""});
+  const button =
+      element("button", {type: "button", on: {click: () => sortBy(head, body, values)}}, ...typeset(titleOf(column)));
+  const says = column.description || explanationOf(titleOf(column));
+  head.append(says ? explain(button, says) : button, unitOf(column) && element("small", {}, unitOf(column)));
   return head;
 }
 
-/** The table element for a table of the page's data. */
-export function tableElement(table) {
+/** The table element for a table of the page's data. `mark`: gives the text of a cell as parts of an element. */
+export function tableElement(table, mark = (text) => [text]) {
   const columns = visibleColumns(table);
   const body = element("tbody");
   const texts = columns.map(shownCells);
@@ -49,8 +51,8 @@ export function tableElement(table) {
     columns.forEach((column, c) => {
       const className = [column.numeric ? "number" : "", column.missed?.[k] ? "bad" : ""].join(" ").trim();
       row.append(
-          c === 0 ? element("th", {scope: "row", className, title: texts[c][k]}, texts[c][k]) :
-                    element("td", {className}, texts[c][k]));
+          c === 0 ? element("th", {scope: "row", className}, ...mark(texts[c][k])) :
+                    element("td", {className}, ...mark(texts[c][k])));
     });
     body.append(row);
   }
@@ -68,14 +70,16 @@ export function columnsWhere(table, wanted) {
   return table.columns.map((column) => ({name: column.name, cells: column.cells.filter((_, k) => wanted(rows[k]))}));
 }
 
+const mostRows = 20;
+
 /** The table with its title, source and CSV; long ones are folded. */
 export function tableSection(file, table, id) {
   const scroll = element(
       "div", {className: "scroll", tabIndex: 0, role: "region", "aria-label": table.description}, tableElement(table));
   const rows = table.columns[0]?.cells.length ?? 0;
-  const content = rows > 40 ? element("details", {}, element("summary", {}, `${rows} rows`), scroll) : scroll;
+  const content = rows > mostRows ? element("details", {}, element("summary", {}, `${rows} rows`), scroll) : scroll;
   const actions = element("div", {className: "actions"}, csvLink(table.name, () => table.columns.map(exactCells)));
   return element(
-      "article", {className: "table", id}, element("h3", {}, table.description || table.name), content, actions,
-      commandLine(file));
+      "article", {className: "table", id}, element("h3", {}, ...typeset(table.description || table.name)), content,
+      actions, commandLine(file));
 }

@@ -16,20 +16,6 @@
 namespace drape::results {
 namespace {
 
-/// The keys of a row that users see; of a curve those that are texts, for all of its rows.
-std::string row_title(const Table& table, std::size_t row, bool of_curve = false) {
-  std::string title;
-  for (const Column& column : table.columns) {
-    if (column.role != Role::key || column.title.empty()) continue;
-    const double number = number_in(&column, row);
-    const std::string text = std::isnan(number) ? text_in(&column, row)
-                             : of_curve         ? ""
-                                                : fmt::format("{} {:g}", column.title, number);
-    if (!text.empty()) title.append(title.empty() ? "" : " ").append(text);
-  }
-  return title;
-}
-
 // --- Orders --------------------------------------------------------------------------------------------------------------
 
 struct OrderRow {
@@ -43,15 +29,8 @@ constexpr ColumnOf<OrderRow> order_columns[] = {
 };
 
 OrderRow order_row(const Table& table, const OrderCount& count) {
-  const Column *verdicts = find_column(table, Role::verdict), *fitted = find_column(table, Role::order);
-  std::string others;
-  for (std::size_t row = 0; row < rows(table); ++row) {
-    const std::string verdict = text_in(verdicts, row);
-    if (verdict.empty() || standing(verdicts->cells[row]) == Standing::met) continue;
-    others += fmt::format("{}{}: {}{}", others.empty() ? "" : "; ", row_title(table, row, true), verdict,
-                          std::isfinite(number_in(fitted, row)) ? fmt::format(" but {:.2f}", number_in(fitted, row)) : "");
-  }
-  return {table.name, fmt::format("{} of {}", count.as_declared, count.curves), others};
+  return {table.name, fmt::format("{} of {}", count.as_declared, count.curves),
+          fmt::format("{}", fmt::join(count.others, "; "))};
 }
 
 // --- Runs ----------------------------------------------------------------------------------------------------------------

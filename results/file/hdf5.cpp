@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <iterator>
+#include <string_view>
 #include <utility>
 
 #include "results/file/hdf5_library.hpp"
@@ -62,9 +64,13 @@ std::vector<std::string> links(const Handle& group) {
   return names;
 }
 
+/// The signature, and what the library keeps of scales of dimensions.
+constexpr std::string_view unlisted[] = {signature_name, "CLASS", "NAME", "DIMENSION_LIST", "REFERENCE_LIST"};
+
 std::vector<std::string> attributes(const Handle& object, H5_index_t order) {
   std::vector<std::string> names;
   check(H5Aiterate2(object.id(), order, H5_ITER_INC, nullptr, append_name<H5A_info_t>, &names), "attributes");
+  std::erase_if(names, [](const std::string& name) { return std::ranges::find(unlisted, name) != std::end(unlisted); });
   return names;
 }
 

@@ -112,6 +112,9 @@ void write_texts(const Handle& group, const std::string& name, const std::vector
 /// All texts of a dataset; throws Error if it holds something else.
 std::vector<std::string> read_texts(const Handle& group, const std::string& name);
 
+/// Names a dimension of a dataset by another dataset of the group, its scale, which has an entry for each place along it.
+void name_dimension(const Handle& group, const std::string& dataset, unsigned dimension, const std::string& scale);
+
 /// A dataset's name in its group (a path, if it is in a group of the group), unit and description.
 struct DatasetInfo {
   std::string name;

@@ -124,7 +124,6 @@ class Copier {
     const Signature signature = signature_of(from);
     std::size_t ours = 1;  // the object itself
     for (const std::string& name : attributes(from, H5_INDEX_CRT_ORDER)) {
-      if (name == signature_name) continue;
       const std::string where = fmt::format("{}@{}", path, name);
       const Value value = read_value(Handle(H5Aopen(from.id(), name.c_str(), H5P_DEFAULT), where), where);
       budget_.count(value, where);

@@ -7,7 +7,6 @@ using Inventory = std::map<std::string, Item>;
 
 void list_attributes(const Handle& object, const std::string& path, Inventory& all) {
   for (const std::string& name : attributes(object)) {
-    if (name == signature_name) continue;
     const std::string where = fmt::format("{}@{}", path, name);
     const Value value = declaration(Handle(H5Aopen(object.id(), name.c_str(), H5P_DEFAULT), where), where);
     all[where] = {value.type, value.shape, {}};

@@ -44,7 +44,11 @@ Types types() {
   if constexpr (std::is_same_v<Number, std::int64_t>) return {H5T_NATIVE_INT64, H5T_STD_I64LE};
 }
 
-/// Names of the links of a group or of the attributes of an object, sorted.
+/// The attribute with the checksums of an object.
+inline constexpr const char* signature_name = "checksums";
+
+/// Names of the links of a group or of the attributes of an object, sorted; without the attributes that sign() and
+/// name_dimension() make, which say nothing of their own.
 std::vector<std::string> links(const Handle& group);
 std::vector<std::string> attributes(const Handle& object, H5_index_t order = H5_INDEX_NAME);
 

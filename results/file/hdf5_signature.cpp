@@ -21,7 +21,6 @@ void write_signature(const Handle& object, const std::vector<Pair>& pairs) {
 void sign_object(const Handle& object, const std::string& path) {
   std::vector<Pair> pairs;
   for (const std::string& name : attributes(object)) {
-    if (name == signature_name) continue;
     const std::string where = fmt::format("{}@{}", path, name);
     pairs.push_back(
         {key_of(where), hash_of(read_value(Handle(H5Aopen(object.id(), name.c_str(), H5P_DEFAULT), where), where))});

@@ -32,8 +32,6 @@ std::uint64_t hash_of(const Value& value);
 using Signature = std::map<std::uint64_t, std::uint64_t>;
 Signature signature_of(const Handle& object);
 
-inline constexpr const char* signature_name = "checksums";
-
 /// The keys of a signature.
 std::uint64_t key_of(const std::string& path);
 std::uint64_t hash_of(const std::vector<std::string>& names);

@@ -8,6 +8,7 @@
 #include <system_error>
 #include <utility>
 
+#include "results/file/dimensions.hpp"
 #include "results/file/hdf5.hpp"
 #include "results/file/schema.hpp"
 #include "results/file/schema_4.hpp"
@@ -100,6 +101,7 @@ Record read_fields(const Handle& group, const auto& fields) {
 void write_state(const Handle& group, const solver::State& y) {
   write_fields(group, state_fields, y);
   if (y.z.size() > 0) write(group, memory_field, y.z);
+  write_particle_scales(group, static_cast<std::uint64_t>(y.x.rows()));
 }
 
 solver::State read_state(const Handle& group) {
@@ -164,6 +166,7 @@ void write_run(const Handle& runs, const std::string& name, const RunRecord& run
                  motion_error_fields, *run.motion_error);
   if (run.contact) write_fields(hdf5::create_group(group, "contact", "what obstacles did"), contact_fields, *run.contact);
   if (run.trajectory) write_trajectory(group, *run.trajectory);
+  name_dimensions_of_run(group);
 }
 
 RunRecord read_run(const Handle& group) {
@@ -246,6 +249,7 @@ Handle go_on(const fs::path& path, const Provenance& provenance) {
                                   added.empty() ? altered.front() : added.front()));
   if (const std::string why = why_not_resumed(facts_of(file), provenance); !why.empty())
     throw hdf5::Error(fmt::format("cannot be continued: {}; choose another --out", why));
+  name_dimensions(file);  // which were not in what was copied
   return std::move(file);
 }
 

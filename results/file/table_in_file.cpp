@@ -7,6 +7,7 @@
 #include <limits>
 #include <sstream>
 
+#include "results/file/dimensions.hpp"
 #include "results/file/schema_4.hpp"
 #include "results/file/schema_5.hpp"
 
@@ -119,6 +120,8 @@ void write_table(const Handle& tables, const Table& table) {
   hdf5::write_integer(group, "timed_rows", table.timed_rows ? 1 : 0);
   hdf5::write_integer(group, "for_file", table.for_file ? 1 : 0);
   hdf5::write_text(group, "figure", std::string(to_string(table.figure)));
+  write_row_scale(group, rows(table));
+  name_dimensions_of_table(group);
 }
 
 std::vector<std::string> column_names(const Handle& group, int version) {

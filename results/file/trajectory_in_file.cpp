@@ -6,6 +6,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "results/file/dimensions.hpp"
 #include "results/file/schema.hpp"
 
 namespace drape::results {
@@ -101,6 +102,7 @@ void write_trajectory(const Handle& run, const TrajectoryRecord& trajectory) {
     for (const solver::State& state : trajectory.states) frames.push_back(state.*field.member);
     write_member(group, field, trajectory, frames);
   });
+  write_particle_scales(group, particles(trajectory));
 }
 
 TrajectoryRecord read_trajectory(const Handle& run) {

@@ -163,12 +163,20 @@ void check_scene_keys(Check& check, const std::string& group) {
   });
 }
 
+/// Files of older programs have none.
+void check_particle_scales(Check& check, const std::string& group, SameRows& particles) {
+  const std::string particle = group + "/particle", axis = group + "/axis";
+  if (check.find(particle) != nullptr) particles.see(particle, check.numbers(particle, "int64", 1, "1"));
+  if (check.find(axis) != nullptr) check.numbers(axis, "text", 1, "");
+}
+
 void check_state(Check& check, const std::string& group) {
   if (!check.group(group)) return;
   SameRows particles(check, "particles");
   for_each(state_fields, [&]<class Value>(const Field<solver::State, Value>& field) {
     particles.see(fmt::format("{}/{}", group, field.name), member(check, group, field, static_cast<const Value*>(nullptr)));
   });
+  check_particle_scales(check, group, particles);
   const std::string memory = fmt::format("{}/{}", group, memory_field.name);
   if (check.find(memory) != nullptr) check.numbers(memory, "float64", 1, memory_field.unit);
 }
@@ -203,6 +211,8 @@ void check_trajectory(Check& check, const std::string& group) {
   });
   for_each(state_fields,
            [&](const auto& field) { frames.see(path(field), check.numbers(path(field), "float64", 3, field.unit)); });
+  SameRows particles(check, "particles");
+  check_particle_scales(check, group, particles);
   if (const std::string panels = group + "/panels"; check.find(panels) != nullptr) check.numbers(panels, "int32", 2, "1");
 }
 
@@ -262,6 +272,7 @@ void check_table(Check& check, const Handle& file, const std::string& group, int
       for (const char* text : {".group", ".part"}) check.attribute(group, name + text, "text");
     if (check.find(path + ".classes") != nullptr) check.numbers(path + ".classes", "text", 1, "");
   }
+  if (const std::string row = group + "/row"; check.find(row) != nullptr) rows.see(row, check.numbers(row, "int64", 1, "1"));
 }
 
 /// Texts with a description beyond the facts that we ask for: versions of libraries.

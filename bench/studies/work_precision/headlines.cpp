@@ -1,4 +1,7 @@
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <iterator>
 #include <optional>
 
 #include "bench/studies/work_precision/winners.hpp"
@@ -63,6 +66,12 @@ constexpr ColumnOf<Summary> summary_columns[] = {
     {"median", "median", "1", "of the ratios", Role::time, field<&Summary::median>},
     {"largest", "largest", "1", "of the ratios", Role::time, field<&Summary::largest>},
     {"errors", "errors", "1", "at how many of 1e-1 to 1e-7 there is a ratio", Role::time, field<&Summary::errors>},
+    {"words", "", "", "the row in words", Role::note,
+     [](const Summary& row) -> Datum {
+       return fmt::format(
+           "SUNDIALS, tuned, takes {:.2g} to {:.2g} times as long as our quickest, in the median {:.2g}, over {} errors.",
+           row.least, row.largest, row.median, row.errors);
+     }},
 };
 
 }  // namespace
@@ -83,6 +92,7 @@ results::Table peers_summary_table(const std::vector<SceneRuns>& scenes) {
       results::make_table("peers-summary", "How many times as long as our quickest SUNDIALS, tuned, takes with the same error",
                           summary_columns, rows);
   table.headline = true;
+  results::draw(table, results::Figure::none, {{results::Part::caption, "words"}});
   return table;
 }
 

@@ -35,6 +35,7 @@ using testing::Contains;
 using testing::EndsWith;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 using testing::SizeIs;
 using testing::StartsWith;
 
@@ -248,11 +249,33 @@ constexpr const char* look = R"(
   const isPurple = (r, g, b) => r > 25 && g < 0.2 * r && Math.abs(b / r - 84 / 68) < 0.25;
   const isOrange = (r, g, b) => Math.hypot(r - 213, g - 94, b) < 30;
   const drawn = (pixels) => pixels.filter((value, k) => k % 4 === 3 && value > 0).length / (pixels.length / 4);
+  const tip = document.getElementById("tip");
+  const tipAt = (target) => {
+    target.dispatchEvent(new FocusEvent("focusin", {bubbles: true}));
+    const told = document.getElementById(target.getAttribute("aria-describedby")).textContent, shown = !tip.hidden && tip.textContent;
+    target.dispatchEvent(new FocusEvent("focusout", {bubbles: true}));
+    return {word: target.textContent, shown, told, hidden: tip.hidden};
+  };
+  // Curves by what they look like, the figures that are folded as well.
+  const lookOf = ({line, marker}) => JSON.stringify([line.color, line.dash, [marker?.symbol ?? ""].flat()[0].replace("-open", "")]);
+  const curvesOf = (plot) => plot.make(900, {text: "#000000", line: "#cccccc", band: "#eeeeee", page: "#ffffff"}).data
+      .filter(({name, line, type}) => name && line?.color && type === "scatter" && !/^(slope|all of)/.test(name))
+      .map((curve) => ({figure: plot.title, name: curve.name, colour: curve.line.color, look: lookOf(curve)}));
+  const main = [...document.querySelectorAll("main > section")].filter((section) => !section.hidden);
   const seen = {
+    heading: document.querySelector("h1").textContent, tab: document.title, sections: main.map(({id}) => id),
+    findings: all("#findings dd").map((sentence) => sentence.textContent), lead: document.querySelector("#findings figure h3").textContent,
+    folded: all("details.fold > summary").map((fold) => fold.textContent),
+    drawnAtFirst: report.plots.filter(({width}) => width).length,
+    tips: all("[data-says]").map(tipAt), curves: report.plots.flatMap(curvesOf),
+    words: all("#words dt").map((word) => word.textContent),
+    off: all(".view p:last-child").map((says) => says.textContent),
     fetched: performance.getEntriesByType("resource").map((any) => any.name).filter((name) => !name.startsWith("blob:")),
     summary: document.getElementById("summary").innerText,
     figures: {}, csv: {}, titles: all("article h3").map((title) => title.textContent), views: [],
   };
+  for (const fold of all("details.fold")) fold.open = true;
+  while (!report.plots.every(({width}) => width)) await new Promise((resolve) => setTimeout(resolve, 20));
   for (const figure of all("figure")) {
     const plot = figure.querySelector(".plot");
     if (plot) seen.figures[figure.querySelector("h3").textContent] = all(".point, .js-line, .heatmaplayer image, .textpoint", plot).length;
@@ -372,6 +395,54 @@ void expect_sorting(const json& seen) {
   EXPECT_EQ(seen.at("down"), (std::vector{up[1], up[0]}));
 }
 
+/// What the page is about and what it comes to are first; figures that need patience are folded, and tell where they are.
+void expect_findings_first(const json& seen) {
+  EXPECT_EQ(seen.at("heading"), "bdf2 and sbdf2 on hung-corners, on box and box and more; all");
+  EXPECT_EQ(seen.at("tab"), "bdf2 and sbdf2 on hung-corners, on box and box and more; all – drape");
+  EXPECT_EQ(seen.at("sections"),
+            (std::vector<std::string>{"findings", "motion", "figures", "summary", "tables", "sources", "words"}));
+  const std::vector<std::string> findings = seen.at("findings"), folded = seen.at("folded");
+  EXPECT_THAT(findings, Contains("1 of 2 methods converge with the order they declare; sheet euler: missed: not 1 but 0.50."));
+  EXPECT_THAT(findings, Contains(HasSubstr("The quickest with an error of at most 1 % of the size is")));
+  EXPECT_EQ(seen.at("lead"), "Work–precision: All that was tried on sheet");
+  EXPECT_THAT(folded, Contains(StartsWith("Step by step: hung-corners")));
+  EXPECT_LT(seen.at("drawnAtFirst"), seen.at("figures").size());
+}
+
+/// What is underlined, and every column's head that has something to say, says it to those who point and to those who listen.
+void expect_tips(const json& seen) {
+  std::string words;
+  for (const json& tip : seen.at("tips")) {
+    EXPECT_EQ(tip.at("shown"), tip.at("told")) << tip;
+    EXPECT_NE(tip.at("told"), "") << tip;
+    EXPECT_TRUE(tip.at("hidden")) << tip;
+    words += tip.at("word").get<std::string>() + "\n";
+  }
+  for (const char* word :
+       {"νh\n", "h k/d\n", "updates\n", "CG\n", "set\n", "rms error\n", "bdf2\n", "hung-corners\n", "reference\n"})
+    EXPECT_THAT(words, HasSubstr(word));
+  EXPECT_THAT(seen.at("words").get<std::vector<std::string>>(), AllOf(Contains("νh"), Contains("bdf2"), Not(Contains("ros2"))));
+}
+
+/// No two curves of a figure look the same, except that one has a part on each axis, and a method has one colour everywhere.
+void expect_looks(const json& seen) {
+  std::map<std::string, std::string> colours, names;
+  for (const json& curve : seen.at("curves")) {
+    const std::string name = curve.at("name"), method = name.substr(0, name.find_first_of("/:,"));
+    const std::string look = curve.at("figure").get<std::string>() + curve.at("look").get<std::string>();
+    EXPECT_EQ(names.emplace(look, name).first->second, name) << curve;
+    EXPECT_EQ(colours.emplace(method, curve.at("colour")).first->second, curve.at("colour")) << curve;
+  }
+  EXPECT_THAT(colours, AllOf(Contains(testing::Key("bdf2")), Contains(testing::Key("sbdf2"))));
+}
+
+/// Distances are in units in which they are between 1 and 1000.
+void expect_readable_distances(const json& seen) {
+  const std::vector<std::string> off = seen.at("off");
+  EXPECT_THAT(off, Contains(testing::MatchesRegex("[1-9][0-9.]{0,4} (m|mm|µm|nm) off .*")));
+  EXPECT_THAT(off, testing::Each(Not(HasSubstr("e-"))));
+}
+
 /// The report of some files beside all kinds of tables.
 std::filesystem::path page(const BenchIntegrators& program, const Words& files) {
   {
@@ -403,6 +474,10 @@ TEST(Report, ShowsAllThereIs) {  // one test, since a browser takes seconds to s
   EXPECT_THAT(browsed.console, IsEmpty());
   const json seen = json::parse(browsed.seen);
   EXPECT_THAT(seen.at("fetched"), IsEmpty());
+  expect_findings_first(seen);
+  expect_tips(seen);
+  expect_looks(seen);
+  expect_readable_distances(seen);
   expect_marks_in_every_figure(seen);
   expect_csv_of(orders(), seen);
   expect_csv_of(atlas(), seen);
@@ -444,9 +519,18 @@ TEST(Report, ImagesTakeThePlaceOfImagesOnly) {
 TEST(Report, FitsAPhone) {
   DRAPE_SLOW();
   const BenchIntegrators program;
-  const bench::Browsed browsed =
-      bench::browse(page(program, {}), "see(document.documentElement.scrollWidth - innerWidth);", 500);
-  EXPECT_EQ(browsed.seen, "0");
+  constexpr const char* unfolded = R"(
+    for (const fold of document.querySelectorAll("details")) fold.open = true;
+    while (!report.plots.every(({width}) => width)) await new Promise((resolve) => setTimeout(resolve, 20));
+    const isCovered = ({div}) => {
+      const [legend, title] = [".legend", ".xtitle"].map((part) => div.querySelector(part)?.getBoundingClientRect());
+      return legend && title && legend.top < title.bottom;
+    };
+    const wider = document.documentElement.scrollWidth - innerWidth, covered = report.plots.filter(isCovered);
+    see(JSON.stringify({wider, covered: covered.map(({title}) => title)}));
+  )";
+  const bench::Browsed browsed = bench::browse(page(program, {}), unfolded, 500);
+  EXPECT_EQ(browsed.seen, R"({"wider":0,"covered":[]})");
   EXPECT_THAT(browsed.console, IsEmpty());
 }
 

@@ -133,18 +133,36 @@ TEST(Conclusion, SaysOfRunsWhoIsQuickWhoIsWrongAndWhoFails) {
   RunRecord failed = run("unlucky", 0, 1);
   failed.error.reset();
   failed.outcome = solver::Outcome::unstable;
-  EXPECT_THAT(
-      conclusion({{}, {run("slow", 1e-5, 3), run("quick", 1e-2, 0.05), run("wrong", 0.3, 1), failed}, {}}),
-      ElementsAre("sheet: error <= 0.01 in 0.05 ms by quick, h = 0.01 s; error <= 0.0001 in 3 ms by slow, h = 0.01 s",
-                  "sheet: stable and wrong: wrong, h = 0.01 s, ends 30 % of the size away", "sheet: fails: unlucky unstable"));
+  EXPECT_THAT(conclusion({{}, {run("slow", 1e-5, 3), run("quick", 1e-2, 0.05), run("wrong", 0.3, 1), failed}, {}}),
+              ElementsAre("sheet: The quickest with an error of at most 1 % of the size is quick, h = 0.01 s, in 0.05 ms; "
+                          "of at most 0.01 %, slow, h = 0.01 s, in 3 ms.",
+                          "sheet: Stable and wrong: wrong, h = 0.01 s, ends 30 % of the size away.",
+                          "sheet: Ended unstable: unlucky."));
 }
 
-TEST(Conclusion, SaysOfTablesHowManyOrdersAreAsDeclared) {
+TEST(Conclusion, NamesTheWorstRunsOfThreeMethods) {
+  EXPECT_THAT(conclusion({{}, {run("a", 0.2, 1), run("a", 0.1, 1), run("b", 0.06, 1), run("c", 0.9, 1), run("d", 0.5, 1)}, {}}),
+              ElementsAre("sheet: Stable and wrong: c, h = 0.01 s, ends 90 % of the size away; d, h = 0.01 s, 50 %; "
+                          "a, h = 0.01 s, 20 %; and 1 more."));
+}
+
+TEST(Conclusion, SaysOfTablesHowManyOrdersAreAsDeclaredAndWhichAreNot) {
   const Table orders{
       "orders-sheet",
       "",
-      {column("verdict", "", Role::verdict, {"", two, not_three}), column("fitted_order", "1", Role::order, {2.0, 2.0, 2.0})}};
-  EXPECT_THAT(conclusion({{}, {}, {orders}}), ElementsAre("orders-sheet: 1 of 2 methods converge with the order they declare"));
+      {column("method", "", Role::key, {"bdf2", "bdf2", "bdf3"}), column("verdict", "", Role::verdict, {"", two, not_three}),
+       column("fitted_order", "1", Role::order, {2.0, 2.0, 2.0})}};
+  EXPECT_THAT(conclusion({{}, {}, {orders}}),
+              ElementsAre("orders-sheet: 1 of 2 methods converge with the order they declare; bdf3: missed: not 3 but 2.00."));
+}
+
+TEST(Conclusion, RepeatsWhatHeadlineTablesSayOfTheirRows) {
+  Table table{
+      "ratios", "", {column("scene", "", Role::key, {"sheet", "chain"}), column("words", "", Role::note, {"Twice.", "Once."})}};
+  results::draw(table, results::Figure::none, {{results::Part::caption, "words"}});
+  EXPECT_THAT(conclusion({{}, {}, {table}}), IsEmpty());
+  table.headline = true;
+  EXPECT_THAT(conclusion({{}, {}, {table}}), ElementsAre("sheet: Twice.", "chain: Once."));
 }
 
 TEST(Overview, OfNothingIsEmpty) { EXPECT_THAT(results::overview({}), IsEmpty()); }

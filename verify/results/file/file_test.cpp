@@ -22,7 +22,9 @@
 #include "results/file/schema.hpp"
 #include "verify/support/file_size_limit.hpp"
 #include "verify/support/record_text.hpp"
+#include "verify/support/run_program.hpp"
 #include "verify/support/slow.hpp"
+#include "verify/support/tables.hpp"
 #include "verify/support/temporary_folder.hpp"
 
 namespace drape::verify::results_test {
@@ -201,11 +203,65 @@ TEST(RunFile, ReadmeNamesAllThatIsInIt) {
   const std::string readme = contents(fs::path(DRAPE_SOURCE_DIR) / "results/README.md");
   for (const auto& [kind, path] : h5dump(file.path())) {
     if (kind == "group" || path.ends_with("description") || path.ends_with("/unit")) continue;
-    std::string name = path.ends_with("checksums") ? "checksums" : path.substr(path.starts_with("/runs/000/") ? 10 : 1);
+    std::string name = path.substr(path.starts_with("/runs/000/") ? 10 : 1);
+    for (const char* of_any : {"checksums", "CLASS", "NAME", "DIMENSION_LIST", "REFERENCE_LIST"})
+      if (path.ends_with(of_any)) name = of_any;
     for (const char* list : {"parameters/", "work/"})
       if (name.starts_with(list)) name = std::string(list) + "<name>";
     EXPECT_THAT(readme, HasSubstr("`" + name + "`"));
   }
+}
+
+// --- Dimensions have names -----------------------------------------------------------------------------------------------
+
+/// The names of the dimensions of each dataset that has some, as h5py sees them, a line each.
+std::string dimension_names(const fs::path& file) {
+  const ProgramResult result = run_program({.program = "/usr/bin/python3",
+                                            .arguments = {"-c", R"(
+import h5py, sys
+def show(path, item):
+    if isinstance(item, h5py.Dataset) and any(len(dimension) for dimension in item.dims):
+        print(path, *[dimension[0].name.split("/")[-1] if len(dimension) else "-" for dimension in item.dims])
+with h5py.File(sys.argv[1]) as file:
+    file.visititems(show)
+)",
+                                                          file.string()},
+                                            .folder = file.parent_path(),
+                                            .environment = {},
+                                            .output = {}});
+  EXPECT_EQ(result.err, "");
+  return result.out;
+}
+
+/// A table with a verdict.
+Table judged() {
+  return {"judged",
+          "",
+          {column("method", "", Role::key, {"a", "b"}),
+           column("verdict", "", Role::verdict, {Verdict{Standing::met, "1"}, Verdict{Standing::met, "2"}})}};
+}
+
+TEST(RunFile, NamesDimensionsForOthersAlsoOfWhatAnEarlierStartWrote) {
+  const base::TemporaryFolder folder;
+  {
+    RunFile file(folder / "runs.h5", {});
+    file.add(full_record());
+    file.add(judged());
+  }
+  RunFile file(folder / "runs.h5", {}, Start::resumed);
+  file.add(full_record());
+  std::string expected;
+  for (const char* run : {"runs/000/", "runs/001/"})
+    for (const char* named :
+         {"final_state/v particle axis", "final_state/x particle axis", "scene_keys/unit key", "scene_keys/value key",
+          "steps/cg_iterations t", "steps/contacts t", "steps/h t", "steps/kinetic_energy t", "steps/potential_energy t",
+          "steps/updates t", "trajectory/constraint t particle", "trajectory/stretch t particle",
+          "trajectory/v t particle axis", "trajectory/x t particle axis"})
+      expected += std::string(run) + named + "\n";
+  for (const char* named : {"method row", "verdict row", "verdict.standing row"})
+    expected += std::string("tables/judged/") + named + "\n";
+  EXPECT_EQ(dimension_names(file.path()), expected);
+  EXPECT_EQ(as_text(read_runs(file.path()).front()), as_text(full_record()));
 }
 
 // --- Nothing that was recorded is lost -----------------------------------------------------------------------------------
