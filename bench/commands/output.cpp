@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "bench/commands/argument_checks.hpp"
+#include "bench/commands/choices.hpp"
 #include "results/analysis/runs_table.hpp"
 #include "results/file/xdmf.hpp"
 #include "solver/base/printable.hpp"
@@ -61,9 +62,10 @@ void add_record_options(CLI::App& command, Output& output) {
           "--resume", [&] { output.sweep.start = results::Start::resumed; },
           "continue FILE.h5 where a process before this one was killed; without one, begin it")
       ->needs("--out");
+  const std::vector<std::string> formats = names(format_choices());
   command.add_option("--format", output.format, "what is printed")
-      ->type_name("table|csv|json")
-      ->check(CLI::IsMember({"table", "csv", "json"}).description(""))
+      ->type_name(fmt::format("{}", fmt::join(formats, "|")))
+      ->check(one_of("format", formats))
       ->capture_default_str();
 }
 

@@ -340,6 +340,7 @@ TEST(ProgramInspect, FindsTablesByTheBeginningOfTheirNames) {
   EXPECT_THAT(program.run({"inspect", "modes.h5", "--table", "a"}).err,
               AllOf(HasSubstr("amplification, artificial, stability"), HasSubstr("not 'a'")));
   EXPECT_THAT(program.run({"inspect", "modes.h5", "--table", "runs"}).err, HasSubstr("not 'runs'"));
+  EXPECT_THAT(program.run({"inspect", "modes.h5", "--table", "amplifcation"}).err, HasSubstr("(did you mean amplification?)"));
   program.output({"run", "--scene", "hung-edge", "--set", "grid.n=4", "--method", "all", "--step", "0.01", "--until", "0.02",
                   "--no-reference", "--out", "runs.h5"});
   EXPECT_THAT(parse_csv(program.output({"inspect", "runs.h5", "--table", "runs", "--csv"})), SizeIs(methods.size()));
