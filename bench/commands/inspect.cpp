@@ -104,6 +104,7 @@ void add_inspect(CLI::App& app, int& exit_code) {
       .add_flag_callback(
           "--json", [=] { a->format = "json"; }, "as JSON")
       ->excludes(csv);
+  add_wide_option(command);
   command.add_flag("--validate", a->validate, "say where the file departs from its specification; then the exit code is 1")
       ->excludes(run)
       ->excludes(table);

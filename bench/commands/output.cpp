@@ -1,17 +1,34 @@
 #include "bench/commands/output.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "bench/commands/argument_checks.hpp"
 #include "bench/commands/choices.hpp"
 #include "results/analysis/runs_table.hpp"
 #include "results/file/xdmf.hpp"
+#include "results/screen.hpp"
 #include "solver/base/printable.hpp"
+#include "solver/base/terminal.hpp"
 
 namespace drape::bench {
+namespace {
+
+bool all_columns = false;
+
+results::Screen screen() {
+  results::Screen screen{.colours = base::wants_colours(STDOUT_FILENO)};
+  if (!all_columns && isatty(STDOUT_FILENO) == 1) screen.columns = static_cast<std::size_t>(base::columns_of(STDOUT_FILENO));
+  return screen;
+}
+
+}  // namespace
+
+void print_text(const results::Table& table) { fmt::print("{}", to_text(table, screen())); }
 
 void print_table(const results::Table& table, const std::string& format) {
-  fmt::print("{}", format == "csv" ? to_csv(table) : format == "json" ? to_json(table) : to_text(table));
+  if (format == "table") return print_text(table);
+  fmt::print("{}", format == "csv" ? to_csv(table) : to_json(table));
 }
 
 void print_tables(const std::vector<results::Table>& tables, const std::string& format) {
@@ -43,6 +60,11 @@ std::filesystem::path sweep_and_print(const std::vector<Group>& groups, Output o
   return output.sweep.out;
 }
 
+void add_wide_option(CLI::App& command) {
+  command.add_flag_callback(
+      "--wide", [] { all_columns = true; }, "tables with all columns, however wide the terminal is");
+}
+
 void add_agreement(CLI::App& command, double& agreement) {
   command
       .add_option("--agreement", agreement, "largest disagreement of the two solvers behind a reference, over the scene's size")
@@ -67,6 +89,7 @@ void add_record_options(CLI::App& command, Output& output) {
       ->type_name(fmt::format("{}", fmt::join(formats, "|")))
       ->check(one_of("format", formats))
       ->capture_default_str();
+  add_wide_option(command);
 }
 
 void add_table_options(CLI::App& command, Output& output) {

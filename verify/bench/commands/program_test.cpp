@@ -258,6 +258,36 @@ TEST(ProgramProgress, IsALineOnTheTerminalWithTheTimeLeft) {
   EXPECT_THAT(parse_csv(result.out), SizeIs(1));
 }
 
+const Words tiny_run{"run",  "--scene", "hung-edge", "--set",   "grid.n=5", "--method",
+                     "bdf2", "--step",  "0.01",      "--until", "0.02"};
+
+// --- Tables on a terminal
+// ------------------------------------------------------------------------------------------------------
+
+/// What the program prints on a terminal of 80 columns.
+std::string shown_on_terminal(const BenchIntegrators& program, const Words& arguments, const Words& environment = {}) {
+  Command command = program.command(
+      {"-qec", "stty cols 80; exec " + program.command({}).program.string() + " " + joined(arguments, " "), "/dev/null"});
+  command.program = "/usr/bin/script";
+  command.environment = command.environment + environment;
+  std::string shown = run_program(command).out;
+  std::erase(shown, '\r');
+  return shown;
+}
+
+TEST(ProgramTables, FitTheTerminalAndHaveItsColours) {
+  const BenchIntegrators program;
+  program.output(tiny_run + Words{"--out", "a.h5"});
+  const auto shown = [&](const Words& more, const std::string& variable) {
+    return shown_on_terminal(program, Words{"inspect", "a.h5", "--table", "runs"} + more, {"TERM=xterm", variable});
+  };
+  const std::string fitting = shown({}, "NO_COLOR=1");
+  for (const std::string& line : lines(fitting)) EXPECT_LE(columns(line), 80u) << line;
+  EXPECT_THAT(fitting, AllOf(HasSubstr("hung-edge"), HasSubstr("not shown: "), HasSubstr("--wide"), Not(HasSubstr("\033"))));
+  EXPECT_EQ(shown({"--wide"}, "NO_COLOR=1"), program.output({"inspect", "a.h5", "--table", "runs"}));
+  EXPECT_THAT(shown({}, "NO_COLOR="), HasSubstr("\033[1m"));
+}
+
 TEST(Program, WithoutArgumentsDoesTheMainJob) {
   DRAPE_SLOW();
   const BenchIntegrators program;
