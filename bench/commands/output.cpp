@@ -5,6 +5,8 @@
 
 #include "bench/commands/argument_checks.hpp"
 #include "bench/commands/choices.hpp"
+#include "bench/commands/dry_run.hpp"
+#include "bench/runs/verbosity.hpp"
 #include "results/analysis/runs_table.hpp"
 #include "results/file/xdmf.hpp"
 #include "results/screen.hpp"
@@ -52,12 +54,26 @@ std::filesystem::path out_file(const Output& output, const std::string& job) {
 }
 
 std::filesystem::path sweep_and_print(const std::vector<Group>& groups, Output output, const std::string& job) {
+  if (output.dry_run) {
+    print_plan(groups, output.sweep, job);
+    return {};
+  }
   output.sweep.out = out_file(output, job);
   print_table(results::to_table(sweep(groups, output.sweep)), output.format);
   say_where(output.sweep.out, output.format);
   if (output.sweep.frames_every && output.format == "table")
     fmt::print("motion for ParaView: {}\n", base::printable(results::xdmf_path(output.sweep.out).string()));
   return output.sweep.out;
+}
+
+void add_verbosity_options(CLI::App& command) {
+  CLI::Option* quiet = command.add_flag_callback(
+      "-q,--quiet", [] { set_verbosity(Verbosity::quiet); }, "say nothing on standard error but what is wrong");
+  command
+      .add_flag_callback(
+          "-v,--verbose", [] { set_verbosity(Verbosity::verbose); },
+          "also say on standard error what is done when, a line each")
+      ->excludes(quiet);
 }
 
 void add_wide_option(CLI::App& command) {
@@ -90,6 +106,7 @@ void add_record_options(CLI::App& command, Output& output) {
       ->check(one_of("format", formats))
       ->capture_default_str();
   add_wide_option(command);
+  add_verbosity_options(command);
 }
 
 void add_table_options(CLI::App& command, Output& output) {
@@ -103,6 +120,7 @@ void add_table_options(CLI::App& command, Output& output) {
 
 void add_output_options(CLI::App& command, Output& output) {
   add_table_options(command, output);
+  command.add_flag("-n,--dry-run", output.dry_run, "only say how much would be computed, and how long that may take");
   command
       .add_option("--time-limit", output.sweep.limits.seconds, "wall time of a run, which ends as out of time beyond it [none]")
       ->type_name("SECONDS")

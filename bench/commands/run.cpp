@@ -110,7 +110,7 @@ void run(const RunArguments& a) {
   base::use_threads(a.threads);
   const std::vector<Group> groups{run_group(a)};
   Output output = a.output;
-  if (!a.frames.folder.empty()) {
+  if (!a.frames.folder.empty() && !output.dry_run) {
     if (output.sweep.start == results::Start::resumed)
       throw std::invalid_argument("--frames cannot be combined with --resume: frames of finished runs are not rewritten");
     output.sweep.out = out_file(output, "run");

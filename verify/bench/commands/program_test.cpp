@@ -261,6 +261,24 @@ TEST(ProgramProgress, IsALineOnTheTerminalWithTheTimeLeft) {
 const Words tiny_run{"run",  "--scene", "hung-edge", "--set",   "grid.n=5", "--method",
                      "bdf2", "--step",  "0.01",      "--until", "0.02"};
 
+TEST(ProgramProgress, IsSilentWhereItIsToBeQuiet) {
+  const BenchIntegrators program;
+  EXPECT_EQ(run_on_terminal(program.command(tiny_run + Words{"--quiet"}), 80).err, "");
+  EXPECT_THAT(program.output(tiny_run + Words{"-q"}), HasSubstr("hung-edge"));
+  program.write("still.toml", "grid.n = 4\nend.time = 0.1\n");
+  EXPECT_EQ(program.run({"-q", "run", "--scene", "still.toml", "--method", "bdf2", "--step", "0.05", "--no-reference"}).err,
+            "");
+  EXPECT_THAT(program.run(tiny_run + Words{"-q", "-v"}).err, AllOf(HasSubstr("--verbose"), HasSubstr("--quiet")));
+}
+
+TEST(ProgramProgress, SaysWhatIsDoneWhereItIsToBeVerbose) {
+  const BenchIntegrators program;
+  EXPECT_THAT(
+      lines(program.run(tiny_run + Words{"--verbose"}).err),
+      testing::ElementsAre(MatchesRegex(" +0.0 s  hung-edge bdf2 h = 0.01 grid.n=5"),
+                           MatchesRegex(" +[0-9.]+ s  timing hung-edge"), MatchesRegex(" +[0-9.]+ s  reference of hung-edge")));
+}
+
 // --- Tables on a terminal
 // ------------------------------------------------------------------------------------------------------
 
@@ -293,8 +311,8 @@ TEST(Program, WithoutArgumentsDoesTheMainJob) {
   const BenchIntegrators program;
   const ProgramResult result = run_on_terminal(program.command({}), 120, "damping=50");
   EXPECT_EQ(result.exit_code, terminated);
-  EXPECT_THAT(result.err,
-              AllOf(StartsWith(erase_line + "["), HasSubstr("hung-edge imex-euler/ic0 h = 0.01 material.damping=50")));
+  EXPECT_THAT(result.err, AllOf(StartsWith("note: this is the main job"), HasSubstr(erase_line + "["),
+                                HasSubstr("hung-edge imex-euler/ic0 h = 0.01 material.damping=50")));
   for (const auto& [name, content] : program.files())
     EXPECT_THAT(name, testing::AnyOf(HasSubstr("-motions-"), EndsWith("/"), EndsWith(".journal"))) << "half-written";
 }
@@ -386,6 +404,39 @@ TEST(ProgramCheck, IsOneScreenWithTheOrderAsDeclared) {
     EXPECT_THAT(joined(said, "\n"), HasSubstr(part));
   EXPECT_THAT(lines(program.output({"inspect", "check.h5", "--csv"})), Contains(StartsWith("check-order")));
   EXPECT_EQ(program.run({"check", "bdf2/newto"}).exit_code, 2);
+}
+
+// --- Dry runs ----------------------------------------------------------------------------------------------------------------
+
+TEST(ProgramDryRun, SaysHowMuchItIsAndProbesHowLongItTakes) {
+  const BenchIntegrators program;
+  const Words runs{"run",         "--scene", "hung-edge", "--set",    "grid.n=5", "--method",
+                   "bdf2,verlet", "--step",  "0.01,0.02", "--frames", "frames"};
+  const Words said = lines(program.output(runs + Words{"--dry-run"}));
+  EXPECT_THAT(said,
+              testing::ElementsAre("run: 4 runs, each also timed 3 times, 1 reference",
+                                   MatchesRegex("time: [0-9.e-]+ s for the runs, from probes of at most 0.5 s each"),
+                                   MatchesRegex(" +[0-9.e-]+ s for the references, from probes of at most 2 s each; .*")));
+  EXPECT_THAT(program.files(), IsEmpty());
+}
+
+TEST(ProgramDryRun, TellsTheTimeOfARecordOfTheSame) {
+  const BenchIntegrators program;
+  const Words study{"study", "modes", "--quick", "--method", "bdf2"};
+  const Words unknown = lines(program.output(study + Words{"-n"}));
+  EXPECT_THAT(unknown, testing::ElementsAre(MatchesRegex("modes: [0-9]+ jobs? of [0-9]+ parts? together"),
+                                            StartsWith("time: not known")));
+  std::filesystem::create_directories(program.folder() / "results/runs");
+  program.output(study + Words{"--out", "results/runs/of-modes.h5"});
+  const Words known = lines(program.output(study + Words{"-n"}));
+  EXPECT_EQ(known.at(0), unknown.at(0));
+  EXPECT_THAT(known.at(1), MatchesRegex("time: [0-9]+ s, as results/runs/of-modes.h5 took, recorded on 20..-..-.. of .*"));
+  EXPECT_THAT(program.output({"study", "modes", "--quick", "--method", "sbdf2", "-n"}), HasSubstr("not known"));
+}
+
+TEST(ProgramDryRun, StandsBehindItsCommand) {
+  EXPECT_THAT(BenchIntegrators().run({"--dry-run", "study", "orders", "--quick"}).err,
+              HasSubstr("--dry-run: expected after run or study"));
 }
 
 }  // namespace
