@@ -14,6 +14,8 @@ void add_export(CLI::App& app);
 void add_fabric(CLI::App& app);
 void add_pattern(CLI::App& app);
 void add_score(CLI::App& app, const std::string& command_line);
+void add_completion(CLI::App& app);
+void add_man(CLI::App& app);
 
 /// These set the program's exit code.
 void add_inspect(CLI::App& app, int& exit_code);

@@ -8,7 +8,6 @@
 #include <optional>
 
 #include "bench/commands/argument_checks.hpp"
-#include "bench/commands/choices.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/dry_run.hpp"
 #include "bench/commands/names_of.hpp"
@@ -114,7 +113,6 @@ void add_study(CLI::App& app, const std::string& command_line) {
       ->allow_extra_args(false);
   add_overrides(command, a->choice);
   add_output_options(command, a->output);
-  command.footer(paragraph("Studies", study_choices()));
   command.callback([=] {
     const std::filesystem::path out = run_study(*a);
     if (a->output.format == "table" && !a->output.dry_run)

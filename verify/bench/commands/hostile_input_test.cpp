@@ -176,6 +176,7 @@ const std::vector<Attack> attacks = {
     {"MisspelledStageSolver", {"run", "--scene", "hung-edge", "--method", "bdf2/newtn", "--step", "0.01"}, {"'newtn' (did you mean newton?)", "auto, ic0"}},
     {"MisspelledLinearSolver", {"run", "--scene", "hung-edge", "--method", "bdf2/newton/cholesk", "--step", "0.01"}, {"linear solver 'cholesk' (did you mean cholesky?)"}},
     {"MisspelledFormat", run("hung-edge", {"--format", "cvs"}), {"--format: ", "'cvs' (did you mean csv?)", "table, csv, json"}},
+    {"MisspelledShell", {"completion", "bach"}, {"'bach' (did you mean bash?)"}},
     {"MisspelledKind", {"list", "scense"}, {"'scense' (did you mean scenes?)"}},
     {"MisspelledScene", run("hung-edgee"), {"'hung-edgee' (did you mean hung-edge?)"}},
     {"MisspelledKey", run("hung-edge", {"--set", "material.densty=1"}), {"'material.densty' (did you mean material.density?)"}},

@@ -182,7 +182,7 @@ TEST(ProgramHelp, OfTheOthersSaysWhatTheyTake) {
 std::map<std::string, std::string> helps(const BenchIntegrators& program) {
   std::map<std::string, std::string> texts{{"list", program.output({"list"})}, {"", program.output({"--help"})}};
   for (const std::string command :
-       {"list", "run", "study", "inspect", "compare", "check", "report", "export", "fabric", "score"})
+       {"list", "run", "study", "inspect", "compare", "check", "report", "export", "fabric", "score", "completion", "man"})
     texts[command + " --help"] = program.output({command, "--help"});
   return texts;
 }
@@ -196,8 +196,12 @@ TEST(ProgramHelp, FitsATerminalOf80Columns) {
     for (const std::string& line : lines(text)) EXPECT_LE(columns(line), 80u) << command << ": " << line;
 }
 
-TEST(ProgramVersion, IsTheProjectsWithItsCommit) {
-  EXPECT_THAT(BenchIntegrators().output({"--version"}), MatchesRegex("drape [0-9.]+ \\(([0-9a-f]+(-dirty)?|unknown)\\)\n"));
+TEST(ProgramVersion, IsTheProjectsWithItsCommitAndWhatItIsBuiltWith) {
+  const Words said = lines(BenchIntegrators().output({"--version"}));
+  EXPECT_THAT(said, Contains(MatchesRegex("drape [0-9.]+ \\(([0-9a-f]+(-dirty)?|unknown)\\)")));
+  for (const std::string fact : {"compiler", "build_type", "compile_flags", "sundials", "program_hash"})
+    EXPECT_THAT(said, Contains(MatchesRegex(fact + " +[^ ].*")));
+  EXPECT_THAT(said, Each(AllOf(Not(StartsWith("cpu")), Not(StartsWith("started")), Not(StartsWith("sweep")))));
 }
 
 std::string with_name(std::string text, const std::string& name) {
@@ -404,6 +408,80 @@ TEST(ProgramCheck, IsOneScreenWithTheOrderAsDeclared) {
     EXPECT_THAT(joined(said, "\n"), HasSubstr(part));
   EXPECT_THAT(lines(program.output({"inspect", "check.h5", "--csv"})), Contains(StartsWith("check-order")));
   EXPECT_EQ(program.run({"check", "bdf2/newto"}).exit_code, 2);
+}
+
+// --- Completion and manual page
+// ------------------------------------------------------------------------------------------------
+
+/// What bash proposes for a command line, by the script that the program prints.
+class Completed {
+ public:
+  explicit Completed(const BenchIntegrators& program) : program_(program) {
+    program.write("completion.bash", program.output({"completion", "bash"}));
+  }
+
+  Words operator()(const std::string& command_line) const {
+    // Bash makes words of their own of =.
+    const std::string script = R"(source completion.bash
+      compopt() { :; }
+      mapfile -t COMP_WORDS < <(sed 's/=/ = /g; s/ /\n/g' <<<"$1" | sed '/^$/d'; [[ $1 != *[\ =] ]] || echo)
+      [[ $1 != *= ]] || unset 'COMP_WORDS[-1]'
+      COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _drape; printf '%s\n' "${COMPREPLY[@]}")";
+    Command command = program_.command({"-c", script, "bash", command_line});
+    command.program = "/bin/bash";
+    const ProgramResult result = run_program(command);
+    EXPECT_EQ(result.err, "") << command_line;
+    Words proposed = lines(result.out);
+    std::erase(proposed, "");
+    return proposed;
+  }
+
+ private:
+  const BenchIntegrators& program_;
+};
+
+TEST(ProgramCompletion, ProposesCommandsOptionsAndNames) {
+  const BenchIntegrators program;
+  const Completed completed(program);
+  program.write("scene_of_mine.toml", "");
+  EXPECT_THAT(completed("bench/run "), IsSupersetOf({"run", "study", "completion", "man"}));
+  EXPECT_THAT(completed("bench/run st"), testing::ElementsAre("study"));
+  EXPECT_THAT(completed("bench/run --ver"), testing::ElementsAre("--version", "--verbose"));
+  EXPECT_THAT(completed("bench/run run --sc"), testing::ElementsAre("--scene"));
+  EXPECT_THAT(completed("bench/run run --scene hung-e"), testing::ElementsAre("hung-edge"));
+  EXPECT_THAT(completed("bench/run run --scene=hung-e"), testing::ElementsAre("hung-edge"));
+  EXPECT_THAT(completed("bench/run run --scene scene_of"), testing::ElementsAre("scene_of_mine.toml"));
+  EXPECT_THAT(completed("bench/run run --scene "), IsSupersetOf(lines(program.output({"list", "scenes"}))));
+  EXPECT_THAT(completed("bench/run run --method "), IsSupersetOf(methods));
+  EXPECT_THAT(completed("bench/run run --method bdf2,midp"), testing::ElementsAre("bdf2,midpoint"));
+  EXPECT_THAT(completed("bench/run run --method bdf2,sbdf2/ic"), testing::ElementsAre("bdf2,sbdf2/ic0"));
+  EXPECT_THAT(completed("bench/run run --set material.den"), testing::ElementsAre("material.density="));
+  EXPECT_THAT(completed("bench/run run --set material.fabric=den"), testing::ElementsAre("denim"));
+  EXPECT_THAT(completed("bench/run run --format "), testing::ElementsAre("table", "csv", "json"));
+  EXPECT_THAT(completed("bench/run run --step "), IsEmpty());
+  EXPECT_THAT(completed("bench/run study hung"), testing::ElementsAre("hung-sheets"));
+  EXPECT_THAT(completed("bench/run list "), testing::ElementsAre("scenes", "methods", "studies", "fabrics"));
+  EXPECT_THAT(completed("bench/run inspect scene_"), testing::ElementsAre("scene_of_mine.toml"));
+  EXPECT_THAT(completed("bench/run inspect a.h5 --"), AllOf(Contains("--table"), Not(Contains("--scene"))));
+}
+
+TEST(ProgramMan, HasAllThatHelpHas) {
+  const BenchIntegrators program;
+  std::string page = program.output({"man"});
+  EXPECT_THAT(page, StartsWith(".TH BENCH_INTEGRATORS 1 "));
+  for (auto at = page.find("\\-"); at != std::string::npos; at = page.find("\\-", at)) page.erase(at, 1);
+  for (const std::string command : {"run", "study", "inspect", "compare", "check", "report", "export", "fabric", "score"}) {
+    EXPECT_THAT(page, HasSubstr("\n.SS " + command + "\n"));
+    const std::string help = program.output({command, "--help"});
+    for (const std::string& line : lines(help))
+      if (line.starts_with("  -") || line.starts_with("  --")) {
+        const std::string spelling = line.substr(2, line.find(' ', 2) - 2);
+        EXPECT_THAT(page, HasSubstr("\n.B \\&" + spelling));
+      }
+  }
+  for (const std::string kind : {"scenes", "methods", "studies"})
+    for (const std::string& name : lines(program.output({"list", kind})))
+      EXPECT_THAT(page, HasSubstr(".TP\n.B \\&" + name + "\n"));
 }
 
 // --- Dry runs ----------------------------------------------------------------------------------------------------------------
