@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "results/screen.hpp"
 #include "solver/base/printable.hpp"
 #include "solver/outcome.hpp"
 
@@ -34,8 +35,6 @@ std::optional<Value> named(const auto& names, std::string_view name) {
   return static_cast<Value>(found - names.begin());
 }
 
-constexpr std::size_t widest = 500;  ///< characters of a cell for users; CSV and JSON have all of it
-
 /// Calls the function for the alternative that a cell holds.
 template <class... Functions>
 struct Overload : Functions... {
@@ -43,15 +42,6 @@ struct Overload : Functions... {
 };
 template <class... Functions>
 Overload(Functions...) -> Overload<Functions...>;
-
-/// `number` is a format for doubles: "{}" gives the shortest text that reads back as the same number.
-std::string to_text(const Datum& cell, std::string_view number) {
-  return std::visit(Overload{[](std::monostate) { return std::string(); }, [](const std::string& text) { return text; },
-                             [&](double value) { return fmt::format(fmt::runtime(number), value); },
-                             [](std::int64_t value) { return std::to_string(value); },
-                             [](const Verdict& verdict) { return to_string(verdict); }},
-                    cell);
-}
 
 nlohmann::ordered_json to_value(const Datum& cell) {
   return std::visit(Overload{[](std::monostate) { return nlohmann::ordered_json(); },
@@ -84,23 +74,6 @@ std::string csv_cell(const Datum& cell) {
   std::string quoted = "\"";
   for (const char c : text) quoted.append(c == '"' ? 2 : 1, c);
   return quoted + '"';
-}
-
-/// Appends one cell to each line: text to the left of the column, numbers to the right.
-void append_column(std::vector<std::string>& lines, const std::vector<std::string>& cells, bool is_text) {
-  const std::size_t width = base::characters(std::ranges::max(cells, {}, base::characters));
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    const std::string padding(width - base::characters(cells[i]), ' ');
-    if (!lines[i].empty()) lines[i] += "  ";
-    lines[i] += is_text ? cells[i] + padding : padding + cells[i];
-  }
-}
-
-std::vector<std::string> shown(const Column& column) {
-  if (!column.shown.empty()) return column.shown;
-  std::vector<std::string> texts;
-  for (const Datum& cell : column.cells) texts.push_back(to_text(cell, "{:.4g}"));
-  return texts;
 }
 
 }  // namespace
@@ -170,24 +143,12 @@ double number_in(const Column* column, std::size_t row) {
   return number == nullptr ? std::numeric_limits<double>::quiet_NaN() : *number;
 }
 
-std::string to_text(const Table& table) {
-  const std::size_t count = rows(table);
-  if (count == 0) return "no rows\n";
-  std::vector<std::string> lines(count + 2);
-  for (const Column& column : table.columns) {
-    const std::vector<std::string> body = shown(column);
-    const bool nothing = std::ranges::all_of(body, [](const auto& cell) { return cell.empty(); });
-    if ((column.title.empty() && !table.for_file) || nothing) continue;
-    const bool has_unit = !column.unit.empty() && column.unit != "1";
-    std::vector<std::string> cells{column.title.empty() ? column.name : column.title,
-                                   has_unit ? fmt::format("[{}]", column.unit) : ""};
-    cells.insert(cells.end(), body.begin(), body.end());
-    for (std::string& cell : cells) cell = base::shortened(base::printable(cell), widest);
-    append_column(lines, cells, column.unit.empty());
-  }
-  lines.insert(lines.begin() + 2, std::string(base::characters(lines.front()), '-'));
-  if (lines[1].find_first_not_of(' ') == std::string::npos) lines.erase(lines.begin() + 1);  // no column has a unit
-  return fmt::format("{}\n", fmt::join(lines, "\n"));
+std::string to_text(const Datum& cell, std::string_view number) {
+  return std::visit(Overload{[](std::monostate) { return std::string(); }, [](const std::string& text) { return text; },
+                             [&](double value) { return fmt::format(fmt::runtime(number), value); },
+                             [](std::int64_t value) { return std::to_string(value); },
+                             [](const Verdict& verdict) { return to_string(verdict); }},
+                    cell);
 }
 
 std::string to_csv(const Table& table) {

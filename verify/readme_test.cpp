@@ -160,6 +160,8 @@ void expect_parses(const std::string& arguments) {
   CLI::App app;
   app.require_subcommand(0, 1);
   app.set_version_flag("--version", "");
+  bool dry_run = false;
+  bench::add_main_job(app, dry_run);
   int exit_code = 0;
   bench::add_commands(app, "", exit_code);
   app.parse_complete_callback([&app] {  // before the commands' own, which do not run

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <string_view>
-#include <vector>
 
 #include "solver/base/printable.hpp"
 #include "solver/base/registry.hpp"
@@ -50,6 +50,14 @@ CLI::Validator between(double least, double most) {
 CLI::Validator between(int least, int most) {
   return expect_number<int>(fmt::format("a whole number from {} to {}", least, most),
                             [=](int value) { return least <= value && value <= most; });
+}
+
+CLI::Validator one_of(const std::string& kind, const std::vector<std::string>& names) {
+  const auto complaint = [=](const std::string& text) {
+    const std::vector<std::string_view> all(names.begin(), names.end());
+    return std::ranges::find(names, text) != names.end() ? "" : base::unknown_name(kind, text, all);
+  };
+  return {complaint, ""};
 }
 
 CLI::Validator not_empty() {

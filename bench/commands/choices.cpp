@@ -46,6 +46,40 @@ Choices study_choices() { return from_table(studies()); }
 
 Choices fabric_choices() { return from_table(model::fabrics()); }
 
+Choices kind_choices() {
+  Choices choices;
+  for (const KindOfNames& kind : kinds_of_names()) choices.push_back({std::string(kind.name), ""});
+  return choices;
+}
+
+Choices format_choices() {
+  return {{"table", "for users"}, {"csv", "comma-separated values, all columns"}, {"json", "all columns"}};
+}
+
+Choices shell_choices() { return {{"bash", "also for zsh, by its bashcompinit"}}; }
+
+std::span<const KindOfNames> kinds_of_names() {
+  static constexpr KindOfNames table[] = {
+      {"scenes", scene_choices}, {"methods", method_choices}, {"studies", study_choices}, {"fabrics", fabric_choices}};
+  return table;
+}
+
+std::span<const ChoicesOfCommand> choices_of_commands() {
+  static constexpr ChoicesOfCommand table[] = {{"Scenes", scene_choices, "run"},
+                                               {"Methods", method_choices, "run"},
+                                               {"Stage solvers", stage_solver_choices, "run"},
+                                               {"Linear solvers", linear_solver_choices, "run"},
+                                               {"Keys of scenes", scene_key_choices, "run"},
+                                               {"Studies", study_choices, "study"}};
+  return table;
+}
+
+std::vector<std::string> names(const Choices& choices) {
+  std::vector<std::string> all;
+  for (const Choice& choice : choices) all.push_back(choice.name);
+  return all;
+}
+
 std::string paragraph(std::string_view title, const Choices& choices) {
   const auto length = [](const Choice& choice) { return choice.name.size(); };
   const std::size_t width = length(std::ranges::max(choices, {}, length));

@@ -89,6 +89,8 @@ void add_commands(CLI::App& app, const std::string& command_line, int& exit_code
   add_fabric(app);
   add_pattern(app);
   add_score(app, command_line);
+  add_completion(app);
+  add_man(app);
 }
 
 int run_command_line(int argc, const char* const* argv) {
@@ -112,6 +114,8 @@ int run_command_line(int argc, const char* const* argv) {
          "load methods from a shared library (repeatable; bench/plugin)")
       ->type_name("FILE.so")
       ->allow_extra_args(false);
+  bool dry_run = false;
+  add_main_job(app, dry_run);
   int exit_code = 0;
   add_commands(app, command_line, exit_code);
   app.footer(
@@ -126,7 +130,7 @@ int run_command_line(int argc, const char* const* argv) {
   try {
     open_standard_streams();
     app.parse(argc, argv);
-    if (app.get_subcommands().empty()) do_main_job();
+    if (app.get_subcommands().empty()) do_main_job(dry_run);
     flush_output();
     return exit_code;
   } catch (const CLI::ParseError& error) {

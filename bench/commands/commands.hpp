@@ -14,6 +14,8 @@ void add_export(CLI::App& app);
 void add_fabric(CLI::App& app);
 void add_pattern(CLI::App& app);
 void add_score(CLI::App& app, const std::string& command_line);
+void add_completion(CLI::App& app);
+void add_man(CLI::App& app);
 
 /// These set the program's exit code.
 void add_inspect(CLI::App& app, int& exit_code);
@@ -23,7 +25,10 @@ void add_check(CLI::App& app, const std::string& command_line, int& exit_code);
 /// All of them.
 void add_commands(CLI::App& app, const std::string& command_line, int& exit_code);
 
-/// What the program does without a subcommand.
-void do_main_job();
+/// The options of what the program does without a subcommand.
+void add_main_job(CLI::App& app, bool& dry_run);
+
+/// Does that, or says how much it would be.
+void do_main_job(bool dry_run);
 
 }  // namespace drape::bench

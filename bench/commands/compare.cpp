@@ -20,7 +20,10 @@ struct CompareArguments {
 
 void print(const char* kind, const results::Aspect& aspect) {
   fmt::print("{}: {} ({})\n", kind, to_string(aspect.change), base::printable(aspect.reason));
-  if (rows(aspect.worst) > 0) fmt::print("\n{}\n", to_text(aspect.worst));
+  if (rows(aspect.worst) == 0) return;
+  fmt::print("\n");
+  print_text(aspect.worst);
+  fmt::print("\n");
 }
 
 int compare_files(const CompareArguments& a) {
@@ -43,6 +46,7 @@ void add_compare(CLI::App& app, int& exit_code) {
       "--no-times", [=] { a->options.times = false; }, "compare accuracy and work only");
   command.add_flag("--quiet-machine", a->options.quiet,
                    "judge what all cells' times share as well: the machine was as quick for B as for A");
+  add_wide_option(command);
   command.footer(
       help_text("Cells are matched by scene, method, parameters, step and end; tables by name. Exit code: 0 the same or "
                 "better, 1 a regression, 2 not comparable."));

@@ -7,6 +7,7 @@
 #include "bench/commands/output.hpp"
 #include "bench/commands/scene_choice.hpp"
 #include "bench/runs/progress.hpp"
+#include "bench/runs/reference_reports.hpp"
 #include "bench/runs/sweep.hpp"
 #include "bench/runs/trajectory_observer.hpp"
 #include "solver/base/atomic_file.hpp"
@@ -31,8 +32,11 @@ void export_scene(const ExportArguments& a) {
   times.insert(times.begin(), 0);
   base::require_empty_folder(a.out, "the exported scene");
   Progress progress(1);
-  const auto say = [&](const std::string& pace) { progress.report("reference of " + scene.name + ": " + pace); };
-  const auto files = exported(true_motion(scene, times, a.agreement, {.say = say}), times);
+  const auto truth = [&] {
+    ReferenceReports reports(progress, scene.name);
+    return true_motion(scene, times, a.agreement, {.say = std::ref(reports)});
+  };
+  const auto files = exported(truth(), times);
   base::publish_folder(a.out, files);
   for (const auto& [name, content] : files) fmt::print("{}\n", base::printable((std::filesystem::path(a.out) / name).string()));
 }
@@ -50,6 +54,7 @@ void add_export(CLI::App& app) {
       ->check(positive())
       ->capture_default_str();
   add_agreement(command, a->agreement);
+  add_verbosity_options(command);
   command.callback([=] { export_scene(*a); });
 }
 

@@ -14,6 +14,7 @@
 #include "results/file/run_file.hpp"
 #include "results/file/validate.hpp"
 #include "solver/base/printable.hpp"
+#include "solver/base/registry.hpp"
 
 namespace drape::bench {
 namespace {
@@ -59,11 +60,13 @@ results::Table one_table(const std::string& file, const std::string& name) {
   if (exact != all.end()) return std::move(*exact);
   const auto begins = [&](const results::Table& table) { return table.name.starts_with(name); };
   if (std::ranges::count_if(all, begins) == 1) return std::move(*std::ranges::find_if(all, begins));
-  std::vector<std::string> names;
+  std::vector<std::string_view> names;
   for (const results::Table& table : all) names.push_back(table.name);
+  const std::string nearest = base::nearest_name(name, names);
   throw std::invalid_argument(
-      fmt::format("--table: expected a table of {} ({}), not '{}'", file,
-                  names.empty() ? "it has none" : base::quoted(fmt::format("{}", fmt::join(names, ", "))), base::quoted(name)));
+      fmt::format("--table: expected a table of {} ({}), not '{}'{}", file,
+                  names.empty() ? "it has none" : base::quoted(fmt::format("{}", fmt::join(names, ", "))), base::quoted(name),
+                  nearest.empty() ? "" : fmt::format(" (did you mean {}?)", base::quoted(nearest))));
 }
 
 /// Prints where a file departs from the specification. Returns the exit code: 1 if it does.
@@ -101,6 +104,7 @@ void add_inspect(CLI::App& app, int& exit_code) {
       .add_flag_callback(
           "--json", [=] { a->format = "json"; }, "as JSON")
       ->excludes(csv);
+  add_wide_option(command);
   command.add_flag("--validate", a->validate, "say where the file departs from its specification; then the exit code is 1")
       ->excludes(run)
       ->excludes(table);

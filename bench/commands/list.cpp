@@ -9,21 +9,15 @@
 namespace drape::bench {
 namespace {
 
-struct Kind {
-  std::string_view name;
-  Choices (*choices)();
-};
-constexpr Kind kinds[] = {
-    {"scenes", scene_choices}, {"methods", method_choices}, {"studies", study_choices}, {"fabrics", fabric_choices}};
-
 /// The names of one kind for programs, or all kinds for users.
 void list(const std::string& kind) {
   if (kind.empty()) {
     std::string_view separator;
-    for (const Kind& any : kinds) fmt::print("{}{}", std::exchange(separator, "\n"), paragraph(any.name, any.choices()));
+    for (const KindOfNames& any : kinds_of_names())
+      fmt::print("{}{}", std::exchange(separator, "\n"), paragraph(any.name, any.choices()));
     return;
   }
-  for (const Choice& choice : base::find_named(std::span<const Kind>(kinds), "kind of names", kind).choices())
+  for (const Choice& choice : base::find_named(kinds_of_names(), "kind of names", kind).choices())
     fmt::print("{}\n", choice.name);
 }
 

@@ -1,8 +1,11 @@
 #include <fmt/format.h>
 
+#include <stdexcept>
+
 #include "bench/commands/commands.hpp"
 #include "bench/commands/report.hpp"
 #include "bench/commands/study.hpp"
+#include "bench/runs/verbosity.hpp"
 
 namespace drape::bench {
 namespace {
@@ -34,13 +37,27 @@ std::string command_of(const StudyArguments& a) {
 
 }  // namespace
 
-void do_main_job() {
+void add_main_job(CLI::App& app, bool& dry_run) {
+  app.add_flag("-n,--dry-run", dry_run, "only say how much the main job would compute, and how long that may take");
+  add_wide_option(app);
+  add_verbosity_options(app);
+  app.parse_complete_callback([&] {  // before a subcommand does anything
+    if (dry_run && !app.get_subcommands().empty())
+      throw std::invalid_argument("--dry-run: expected after run or study, or without a subcommand");
+  });
+}
+
+void do_main_job(bool dry_run) {
+  if (!dry_run)
+    say_note("this is the main job, four studies and a report; --dry-run tells how long it takes, --help what else there is");
   std::vector<std::filesystem::path> files;
   for (StudyArguments study : main_job()) {
+    study.output.dry_run = dry_run;
     study.output.sweep.command_line = command_of(study);
     fmt::print("{}\n", study.output.sweep.command_line);
     files.push_back(run_study(study));
   }
+  if (dry_run) return;
   std::filesystem::path folder = files.front();
   report(files, folder.replace_extension().concat("-report"));
 }

@@ -1,16 +1,36 @@
 #include "bench/commands/output.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "bench/commands/argument_checks.hpp"
+#include "bench/commands/choices.hpp"
+#include "bench/commands/dry_run.hpp"
+#include "bench/runs/verbosity.hpp"
 #include "results/analysis/runs_table.hpp"
 #include "results/file/xdmf.hpp"
+#include "results/screen.hpp"
 #include "solver/base/printable.hpp"
+#include "solver/base/terminal.hpp"
 
 namespace drape::bench {
+namespace {
+
+bool all_columns = false;
+
+results::Screen screen() {
+  results::Screen screen{.colours = base::wants_colours(STDOUT_FILENO)};
+  if (!all_columns && isatty(STDOUT_FILENO) == 1) screen.columns = static_cast<std::size_t>(base::columns_of(STDOUT_FILENO));
+  return screen;
+}
+
+}  // namespace
+
+void print_text(const results::Table& table) { fmt::print("{}", to_text(table, screen())); }
 
 void print_table(const results::Table& table, const std::string& format) {
-  fmt::print("{}", format == "csv" ? to_csv(table) : format == "json" ? to_json(table) : to_text(table));
+  if (format == "table") return print_text(table);
+  fmt::print("{}", format == "csv" ? to_csv(table) : to_json(table));
 }
 
 void print_tables(const std::vector<results::Table>& tables, const std::string& format) {
@@ -34,12 +54,31 @@ std::filesystem::path out_file(const Output& output, const std::string& job) {
 }
 
 std::filesystem::path sweep_and_print(const std::vector<Group>& groups, Output output, const std::string& job) {
+  if (output.dry_run) {
+    print_plan(groups, output.sweep, job);
+    return {};
+  }
   output.sweep.out = out_file(output, job);
   print_table(results::to_table(sweep(groups, output.sweep)), output.format);
   say_where(output.sweep.out, output.format);
   if (output.sweep.frames_every && output.format == "table")
     fmt::print("motion for ParaView: {}\n", base::printable(results::xdmf_path(output.sweep.out).string()));
   return output.sweep.out;
+}
+
+void add_verbosity_options(CLI::App& command) {
+  CLI::Option* quiet = command.add_flag_callback(
+      "-q,--quiet", [] { set_verbosity(Verbosity::quiet); }, "say nothing on standard error but what is wrong");
+  command
+      .add_flag_callback(
+          "-v,--verbose", [] { set_verbosity(Verbosity::verbose); },
+          "also say on standard error what is done when, a line each")
+      ->excludes(quiet);
+}
+
+void add_wide_option(CLI::App& command) {
+  command.add_flag_callback(
+      "--wide", [] { all_columns = true; }, "tables with all columns, however wide the terminal is");
 }
 
 void add_agreement(CLI::App& command, double& agreement) {
@@ -61,10 +100,13 @@ void add_record_options(CLI::App& command, Output& output) {
           "--resume", [&] { output.sweep.start = results::Start::resumed; },
           "continue FILE.h5 where a process before this one was killed; without one, begin it")
       ->needs("--out");
+  const std::vector<std::string> formats = names(format_choices());
   command.add_option("--format", output.format, "what is printed")
-      ->type_name("table|csv|json")
-      ->check(CLI::IsMember({"table", "csv", "json"}).description(""))
+      ->type_name(fmt::format("{}", fmt::join(formats, "|")))
+      ->check(one_of("format", formats))
       ->capture_default_str();
+  add_wide_option(command);
+  add_verbosity_options(command);
 }
 
 void add_table_options(CLI::App& command, Output& output) {
@@ -78,6 +120,7 @@ void add_table_options(CLI::App& command, Output& output) {
 
 void add_output_options(CLI::App& command, Output& output) {
   add_table_options(command, output);
+  command.add_flag("-n,--dry-run", output.dry_run, "only say how much would be computed, and how long that may take");
   command
       .add_option("--time-limit", output.sweep.limits.seconds, "wall time of a run, which ends as out of time beyond it [none]")
       ->type_name("SECONDS")

@@ -14,6 +14,7 @@ namespace drape::bench {
 struct Output {
   SweepOptions sweep;
   std::string format = "table";
+  bool dry_run = false;  ///< whether only to say how much that would be
 };
 
 /// The option --agreement.
@@ -25,14 +26,23 @@ void add_record_options(CLI::App& command, Output& output);
 /// Options of commands that write tables.
 void add_table_options(CLI::App& command, Output& output);
 
+/// The options --quiet and --verbose.
+void add_verbosity_options(CLI::App& command);
+
+/// The option --wide.
+void add_wide_option(CLI::App& command);
+
 /// Options of commands that run scenes: those of tables, and limits.
 void add_output_options(CLI::App& command, Output& output);
 
 /// The file asked for, or one named after the job.
 std::filesystem::path out_file(const Output& output, const std::string& job);
 
-/// Runs all groups, prints the runs, says where they are recorded and returns that.
+/// Runs all groups, prints the runs, says where they are recorded and returns that; or prints how much that would be.
 std::filesystem::path sweep_and_print(const std::vector<Group>& groups, Output output, const std::string& job);
+
+/// A table for users, as wide as the terminal, or with all columns where standard output is none.
+void print_text(const results::Table& table);
 
 void print_table(const results::Table& table, const std::string& format);
 

@@ -66,6 +66,7 @@ void add_report(CLI::App& app) {
   command.add_flag(
       "--images", a->images,
       fmt::format("each figure also as SVG and PNG in DIR/images, drawn by Chromium in at most {:g} s", browsing_time));
+  add_wide_option(command);
   command.callback([=] { make_report(*a); });
 }
 

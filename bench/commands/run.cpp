@@ -4,7 +4,6 @@
 #include <optional>
 
 #include "bench/commands/argument_checks.hpp"
-#include "bench/commands/choices.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/names_of.hpp"
 #include "bench/commands/output.hpp"
@@ -110,7 +109,7 @@ void run(const RunArguments& a) {
   base::use_threads(a.threads);
   const std::vector<Group> groups{run_group(a)};
   Output output = a.output;
-  if (!a.frames.folder.empty()) {
+  if (!a.frames.folder.empty() && !output.dry_run) {
     if (output.sweep.start == results::Start::resumed)
       throw std::invalid_argument("--frames cannot be combined with --resume: frames of finished runs are not rewritten");
     output.sweep.out = out_file(output, "run");
@@ -212,11 +211,6 @@ void add_run(CLI::App& app, const std::string& command_line) {
   add_thread_option(command, *a);
   add_frame_options(command, *a);
   add_output_options(command, a->output);
-  command.footer([] {  // only if help is asked for: descriptions of scenes are in their files, and checking these takes a while
-    return fmt::format("{}\n{}\n{}\n{}\n{}", paragraph("Scenes", scene_choices()), paragraph("Methods", method_choices()),
-                       paragraph("Stage solvers", stage_solver_choices()), paragraph("Linear solvers", linear_solver_choices()),
-                       paragraph("Keys of scenes", scene_key_choices()));
-  });
   command.callback([=] { run(*a); });
 }
 

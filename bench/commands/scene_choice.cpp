@@ -2,16 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <stdexcept>
 
 #include "bench/runs/available_memory.hpp"
+#include "bench/runs/verbosity.hpp"
 #include "model/adaptive/sheet_refinement.hpp"
 #include "model/at_rest.hpp"
 #include "model/clear_cloth.hpp"
 #include "model/clear_start.hpp"
 #include "model/scene_file/scene_file.hpp"
-#include "solver/base/printable.hpp"
 
 namespace drape::bench {
 
@@ -27,8 +26,7 @@ model::Scene SceneChoice::load() const {
   } catch (const std::invalid_argument& error) {
     throw std::invalid_argument(fmt::format("{}: {}", scene, error.what()));
   }
-  if (model::is_at_rest(loaded))
-    fmt::print(stderr, "note: in the scene {} {}\n", base::printable(loaded.name), model::at_rest_remark);
+  if (model::is_at_rest(loaded)) say_note(fmt::format("in the scene {} {}", loaded.name, model::at_rest_remark));
   return loaded;
 }
 

@@ -8,8 +8,8 @@
 #include <optional>
 
 #include "bench/commands/argument_checks.hpp"
-#include "bench/commands/choices.hpp"
 #include "bench/commands/commands.hpp"
+#include "bench/commands/dry_run.hpp"
 #include "bench/commands/names_of.hpp"
 #include "bench/commands/output.hpp"
 #include "bench/runs/identity.hpp"
@@ -83,10 +83,15 @@ std::filesystem::path run_study(const StudyArguments& a) {
   if (const auto* runs = std::get_if<Study::Runs>(&chosen.answer))
     return sweep_and_print(runs_of((*runs)(question), question.methods), a.output, a.name);
   check_options_of_tables(chosen, a.output.sweep);
+  const std::vector<Job> jobs = std::get<Study::Tables>(chosen.answer)(question);
+  const std::string sweep = identity(a, question.scene);
+  if (a.output.dry_run) {
+    print_plan(jobs, sweep, a.name);
+    return {};
+  }
   SweepOptions options = a.output.sweep;
   options.out = out_file(a.output, a.name);
-  const std::vector<Job> jobs = std::get<Study::Tables>(chosen.answer)(question);
-  print_tables(record_in_file(options, identity(a, question.scene), jobs).tables, a.output.format);
+  print_tables(record_in_file(options, sweep, jobs).tables, a.output.format);
   say_where(options.out, a.output.format);
   return options.out;
 }
@@ -108,10 +113,10 @@ void add_study(CLI::App& app, const std::string& command_line) {
       ->allow_extra_args(false);
   add_overrides(command, a->choice);
   add_output_options(command, a->output);
-  command.footer(paragraph("Studies", study_choices()));
   command.callback([=] {
     const std::filesystem::path out = run_study(*a);
-    if (a->output.format == "table") fmt::print("to draw it: bench/run report {} --out DIR\n", base::printable(out.string()));
+    if (a->output.format == "table" && !a->output.dry_run)
+      fmt::print("to draw it: bench/run report {} --out DIR\n", base::printable(out.string()));
   });
 }
 

@@ -6,11 +6,11 @@
 #include <ranges>
 
 #include "bench/runs/motion_error.hpp"
+#include "bench/runs/verbosity.hpp"
 #include "model/phases.hpp"
 #include "model/scene_file/scene_file.hpp"
 #include "reference/plausible.hpp"
 #include "solver/base/largest.hpp"
-#include "solver/base/printable.hpp"
 
 namespace drape::bench {
 namespace {
@@ -43,7 +43,7 @@ std::vector<double> compared_times(const model::Scene& scene) {
 }
 
 References::~References() {
-  for (const std::string& message : cache_.messages()) fmt::print(stderr, "note: {}\n", base::printable(message));
+  for (const std::string& message : cache_.messages()) say_note(message);
 }
 
 reference::Reference References::operator()(const model::Scene& scene, const model::Cloth& cloth) {

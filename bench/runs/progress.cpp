@@ -8,11 +8,12 @@
 #include <cstdio>
 #include <utility>
 
+#include "bench/runs/verbosity.hpp"
 #include "solver/base/printable.hpp"
 #include "solver/base/terminal.hpp"
 
 namespace drape::bench {
-Progress::Progress(int total) : terminal_(isatty(STDERR_FILENO) == 1), total_(total) {}
+Progress::Progress(int total) : terminal_(isatty(STDERR_FILENO) == 1 && verbosity() != Verbosity::quiet), total_(total) {}
 
 Progress::~Progress() {
   if (terminal_) fmt::print(stderr, "\r\033[K");
@@ -20,11 +21,16 @@ Progress::~Progress() {
 
 void Progress::show(const std::string& activity) {
   activity_ = base::printable(activity);
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start_;
+  if (verbosity() == Verbosity::verbose) return note(fmt::format("{:8.1f} s  {}", elapsed.count(), activity_));
   draw();
 }
 
 void Progress::report(const std::string& activity) {
-  if (terminal_) return show(activity);
+  if (terminal_) {
+    activity_ = base::printable(activity);
+    return draw();
+  }
   const auto now = std::chrono::steady_clock::now();
   if (now - reported_ < std::chrono::seconds(5)) return;
   reported_ = now;
@@ -32,6 +38,7 @@ void Progress::report(const std::string& activity) {
 }
 
 void Progress::note(const std::string& line) {
+  if (verbosity() == Verbosity::quiet) return;
   fmt::print(stderr, "{}{}\n", terminal_ ? "\r\033[K" : "", line);
   std::fflush(stderr);
   draw();

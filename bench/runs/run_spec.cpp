@@ -11,6 +11,7 @@
 
 #include "model/cloth.hpp"
 #include "solver/base/printable.hpp"
+#include "solver/base/registry.hpp"
 #include "solver/stage/stage_solver.hpp"
 
 namespace drape::bench {
@@ -65,6 +66,16 @@ bool knows(std::span<const Row> table, std::string_view name) {
   return std::ranges::find(table, name, &Row::name) != table.end();
 }
 
+/// The linear solver that is named where a stage solver may be named as well.
+const solver::LinearSolver& linear_or_stage_solver(std::string_view name) {
+  if (knows(solver::linear_solvers(), name)) return solver::linear_solver(name);
+  std::vector<std::string_view> names;
+  for (const solver::LinearSolver& solver : solver::linear_solvers()) names.push_back(solver.name);
+  for (const solver::StageKind& kind : solver::stage_kinds())
+    if (!knows(solver::linear_solvers(), kind.name)) names.push_back(kind.name);
+  throw std::invalid_argument(base::unknown_name("stage or linear solver", name, names));
+}
+
 }  // namespace
 
 std::string RunSpec::method_name() const {
@@ -86,9 +97,14 @@ void choose_method(RunSpec& spec, const std::string& name) {
   std::size_t next = 1;
   const bool repeated = next < parts.size() && method.repeats != Repeats::none && begins_with_digit(parts[next]);
   const bool understood = !repeated || set_repeats(method, parts[next++], spec.options);
+  const std::size_t solvers = next;
   if (next < parts.size() && method.nonlinear() && knows(solver::stage_kinds(), parts[next]))
     spec.options.stage = &solver::stage_kind(parts[next++]);
-  if (next < parts.size() && method.implicit()) spec.options.linear_solver = &solver::linear_solver(parts[next++]);
+  if (next < parts.size() && method.implicit()) {
+    const bool may_be_stage = method.nonlinear() && next == solvers;
+    spec.options.linear_solver = &(may_be_stage ? linear_or_stage_solver(parts[next]) : solver::linear_solver(parts[next]));
+    ++next;
+  }
   if (!understood || next < parts.size() || name.ends_with('/'))
     throw std::invalid_argument(fmt::format("method '{}': expected {}", base::quoted(name), expected(method)));
 }

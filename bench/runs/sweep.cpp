@@ -15,6 +15,7 @@
 #include "bench/runs/identity.hpp"
 #include "bench/runs/motion_error.hpp"
 #include "bench/runs/record.hpp"
+#include "bench/runs/reference_reports.hpp"
 #include "bench/runs/samples.hpp"
 #include "bench/runs/timing.hpp"
 #include "bench/runs/trajectory_observer.hpp"
@@ -164,12 +165,12 @@ void set(results::RunRecord& run, const ComparedRun& compared) {
 
 std::vector<ComparedRun> compare_with_reference(const model::Scene& scene, std::vector<MeasuredRun>& runs,
                                                 const SweepOptions& options, Checkpoint& checkpoint) {
-  checkpoint.show("reference of " + scene.name);
   bool previewed = false;
+  ReferenceReports reports(checkpoint, scene.name);
   References references(options.agreement, {options.limits.seconds, [&](const std::string& pace) {
                                               if (!std::exchange(previewed, true))
                                                 for (const MeasuredRun& measured : runs) checkpoint.note(preview(measured.run));
-                                              checkpoint.report("reference of " + scene.name + ": " + pace);
+                                              reports(pace);
                                             }});
   measure_errors(scene, runs, references);
   std::vector<ComparedRun> all;

@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "bench/runs/identity.hpp"
+#include "bench/runs/reference_reports.hpp"
 #include "bench/score/scoring.hpp"
 #include "model/scene_file/scene_file.hpp"
 #include "results/columns.hpp"
@@ -248,9 +249,11 @@ Table answers_table(const Scoring& s) {
 }
 
 Scoring scored(const model::Scene& scene, const ExternalMotion& external, const ScoreOptions& options, Checkpoint& checkpoint) {
-  checkpoint.show("reference of " + scene.name);
-  const auto say = [&](const std::string& pace) { checkpoint.report("reference of " + scene.name + ": " + pace); };
-  Scoring s{scene, external, options, true_motion(scene, external.times, options.agreement, {.say = say}), {}, {}};
+  const auto truth = [&] {
+    ReferenceReports reports(checkpoint, scene.name);
+    return true_motion(scene, external.times, options.agreement, {.say = std::ref(reports)});
+  };
+  Scoring s{scene, external, options, truth(), {}, {}};
   s.frames = frame_scores(s.external, s.truth);
   checkpoint.advance();
   s.ours = try_ours(s.truth, s.frames, options.methods, options.cost, options.repetitions, checkpoint);

@@ -9,6 +9,7 @@
 
 #include "solver/base/input_file.hpp"
 #include "solver/base/printable.hpp"
+#include "solver/base/registry.hpp"
 
 namespace drape::model {
 
@@ -135,7 +136,9 @@ std::size_t Value::one_of(std::span<const std::string_view> names) const {
   const std::string given = node_.is_string() ? text() : "";
   for (std::size_t k = 0; k < names.size(); ++k)
     if (names[k] == given) return k;
-  fail(fmt::format("one of \"{}\"", fmt::join(names, "\", \"")));
+  const std::string nearest = base::nearest_name(given, names);
+  fail(fmt::format("one of \"{}\"{}", fmt::join(names, "\", \""),
+                   nearest.empty() ? "" : fmt::format(" (did you mean \"{}\"?)", nearest)));
 }
 
 }  // namespace drape::model

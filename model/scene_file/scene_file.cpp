@@ -235,6 +235,11 @@ std::string read_file(const std::filesystem::path& path) {
 
 std::string text_of_scene(const std::string& name_or_file) {
   if (name_or_file.ends_with(".toml")) return read_file(name_or_file);
+  if (name_or_file.ends_with(".obj") || name_or_file.ends_with(".json"))
+    throw SceneError(
+        fmt::format("{}: expected the name of a scene or a file ending in .toml, which bench_integrators pattern "
+                    "makes of a garment mesh or a sewing pattern",
+                    base::quoted(name_or_file)));
   try {
     return std::string(base::find_named(builtin_scenes(), "scene", name_or_file).toml);
   } catch (const std::invalid_argument& error) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include "solver/base/printable.hpp"
@@ -10,18 +11,20 @@
 namespace drape::base {
 namespace {
 
-/// Insertions, deletions and replacements of characters that make one text the other, whether small or capital letters
-/// [Levenshtein 1966].
+/// Insertions, deletions and replacements of characters, and exchanges of two neighbours, that make one text the other, whether
+/// small or capital letters [Damerau 1964]. What is exchanged is not changed again.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
-  const auto small = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
-  std::vector<std::size_t> row(b.size() + 1);  // distances of the beginning of a from those of b
+  const auto same = [](char c, char d) {
+    return std::tolower(static_cast<unsigned char>(c)) == std::tolower(static_cast<unsigned char>(d));
+  };
+  std::vector<std::size_t> before, last, row(b.size() + 1);  // distances of the beginnings of a from those of b
   std::iota(row.begin(), row.end(), 0);
   for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0]++;
+    before = std::exchange(last, row);
+    row[0] = i + 1;
     for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t replaced = diagonal + (small(a[i]) == small(b[j]) ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({replaced, row[j] + 1, diagonal + 1});
+      row[j + 1] = std::min({last[j] + (same(a[i], b[j]) ? 0 : 1), row[j] + 1, last[j + 1] + 1});
+      if (i > 0 && j > 0 && same(a[i], b[j - 1]) && same(a[i - 1], b[j])) row[j + 1] = std::min(row[j + 1], before[j - 1] + 1);
     }
   }
   return row.back();

@@ -1,8 +1,10 @@
 #include "solver/base/terminal.hpp"
 
 #include <sys/ioctl.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cstdlib>
 
 namespace drape::base {
 namespace {
@@ -19,6 +21,15 @@ int width_of(std::string_view text) {
 int columns_of(int descriptor) {
   winsize size{};
   return ioctl(descriptor, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : usual_columns;
+}
+
+bool wants_colours(int descriptor) {
+  const auto value_of = [](const char* variable) {
+    const char* value = std::getenv(variable);
+    return std::string_view(value == nullptr ? "" : value);
+  };
+  const std::string_view kind = value_of("TERM");
+  return isatty(descriptor) == 1 && !kind.empty() && kind != "dumb" && value_of("NO_COLOR").empty();
 }
 
 std::string wrapped(std::string_view text, int width, int indent) {

@@ -81,11 +81,13 @@ TEST(NearestName, IsWhatMayHaveBeenMeant) {
   EXPECT_EQ(base::nearest_name("hung_edge", names), "hung-edge");
   EXPECT_EQ(base::nearest_name("material.densty", names), "material.density");
   EXPECT_EQ(base::nearest_name("midpiont", names), "midpoint");
+  EXPECT_EQ(base::nearest_name("bfd2", names), "bdf2") << "two neighbours exchanged are one mistake";
+  EXPECT_EQ(base::nearest_name("DBF2", names), "bdf2");
 }
 
 TEST(NearestName, IsNoneIfNoneIsNear) {
   const std::vector<std::string_view> names{"bdf2", "midpoint"};
-  for (const std::string name : {"rk4", "", "verlet", "xxxxxxxxxxxx"}) EXPECT_EQ(base::nearest_name(name, names), "") << name;
+  for (const std::string name : {"rk4", "", "verlet", "xxxxxxxxxxxx", "fbd2"}) EXPECT_EQ(base::nearest_name(name, names), "") << name;
   EXPECT_EQ(base::nearest_name(std::string(1 << 20, 'm'), names), "");
   EXPECT_EQ(base::nearest_name("bdf2", {}), "");
 }

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <clocale>
 #include <cstdlib>
 #include <cwchar>
@@ -11,6 +12,8 @@
 #include <sstream>
 
 #include "results/analysis/runs_table.hpp"
+#include "results/screen.hpp"
+#include "solver/base/printable.hpp"
 
 namespace drape::verify::results_table_test {
 namespace {
@@ -229,6 +232,86 @@ TEST(WorkCount, IsZeroForAKindTheRunDoesNotKnow) {
   run.work = {{"cg_iterations", "iterations of CG", 41}, {"matvec", "products of matrix and vector", 7}};
   EXPECT_EQ(work_count(run, "matvec"), 7);
   EXPECT_EQ(work_count(run, "force/bending"), 0);
+}
+
+// --- On a screen
+// ---------------------------------------------------------------------------------------------------------------
+
+/// A table with columns of most roles: two keys, and two numbers of every role.
+Table roles_table() {
+  Table table{"roles", "columns of all roles", {}};
+  const auto add = [&](const char* title, const char* unit, Role role, Datum cell) {
+    table.columns.push_back({title, title, unit, "", role, {cell, cell}, {}});
+  };
+  add("who", "", Role::key, "hung-corners");
+  add("how", "", Role::key, "midpoint/fixed-point/cholesky");
+  add("work", "1", Role::counter, 1234.0);
+  add("more work", "1", Role::counter, 5678.0);
+  add("time", "ms", Role::time, 1.5);
+  add("most time", "ms", Role::time, 2.5);
+  add("error", "1", Role::error, 1e-5);
+  add("over the run", "1", Role::error, 2e-5);
+  add("of the reference", "1", Role::uncertainty, 1e-9);
+  add("remark", "", Role::note, "words and more words that say little");
+  return table;
+}
+
+TEST(Screen, ThatIsWideEnoughShowsTheTableAsItIs) {
+  const std::string all = to_text(roles_table());
+  EXPECT_EQ(to_text(roles_table(), {.columns = lines_of(all).front().size()}), all);
+  EXPECT_THAT(all, Not(HasSubstr("not shown")));
+}
+
+TEST(Screen, HoldsEveryLine) {
+  for (const Table& table : {roles_table(), to_table(runs)})
+    for (const std::size_t columns : {40, 60, 80, 100, 120})
+      for (const std::string& line : lines_of(to_text(table, {.columns = columns})))
+        EXPECT_LE(base::characters(line), columns) << line;
+}
+
+TEST(Screen, LeavesOutNotesAndUncertaintiesFirstAndKeysNever) {
+  const auto left_out = [](std::size_t columns) {
+    const auto all = lines_of(to_text(roles_table(), {.columns = columns}));
+    EXPECT_THAT(all.front(), AllOf(HasSubstr("who"), HasSubstr("how")));
+    std::string text;  // it may be broken
+    for (auto line = std::ranges::find_if(all, [](const auto& any) { return any.starts_with("not shown"); }); line != all.end();
+         ++line)
+      text += *line + ' ';
+    return text;
+  };
+  EXPECT_EQ(left_out(107), "not shown: more work; --wide shows all ");
+  EXPECT_EQ(left_out(90), "not shown: more work, most time, over the run, remark; --wide shows all ");
+  EXPECT_EQ(left_out(40),
+            "not shown: work, more work, time, most time, error, over the run, of the reference, remark; --wide shows all ");
+}
+
+TEST(Screen, BreaksTextsAtSpacesAndNames) {
+  Table table{"texts", "", {}};
+  table.columns.push_back(
+      {"a", "a long title", "", "", Role::key, {"one two three four five six", "midpoint/fixed-point/cholesky"}, {}});
+  EXPECT_EQ(to_text(table, {.columns = 16}),
+            "a long title    \n"
+            "----------------\n"
+            "one two three   \n"
+            "four five six   \n"
+            "midpoint/fixed- \n"
+            "point/cholesky  \n");
+}
+
+TEST(Screen, WithColoursMarksWhatIsGoodAndWhatIsNot) {
+  const std::string green = "\033[32m", red = "\033[31m";
+  const auto lines = lines_of(to_text(to_table(runs), {.colours = true}));
+  EXPECT_THAT(lines[0], StartsWith("\033[1m"));
+  EXPECT_THAT(lines[3], Not(HasSubstr(red)));
+  EXPECT_THAT(lines[4], HasSubstr(red + "not converged at 0.02 s"));
+  Table verdicts{"verdicts", "", {}};
+  verdicts.columns.push_back(
+      {"v", "v", "", "", Role::verdict, {check(true, "fine", ""), check(false, "", "not"), Verdict{}}, {}});
+  const auto marked = lines_of(to_text(verdicts, {.colours = true}));
+  EXPECT_THAT(marked[2], StartsWith(green + "met: fine"));
+  EXPECT_THAT(marked[3], StartsWith(red + "missed: not"));
+  EXPECT_THAT(marked[4], Not(HasSubstr("\033")));
+  EXPECT_THAT(to_text(to_table(runs)), Not(HasSubstr("\033")));
 }
 
 }  // namespace

@@ -172,8 +172,16 @@ const std::vector<Attack> attacks = {
 
     {"MisspelledOption", {"run", "--scene", "hung-edge", "--methods", "bdf2", "--step", "0.01"}, {"'--methods' (did you mean --method?)"}},
     {"MisspelledMethod", {"run", "--scene", "hung-edge", "--method", "BDF2", "--step", "0.01"}, {"'BDF2' (did you mean bdf2?)"}},
+    {"ExchangedLetters", {"run", "--scene", "hung-edge", "--method", "bfd2", "--step", "0.01"}, {"'bfd2' (did you mean bdf2?)"}},
+    {"MisspelledStageSolver", {"run", "--scene", "hung-edge", "--method", "bdf2/newtn", "--step", "0.01"}, {"'newtn' (did you mean newton?)", "auto, ic0"}},
+    {"MisspelledLinearSolver", {"run", "--scene", "hung-edge", "--method", "bdf2/newton/cholesk", "--step", "0.01"}, {"linear solver 'cholesk' (did you mean cholesky?)"}},
+    {"MisspelledFormat", run("hung-edge", {"--format", "cvs"}), {"--format: ", "'cvs' (did you mean csv?)", "table, csv, json"}},
+    {"MisspelledShell", {"completion", "bach"}, {"'bach' (did you mean bash?)"}},
+    {"MisspelledKind", {"list", "scense"}, {"'scense' (did you mean scenes?)"}},
     {"MisspelledScene", run("hung-edgee"), {"'hung-edgee' (did you mean hung-edge?)"}},
     {"MisspelledKey", run("hung-edge", {"--set", "material.densty=1"}), {"'material.densty' (did you mean material.density?)"}},
+    {"MisspelledFabric", run("hung-edge", {"--set", "material.fabric=denin"}), {"material.fabric = 'denin'", "(did you mean \"denim\"?)"}},
+    {"MisspelledValue", run("hung-edge", {"--set", "contact.response=constrant"}), {"contact.response = 'constrant'", "(did you mean \"constraint\"?)"}},
     {"MisspelledCommand", {"raport"}, {"'raport' (did you mean report?)"}},
     {"MisspelledStudy", {"study", "workprecision"}, {"'workprecision' (did you mean work-precision?)"}},
 };

@@ -60,6 +60,7 @@ const std::vector<BadInput> bad_inputs = {
     // Names.
     {"Kind", {"list", "colours"}, {"'colours'", "scenes, methods, studies"}},
     {"Scene", run_with("--scene", {"flag"}), {"'flag'", "hung-corners, hung-edge", ".toml"}},
+    {"MeshForAScene", run_with("--scene", {"open.obj"}), {"open.obj: ", "ending in .toml", "pattern"}},
     {"Method", run_with("--method", {"rk9"}), {"'rk9'", "imex-euler, implicit-euler, sbdf2, bdf2"}},
     {"OneOfTheMethods", run_with("--method", {"bdf2,rk9"}), {"'rk9'", "imex-euler, implicit-euler, sbdf2, bdf2"}},
     {"LinearSolver", run_with("--method", {"bdf2/lu"}), {"'lu'", "auto, ic0, mic0, cholesky, multigrid"}},
@@ -69,7 +70,7 @@ const std::vector<BadInput> bad_inputs = {
     {"SubStepsOfSweeps", run_with("--method", {"kang/2x3"}), {"kang/2x3", "kang/SWEEPS"}},
     {"SweepsOfVerlet", run_with("--method", {"verlet/3"}), {"verlet/3", "expected verlet"}},
     {"Study", {"study", "table-9"}, {"'table-9'", "hung-sheets"}},
-    {"Format", run_with("--format", {"xml"}), {"--format", "xml", "table,csv,json"}},
+    {"Format", run_with("--format", {"xml"}), {"--format", "xml", "table, csv, json"}},
 
     // Numbers.
     {"StepZero", run_with("--step", {"0"}), {"--step", "above 0", "'0'"}},

@@ -182,7 +182,7 @@ TEST(ProgramHelp, OfTheOthersSaysWhatTheyTake) {
 std::map<std::string, std::string> helps(const BenchIntegrators& program) {
   std::map<std::string, std::string> texts{{"list", program.output({"list"})}, {"", program.output({"--help"})}};
   for (const std::string command :
-       {"list", "run", "study", "inspect", "compare", "check", "report", "export", "fabric", "score"})
+       {"list", "run", "study", "inspect", "compare", "check", "report", "export", "fabric", "score", "completion", "man"})
     texts[command + " --help"] = program.output({command, "--help"});
   return texts;
 }
@@ -196,8 +196,12 @@ TEST(ProgramHelp, FitsATerminalOf80Columns) {
     for (const std::string& line : lines(text)) EXPECT_LE(columns(line), 80u) << command << ": " << line;
 }
 
-TEST(ProgramVersion, IsTheProjectsWithItsCommit) {
-  EXPECT_THAT(BenchIntegrators().output({"--version"}), MatchesRegex("drape [0-9.]+ \\(([0-9a-f]+(-dirty)?|unknown)\\)\n"));
+TEST(ProgramVersion, IsTheProjectsWithItsCommitAndWhatItIsBuiltWith) {
+  const Words said = lines(BenchIntegrators().output({"--version"}));
+  EXPECT_THAT(said, Contains(MatchesRegex("drape [0-9.]+ \\(([0-9a-f]+(-dirty)?|unknown)\\)")));
+  for (const std::string fact : {"compiler", "build_type", "compile_flags", "sundials", "program_hash"})
+    EXPECT_THAT(said, Contains(MatchesRegex(fact + " +[^ ].*")));
+  EXPECT_THAT(said, Each(AllOf(Not(StartsWith("cpu")), Not(StartsWith("started")), Not(StartsWith("sweep")))));
 }
 
 std::string with_name(std::string text, const std::string& name) {
@@ -258,13 +262,61 @@ TEST(ProgramProgress, IsALineOnTheTerminalWithTheTimeLeft) {
   EXPECT_THAT(parse_csv(result.out), SizeIs(1));
 }
 
+const Words tiny_run{"run",  "--scene", "hung-edge", "--set",   "grid.n=5", "--method",
+                     "bdf2", "--step",  "0.01",      "--until", "0.02"};
+
+TEST(ProgramProgress, IsSilentWhereItIsToBeQuiet) {
+  const BenchIntegrators program;
+  EXPECT_EQ(run_on_terminal(program.command(tiny_run + Words{"--quiet"}), 80).err, "");
+  EXPECT_THAT(program.output(tiny_run + Words{"-q"}), HasSubstr("hung-edge"));
+  program.write("still.toml", "grid.n = 4\nend.time = 0.1\n");
+  EXPECT_EQ(program.run({"-q", "run", "--scene", "still.toml", "--method", "bdf2", "--step", "0.05", "--no-reference"}).err,
+            "");
+  EXPECT_THAT(program.run(tiny_run + Words{"-q", "-v"}).err, AllOf(HasSubstr("--verbose"), HasSubstr("--quiet")));
+}
+
+TEST(ProgramProgress, SaysWhatIsDoneWhereItIsToBeVerbose) {
+  const BenchIntegrators program;
+  EXPECT_THAT(
+      lines(program.run(tiny_run + Words{"--verbose"}).err),
+      testing::ElementsAre(MatchesRegex(" +0.0 s  hung-edge bdf2 h = 0.01 grid.n=5"),
+                           MatchesRegex(" +[0-9.]+ s  timing hung-edge"), MatchesRegex(" +[0-9.]+ s  reference of hung-edge")));
+}
+
+// --- Tables on a terminal
+// ------------------------------------------------------------------------------------------------------
+
+/// What the program prints on a terminal of 80 columns.
+std::string shown_on_terminal(const BenchIntegrators& program, const Words& arguments, const Words& environment = {}) {
+  Command command = program.command(
+      {"-qec", "stty cols 80; exec " + program.command({}).program.string() + " " + joined(arguments, " "), "/dev/null"});
+  command.program = "/usr/bin/script";
+  command.environment = command.environment + environment;
+  std::string shown = run_program(command).out;
+  std::erase(shown, '\r');
+  return shown;
+}
+
+TEST(ProgramTables, FitTheTerminalAndHaveItsColours) {
+  const BenchIntegrators program;
+  program.output(tiny_run + Words{"--out", "a.h5"});
+  const auto shown = [&](const Words& more, const std::string& variable) {
+    return shown_on_terminal(program, Words{"inspect", "a.h5", "--table", "runs"} + more, {"TERM=xterm", variable});
+  };
+  const std::string fitting = shown({}, "NO_COLOR=1");
+  for (const std::string& line : lines(fitting)) EXPECT_LE(columns(line), 80u) << line;
+  EXPECT_THAT(fitting, AllOf(HasSubstr("hung-edge"), HasSubstr("not shown: "), HasSubstr("--wide"), Not(HasSubstr("\033"))));
+  EXPECT_EQ(shown({"--wide"}, "NO_COLOR=1"), program.output({"inspect", "a.h5", "--table", "runs"}));
+  EXPECT_THAT(shown({}, "NO_COLOR="), HasSubstr("\033[1m"));
+}
+
 TEST(Program, WithoutArgumentsDoesTheMainJob) {
   DRAPE_SLOW();
   const BenchIntegrators program;
   const ProgramResult result = run_on_terminal(program.command({}), 120, "damping=50");
   EXPECT_EQ(result.exit_code, terminated);
-  EXPECT_THAT(result.err,
-              AllOf(StartsWith(erase_line + "["), HasSubstr("hung-edge imex-euler/ic0 h = 0.01 material.damping=50")));
+  EXPECT_THAT(result.err, AllOf(StartsWith("note: this is the main job"), HasSubstr(erase_line + "["),
+                                HasSubstr("hung-edge imex-euler/ic0 h = 0.01 material.damping=50")));
   for (const auto& [name, content] : program.files())
     EXPECT_THAT(name, testing::AnyOf(HasSubstr("-motions-"), EndsWith("/"), EndsWith(".journal"))) << "half-written";
 }
@@ -340,6 +392,7 @@ TEST(ProgramInspect, FindsTablesByTheBeginningOfTheirNames) {
   EXPECT_THAT(program.run({"inspect", "modes.h5", "--table", "a"}).err,
               AllOf(HasSubstr("amplification, artificial, stability"), HasSubstr("not 'a'")));
   EXPECT_THAT(program.run({"inspect", "modes.h5", "--table", "runs"}).err, HasSubstr("not 'runs'"));
+  EXPECT_THAT(program.run({"inspect", "modes.h5", "--table", "amplifcation"}).err, HasSubstr("(did you mean amplification?)"));
   program.output({"run", "--scene", "hung-edge", "--set", "grid.n=4", "--method", "all", "--step", "0.01", "--until", "0.02",
                   "--no-reference", "--out", "runs.h5"});
   EXPECT_THAT(parse_csv(program.output({"inspect", "runs.h5", "--table", "runs", "--csv"})), SizeIs(methods.size()));
@@ -355,6 +408,113 @@ TEST(ProgramCheck, IsOneScreenWithTheOrderAsDeclared) {
     EXPECT_THAT(joined(said, "\n"), HasSubstr(part));
   EXPECT_THAT(lines(program.output({"inspect", "check.h5", "--csv"})), Contains(StartsWith("check-order")));
   EXPECT_EQ(program.run({"check", "bdf2/newto"}).exit_code, 2);
+}
+
+// --- Completion and manual page
+// ------------------------------------------------------------------------------------------------
+
+/// What bash proposes for a command line, by the script that the program prints.
+class Completed {
+ public:
+  explicit Completed(const BenchIntegrators& program) : program_(program) {
+    program.write("completion.bash", program.output({"completion", "bash"}));
+  }
+
+  Words operator()(const std::string& command_line) const {
+    // Bash makes words of their own of =.
+    const std::string script = R"(source completion.bash
+      compopt() { :; }
+      mapfile -t COMP_WORDS < <(sed 's/=/ = /g; s/ /\n/g' <<<"$1" | sed '/^$/d'; [[ $1 != *[\ =] ]] || echo)
+      [[ $1 != *= ]] || unset 'COMP_WORDS[-1]'
+      COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _drape; printf '%s\n' "${COMPREPLY[@]}")";
+    Command command = program_.command({"-c", script, "bash", command_line});
+    command.program = "/bin/bash";
+    const ProgramResult result = run_program(command);
+    EXPECT_EQ(result.err, "") << command_line;
+    Words proposed = lines(result.out);
+    std::erase(proposed, "");
+    return proposed;
+  }
+
+ private:
+  const BenchIntegrators& program_;
+};
+
+TEST(ProgramCompletion, ProposesCommandsOptionsAndNames) {
+  const BenchIntegrators program;
+  const Completed completed(program);
+  program.write("scene_of_mine.toml", "");
+  EXPECT_THAT(completed("bench/run "), IsSupersetOf({"run", "study", "completion", "man"}));
+  EXPECT_THAT(completed("bench/run st"), testing::ElementsAre("study"));
+  EXPECT_THAT(completed("bench/run --ver"), testing::ElementsAre("--version", "--verbose"));
+  EXPECT_THAT(completed("bench/run run --sc"), testing::ElementsAre("--scene"));
+  EXPECT_THAT(completed("bench/run run --scene hung-e"), testing::ElementsAre("hung-edge"));
+  EXPECT_THAT(completed("bench/run run --scene=hung-e"), testing::ElementsAre("hung-edge"));
+  EXPECT_THAT(completed("bench/run run --scene scene_of"), testing::ElementsAre("scene_of_mine.toml"));
+  EXPECT_THAT(completed("bench/run run --scene "), IsSupersetOf(lines(program.output({"list", "scenes"}))));
+  EXPECT_THAT(completed("bench/run run --method "), IsSupersetOf(methods));
+  EXPECT_THAT(completed("bench/run run --method bdf2,midp"), testing::ElementsAre("bdf2,midpoint"));
+  EXPECT_THAT(completed("bench/run run --method bdf2,sbdf2/ic"), testing::ElementsAre("bdf2,sbdf2/ic0"));
+  EXPECT_THAT(completed("bench/run run --set material.den"), testing::ElementsAre("material.density="));
+  EXPECT_THAT(completed("bench/run run --set material.fabric=den"), testing::ElementsAre("denim"));
+  EXPECT_THAT(completed("bench/run run --format "), testing::ElementsAre("table", "csv", "json"));
+  EXPECT_THAT(completed("bench/run run --step "), IsEmpty());
+  EXPECT_THAT(completed("bench/run study hung"), testing::ElementsAre("hung-sheets"));
+  EXPECT_THAT(completed("bench/run list "), testing::ElementsAre("scenes", "methods", "studies", "fabrics"));
+  EXPECT_THAT(completed("bench/run inspect scene_"), testing::ElementsAre("scene_of_mine.toml"));
+  EXPECT_THAT(completed("bench/run inspect a.h5 --"), AllOf(Contains("--table"), Not(Contains("--scene"))));
+}
+
+TEST(ProgramMan, HasAllThatHelpHas) {
+  const BenchIntegrators program;
+  std::string page = program.output({"man"});
+  EXPECT_THAT(page, StartsWith(".TH BENCH_INTEGRATORS 1 "));
+  for (auto at = page.find("\\-"); at != std::string::npos; at = page.find("\\-", at)) page.erase(at, 1);
+  for (const std::string command : {"run", "study", "inspect", "compare", "check", "report", "export", "fabric", "score"}) {
+    EXPECT_THAT(page, HasSubstr("\n.SS " + command + "\n"));
+    const std::string help = program.output({command, "--help"});
+    for (const std::string& line : lines(help))
+      if (line.starts_with("  -") || line.starts_with("  --")) {
+        const std::string spelling = line.substr(2, line.find(' ', 2) - 2);
+        EXPECT_THAT(page, HasSubstr("\n.B \\&" + spelling));
+      }
+  }
+  for (const std::string kind : {"scenes", "methods", "studies"})
+    for (const std::string& name : lines(program.output({"list", kind})))
+      EXPECT_THAT(page, HasSubstr(".TP\n.B \\&" + name + "\n"));
+}
+
+// --- Dry runs ----------------------------------------------------------------------------------------------------------------
+
+TEST(ProgramDryRun, SaysHowMuchItIsAndProbesHowLongItTakes) {
+  const BenchIntegrators program;
+  const Words runs{"run",         "--scene", "hung-edge", "--set",    "grid.n=5", "--method",
+                   "bdf2,verlet", "--step",  "0.01,0.02", "--frames", "frames"};
+  const Words said = lines(program.output(runs + Words{"--dry-run"}));
+  EXPECT_THAT(said,
+              testing::ElementsAre("run: 4 runs, each also timed 3 times, 1 reference",
+                                   MatchesRegex("time: [0-9.e-]+ s for the runs, from probes of at most 0.5 s each"),
+                                   MatchesRegex(" +[0-9.e-]+ s for the references, from probes of at most 2 s each; .*")));
+  EXPECT_THAT(program.files(), IsEmpty());
+}
+
+TEST(ProgramDryRun, TellsTheTimeOfARecordOfTheSame) {
+  const BenchIntegrators program;
+  const Words study{"study", "modes", "--quick", "--method", "bdf2"};
+  const Words unknown = lines(program.output(study + Words{"-n"}));
+  EXPECT_THAT(unknown, testing::ElementsAre(MatchesRegex("modes: [0-9]+ jobs? of [0-9]+ parts? together"),
+                                            StartsWith("time: not known")));
+  std::filesystem::create_directories(program.folder() / "results/runs");
+  program.output(study + Words{"--out", "results/runs/of-modes.h5"});
+  const Words known = lines(program.output(study + Words{"-n"}));
+  EXPECT_EQ(known.at(0), unknown.at(0));
+  EXPECT_THAT(known.at(1), MatchesRegex("time: [0-9]+ s, as results/runs/of-modes.h5 took, recorded on 20..-..-.. of .*"));
+  EXPECT_THAT(program.output({"study", "modes", "--quick", "--method", "sbdf2", "-n"}), HasSubstr("not known"));
+}
+
+TEST(ProgramDryRun, StandsBehindItsCommand) {
+  EXPECT_THAT(BenchIntegrators().run({"--dry-run", "study", "orders", "--quick"}).err,
+              HasSubstr("--dry-run: expected after run or study"));
 }
 
 }  // namespace

@@ -26,7 +26,8 @@ TEST(ProgramReference, IsBoundedByTheTimeLimitAndSaysHowFarItIsAfterTheTimesOfTh
   EXPECT_THAT(result.err,
               ContainsRegex("^hung-corners imex-euler h = 0.1: success, [0-9.]+ ms; its error follows\n"
                             "reference of hung-corners: trajectory at t = [0-9.]+ s, witness at t = [0-9.]+ s of 4 s, "));
-  EXPECT_THAT(lines(result.err), SizeIs(2)) << "a line every five seconds";
+  EXPECT_THAT(lines(result.err), SizeIs(3)) << "a line every five seconds, and one at the end";
+  EXPECT_THAT(lines(result.err).back(), ContainsRegex("^reference of hung-corners: ended after [5-9] s$"));
 }
 
 TEST(ProgramReference, IsAsTightAsTheSmallestErrorNeedsAndServesLargerOnes) {

@@ -143,6 +143,12 @@ void expect_the_same_by_libraries(const Installed& installed) {
   EXPECT_EQ(result.out, fmt::format("{:.17g}\n", integrator.state().x.col(2).minCoeff()));
 }
 
+void expect_manual_and_completion(const Installed& installed) {
+  EXPECT_THAT(bytes_of(installed.prefix() / "share/man/man1/bench_integrators.1"), StartsWith(".TH BENCH_INTEGRATORS 1"));
+  EXPECT_THAT(bytes_of(installed.prefix() / "share/bash-completion/completions/bench_integrators"),
+              HasSubstr("complete -F _drape bench_integrators"));
+}
+
 TEST(Installed, IsAllThatPluginsAndProgramsNeed) {  // one test, since installing and compiling take longer than the rest
   DRAPE_SLOW();
   const Installed installed;
@@ -152,6 +158,7 @@ TEST(Installed, IsAllThatPluginsAndProgramsNeed) {  // one test, since installin
   expect_refusal_of_another_build(installed);
   expect_refusal_of_what_is_not_a_plugin(installed);
   expect_the_same_by_libraries(installed);
+  expect_manual_and_completion(installed);
 }
 
 TEST(PluginTemplate, IsShort) {
