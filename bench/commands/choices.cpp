@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "bench/peers/peers.hpp"
 #include "bench/studies/studies.hpp"
 #include "model/fabric.hpp"
 #include "model/scene_file/scene_file.hpp"
@@ -45,6 +46,7 @@ Choices linear_solver_choices() { return from_table(solver::linear_solvers()); }
 Choices study_choices() { return from_table(studies()); }
 
 Choices fabric_choices() { return from_table(model::fabrics()); }
+Choices peer_choices() { return from_table(peers::all_peers()); }
 
 std::string paragraph(std::string_view title, const Choices& choices) {
   const auto length = [](const Choice& choice) { return choice.name.size(); };

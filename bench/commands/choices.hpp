@@ -20,6 +20,7 @@ Choices stage_solver_choices();
 Choices linear_solver_choices();
 Choices study_choices();
 Choices fabric_choices();
+Choices peer_choices();
 
 /// A title, and below it the choices with their descriptions, one a line.
 std::string paragraph(std::string_view title, const Choices& choices);

@@ -13,8 +13,11 @@ struct Kind {
   std::string_view name;
   Choices (*choices)();
 };
-constexpr Kind kinds[] = {
-    {"scenes", scene_choices}, {"methods", method_choices}, {"studies", study_choices}, {"fabrics", fabric_choices}};
+constexpr Kind kinds[] = {{"scenes", scene_choices},
+                          {"methods", method_choices},
+                          {"studies", study_choices},
+                          {"fabrics", fabric_choices},
+                          {"peers", peer_choices}};
 
 /// The names of one kind for programs, or all kinds for users.
 void list(const std::string& kind) {
@@ -30,9 +33,9 @@ void list(const std::string& kind) {
 }  // namespace
 
 void add_list(CLI::App& app) {
-  CLI::App& command = *app.add_subcommand("list", "names of scenes, methods, studies or fabrics, one a line");
+  CLI::App& command = *app.add_subcommand("list", "names of scenes, methods, studies, fabrics or peers, one a line");
   const auto kind = std::make_shared<std::string>();
-  command.add_option("KIND", *kind, "scenes, methods, studies or fabrics [all, with descriptions]")->type_name("");
+  command.add_option("KIND", *kind, "scenes, methods, studies, fabrics or peers [all, with descriptions]")->type_name("");
   command.callback([=] { list(*kind); });
 }
 
