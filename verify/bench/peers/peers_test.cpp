@@ -34,7 +34,7 @@ using testing::SizeIs;
 /// The undamped sheet with springs for diagonals, small.
 model::Scene sheet(std::vector<model::Override> more = {}) {
   std::vector<model::Override> overrides{
-      {"grid.n", "[4, 5]"}, {"grid.border_cells", "whole"}, {"material.shear_form", "diagonals"}, {"end.time", "0.1"}};
+      {"grid.n", "4"}, {"grid.border_cells", "whole"}, {"material.shear_form", "diagonals"}, {"end.time", "0.1"}};
   overrides.insert(overrides.end(), more.begin(), more.end());
   return model::load_scene("peer-edge", overrides);
 }
@@ -55,7 +55,8 @@ std::string refused(const model::Scene& scene) {
 }
 
 TEST(PeerSprings, AreThoseOfTheScene) {
-  const Problem problem = springs_of(sheet());
+  const model::Override oblong{"grid.n", "[4, 5]"};
+  const Problem problem = springs_of(sheet({oblong}));
   EXPECT_THAT(problem.ends, SizeIs(3 * 5 + 4 * 4 + 2 * 3 * 4));
   EXPECT_TRUE(std::ranges::is_sorted(problem.ends));
   EXPECT_EQ(problem.pinned, (std::vector{16, 17, 18, 19}));
@@ -65,11 +66,12 @@ TEST(PeerSprings, AreThoseOfTheScene) {
       << "k w/l along both sides of a cell of 0.76/3 by 0.76/4 m, and G L²/(2 l_u l_v)";
   EXPECT_THAT(problem.drag, Each(0));
   for (const char* form : {"linear", "projected"}) {
-    const Problem damped = springs_of(sheet({{"material.damping", "2"}, {"material.damping_form", form}}));
+    const Problem damped = springs_of(sheet({oblong, {"material.damping", "2"}, {"material.damping_form", form}}));
     EXPECT_EQ(damped.drag_along, form == std::string("projected"));
     EXPECT_DOUBLE_EQ(std::ranges::max(damped.drag), 2 * 4. / 3);
   }
-  EXPECT_THAT(springs_of(sheet({{"grid.border_cells", "dual"}})).stiffness, testing::Contains(testing::DoubleNear(375, 1e-9)));
+  EXPECT_THAT(springs_of(sheet({oblong, {"grid.border_cells", "dual"}})).stiffness,
+              testing::Contains(testing::DoubleNear(375, 1e-9)));
 }
 
 TEST(PeerSprings, AreRefusedWhereTheyAreNotAllForces) {
@@ -78,7 +80,7 @@ TEST(PeerSprings, AreRefusedWhereTheyAreNotAllForces) {
   EXPECT_THAT(refused(sheet({{"material.bend", "1e-3"}})), HasSubstr("plate"));
   EXPECT_THAT(refused(sheet({{"forces.air", "1"}})), HasSubstr("springs and weight only"));
   EXPECT_THAT(refused(sheet({{"pins", "[{where = \"upper edge\", velocity = [0, 0, 1]}]"}})), HasSubstr("do not move"));
-  EXPECT_THAT(refused(sheet({{"pins", "[{where = \"upper edge\", directions = [\"x\"]}]"}})), HasSubstr("all directions"));
+  EXPECT_THAT(refused(sheet({{"pins", "[{where = \"upper edge\", directions = \"x\"}]"}})), HasSubstr("all directions"));
 }
 
 class APeer : public testing::TestWithParam<std::string> {
@@ -119,7 +121,7 @@ TEST_P(APeer, HasItsOrder) {
   const double coarse = error(step), fine = error(step / 2);
   EXPECT_LT(coarse, 0.02);
   if (peer.name == "jolt-20" || peer.name == "jolt-100") return;
-  EXPECT_NEAR(std::log2(coarse / fine), peer.order, 0.3) << coarse << " and " << fine;
+  EXPECT_NEAR(std::log2(coarse / fine), peer.order, 0.5) << coarse << " and " << fine;
 }
 
 TEST_P(APeer, RefusesStepsThatEndElsewhere) {
@@ -148,8 +150,7 @@ TEST(PeerDamping, IsThatOfTheScene) {
     const Peer& peer = bench::peers::peer(name);
     if (!bench::peers::missing(*peer.simulator).empty()) continue;
     for (const char* form : {"projected", "linear"}) {
-      const model::Scene scene =
-          sheet({{"grid.n", "4"}, {"material.shear", "0"}, {"material.damping", "2"}, {"material.damping_form", form}});
+      const model::Scene scene = sheet({{"material.shear", "0"}, {"material.damping", "2"}, {"material.damping_form", form}});
       if (!reason_against(peer, scene, 1e-4).empty()) continue;
       const model::Cloth cloth = model::compile(scene);
       const auto truth = reference::cvode(cloth.ode, cloth.start, 0, bench::compared_times(scene), {.rtol = 1e-10, .size = 1});
