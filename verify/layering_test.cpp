@@ -76,7 +76,9 @@ const std::vector<Room> rooms = {
     {"results/analysis", {"results/analysis/"}, {"results/file"}},
 
     {"bench/runs", {"bench/runs/"}, {"model/scene_file", "reference", "results/analysis"}},
-    {"bench/studies", {"bench/studies/"}, {"bench/runs"}},
+    {"bench/peers", {"bench/peers/"}, {"bench/runs"}},
+    {"bench/peers/programs", {"bench/peers/programs/"}, {"bench/peers"}},
+    {"bench/studies", {"bench/studies/"}, {"bench/peers"}},
     {"bench/report", {"bench/report/"}, {"bench/runs"}},
     {"bench/score", {"bench/score/"}, {"bench/studies"}},
     {"bench/commands", {"bench/commands/"}, {"bench/score", "bench/report", "model/pattern"}},
@@ -124,6 +126,8 @@ const std::vector<Confined> confined_libraries = {
     {{"assimp/"}, {"model/obstacles/mesh_file.cpp"}},
     {{"CGAL/"}, {"model/outline_mesh.cpp", "model/adaptive/face_triangulation.cpp", "model/collision/exact_intersection.cpp"}},
     {{"glpk.h"}, {"model/pattern/quad_layout.cpp"}},
+    {{"bt", "BulletSoftBody/"}, {"bench/peers/programs/bullet.cpp"}},
+    {{"petsc"}, {"bench/peers/programs/petsc.cpp"}},
     {{"unsupported/Eigen/BVH"}, {"model/trimmed_surface.cpp"}},
 };
 

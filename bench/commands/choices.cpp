@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "bench/peers/peers.hpp"
 #include "bench/studies/studies.hpp"
 #include "model/fabric.hpp"
 #include "model/scene_file/scene_file.hpp"
@@ -45,6 +46,7 @@ Choices linear_solver_choices() { return from_table(solver::linear_solvers()); }
 Choices study_choices() { return from_table(studies()); }
 
 Choices fabric_choices() { return from_table(model::fabrics()); }
+Choices peer_choices() { return from_table(peers::all_peers()); }
 
 Choices kind_choices() {
   Choices choices;
@@ -59,8 +61,11 @@ Choices format_choices() {
 Choices shell_choices() { return {{"bash", "also for zsh, by its bashcompinit"}}; }
 
 std::span<const KindOfNames> kinds_of_names() {
-  static constexpr KindOfNames table[] = {
-      {"scenes", scene_choices}, {"methods", method_choices}, {"studies", study_choices}, {"fabrics", fabric_choices}};
+  static constexpr KindOfNames table[] = {{"scenes", scene_choices},
+                                          {"methods", method_choices},
+                                          {"studies", study_choices},
+                                          {"fabrics", fabric_choices},
+                                          {"peers", peer_choices}};
   return table;
 }
 

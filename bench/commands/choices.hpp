@@ -21,6 +21,7 @@ Choices stage_solver_choices();
 Choices linear_solver_choices();
 Choices study_choices();
 Choices fabric_choices();
+Choices peer_choices();
 Choices kind_choices();    ///< of the names below
 Choices format_choices();  ///< of what is printed
 Choices shell_choices();   ///< for whom there is a completion

@@ -89,6 +89,7 @@ void add_commands(CLI::App& app, const std::string& command_line, int& exit_code
   add_fabric(app);
   add_pattern(app);
   add_score(app, command_line);
+  add_peers(app);
   add_completion(app);
   add_man(app);
 }

@@ -13,6 +13,7 @@ void add_report(CLI::App& app);
 void add_export(CLI::App& app);
 void add_fabric(CLI::App& app);
 void add_pattern(CLI::App& app);
+void add_peers(CLI::App& app);
 void add_score(CLI::App& app, const std::string& command_line);
 void add_completion(CLI::App& app);
 void add_man(CLI::App& app);

@@ -114,7 +114,7 @@ results::Table bars_table(const std::vector<SceneRuns>& scenes) {
   const DefaultChoice usual = usual_choice(scenes);
   for (const SceneRuns& scene : scenes) {
     if (scene.problem.against_sundials) add_search_bar(rows, scene);
-    if (!scene.problem.with_other_codes)
+    if (!scene.problem.in_metres)
       add_bars(rows, scene, usual);
     else if (scene.problem.scene.sheet.grid.nu == 100)
       add_peer_bars(rows, scene);

@@ -31,7 +31,7 @@ struct Problem {
   double motion = 0;               ///< largest distance of the truth from the start, as an error would be; 0 if not known
   double enough = 0;               ///< smaller errors are not sought
   std::vector<double> asked = {};  ///< errors at which the quickest is asked for, beside the usual ones
-  bool with_other_codes = false;   ///< errors are in metres, and times are compared with those of other codes
+  bool in_metres = false;          ///< errors are, as the bars about other simulators' sheet have them
   bool against_sundials = false;   ///< whether the study's bars about SUNDIALS are about it
 };
 

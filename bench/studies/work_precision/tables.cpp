@@ -341,7 +341,7 @@ results::Table held_out_table(const std::vector<SceneRuns>& scenes) {
 results::Table recommended_table(const std::vector<SceneRuns>& scenes) {
   std::vector<Sides> rows;
   for (const SceneRuns& scene : scenes) {
-    if (scene.problem.with_other_codes) continue;
+    if (scene.problem.in_metres) continue;
     for (const double error : levels(scene.problem))
       rows.push_back({{&scene, error}, winner(scene, named(advised_peer()), error), winner(scene, named(advised_ours), error)});
   }

@@ -41,10 +41,4 @@ results::Table defaults_table(const std::vector<SceneRuns>& scenes);
 /// The bars of the study.
 results::Table bars_table(const std::vector<SceneRuns>& scenes);
 
-/// The errors [m] of other codes on the scene peer-edge, and those of the bars about it.
-std::vector<double> peer_errors();
-
-/// Other codes' figures on the scene peer-edge, and ours.
-results::Table peers_table(const std::vector<SceneRuns>& scenes);
-
 }  // namespace drape::bench

@@ -10,7 +10,7 @@
 #include "bench/runs/samples.hpp"
 #include "bench/studies/studies.hpp"
 #include "bench/studies/work_precision/ranking.hpp"
-#include "bench/studies/work_precision/tables.hpp"
+#include "bench/studies/work_precision/winners.hpp"
 #include "model/scene_file/scene_file.hpp"
 #include "reference/reference.hpp"
 #include "reference/sundials/arkode.hpp"
@@ -26,8 +26,8 @@ struct StudiedScene {
   model::Scene scene;
   Search search = Search::usual;
   Effort effort = {};
-  std::string training = {};      ///< the name of one before it, on which configurations are chosen for this one
-  bool with_other_codes = false;  ///< as Problem has it, as the following
+  std::string training = {};  ///< the name of one before it, on which configurations are chosen for this one
+  bool in_metres = false;     ///< as Problem has it, as the following
   bool against_sundials = false;
 };
 
@@ -45,7 +45,7 @@ std::vector<StudiedScene> quick_scenes() {
               Search::quick, quick_effort),
       studied("peer-edge n=8", "peer-edge", {{"grid.n", "8"}, {"end.time", "0.1"}}, Search::quick, quick_effort)};
   all.front().against_sundials = true;
-  all.back().with_other_codes = true;
+  all.back().in_metres = true;
   return all;
 }
 
@@ -68,7 +68,7 @@ std::vector<StudiedScene> chosen_scenes() {
   const std::size_t before = all.size();
   for (const char* n : {"20", "100"}) all.push_back(studied(fmt::format("peer-edge n={}", n), "peer-edge", {{"grid.n", n}}));
   all.push_back(studied("peer-edge n=316", "peer-edge", {{"grid.n", "316"}}, Search::large, large_effort));
-  for (std::size_t k = before; k < all.size(); ++k) all[k].with_other_codes = true;
+  for (std::size_t k = before; k < all.size(); ++k) all[k].in_metres = true;
   return all;
 }
 
@@ -90,7 +90,7 @@ Problem problem(const StudiedScene& studied) {
           .scene = studied.scene,
           .length = model::size(studied.scene),
           .times = compared_times(studied.scene),
-          .with_other_codes = studied.with_other_codes,
+          .in_metres = studied.in_metres,
           .against_sundials = studied.against_sundials};
 }
 
@@ -146,8 +146,8 @@ ExplicitTruth compute_explicit_truth(const Problem& problem) {
 void set_explicit_truth(Problem& problem, const ExplicitTruth& truth) {
   problem.truth = truth.positions;
   problem.uncertainty = truth.uncertainty;
-  problem.length = 1;  // errors in metres, as those of the other codes
-  problem.asked = peer_errors();
+  problem.length = 1;  // errors in metres, as those of the bars
+  for (const PeerBar& bar : peer_bars) problem.asked.push_back(bar.error);
 }
 
 /// What the tables of all scenes are made from.
@@ -163,7 +163,7 @@ void run_scene(const StudiedScene& studied, const Methods& methods, All& all, Ch
   checkpoint.show("reference of " + studied.name);
   SceneRuns& scene = all.emplace_back(SceneRuns{problem(studied), {}, {}, find(all, studied.training)});
   Problem& problem = scene.problem;
-  if (problem.with_other_codes)
+  if (problem.in_metres)
     set_explicit_truth(problem, checkpoint.once("truth", [&] { return compute_explicit_truth(problem); }));
   else
     set_truth(problem, checkpoint);
@@ -203,8 +203,7 @@ results::Table left_out_table(const std::vector<StudiedScene>& list, const Metho
 std::vector<results::Table> all_tables(const All& all) {
   std::vector<results::Table> tables;
   for (const SceneRuns& scene : all) tables.push_back(runs_table(scene));
-  for (auto* table :
-       {held_out_table, recommended_table, winners_table, quickest_table, peers_summary_table, defaults_table, peers_table})
+  for (auto* table : {held_out_table, recommended_table, winners_table, quickest_table, peers_summary_table, defaults_table})
     tables.push_back(table(all));
   if (all.size() > 1) tables.push_back(ranking_table(all));
   return tables;
@@ -241,8 +240,8 @@ std::vector<Job> work_precision(const Question& question) {
     studied.search = Search::quick, studied.effort = quick_effort;
   else if (scene->sheet.grid.particles() >= large)
     studied.search = Search::large, studied.effort = large_effort;
-  studied.with_other_codes = std::ranges::any_of(
-      chosen_scenes(), [&](const StudiedScene& one) { return one.with_other_codes && one.scene.name == scene->name; });
+  studied.in_metres = std::ranges::any_of(
+      chosen_scenes(), [&](const StudiedScene& one) { return one.in_metres && one.scene.name == scene->name; });
   return jobs({studied}, methods);
 }
 

@@ -128,7 +128,7 @@ TEST_F(WorkPrecision, NamesWinnersAndJudgesTheBars) {
   DRAPE_SLOW();
   program.run({"study", "bars", "--quick", "--out", "study.h5"});
   const auto all = results::read_tables(program.folder() / "study.h5");
-  ASSERT_THAT(all, SizeIs(12));
+  ASSERT_THAT(all, SizeIs(11));
   for (const char* name : {"trials: hung-corners d=5", "trials: peer-edge n=8"}) {
     const auto codes = texts(table(all, name), "code");
     for (const char* code :

@@ -1,5 +1,3 @@
-#include "bench/studies/work_precision/peers.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,6 +8,7 @@
 #include "bench/runs/certified_reference.hpp"
 #include "bench/runs/timing.hpp"
 #include "bench/studies/studies.hpp"
+#include "bench/studies/work_precision/peers.hpp"
 #include "model/scene_file/scene_file.hpp"
 #include "reference/reference.hpp"
 #include "reference/sundials/sundials_build.hpp"
@@ -154,17 +153,17 @@ std::vector<Reproduced> reproduce(bool quick, Checkpoint& checkpoint) {
 }
 
 results::Table reproduced_table(const std::vector<Reproduced>& rows) {
-  return results::make_table("peers",
+  return results::make_table("sundials",
                              fmt::format("SUNDIALS as an independent driver has set it up; {}", reference::sundials_build()),
                              reproduced_columns, rows);
 }
 
 }  // namespace
 
-std::vector<Job> peers(const Question& question) {
+std::vector<Job> sundials_setups(const Question& question) {
   const bool quick = question.quick;
   const auto compute = [quick](Checkpoint& checkpoint) { return reproduce(quick, checkpoint); };
-  return {job("peers", static_cast<int>(rows(quick).size()), compute, reproduced_table)};
+  return {job("sundials", static_cast<int>(rows(quick).size()), compute, reproduced_table)};
 }
 
 }  // namespace drape::bench
