@@ -104,7 +104,7 @@ INSTANTIATE_TEST_SUITE_P(, APeer, testing::ValuesIn([] {
 /// it. Many sub-steps in single precision only come near.
 TEST_P(APeer, HasItsOrder) {
   if (!missing().empty()) GTEST_SKIP() << missing();
-  constexpr double step = 2.5e-3;
+  constexpr double step = 1.25e-3;
   const model::Scene scene = sheet({{"end.time", "0.5"}});
   const model::Cloth cloth = model::compile(scene);
   const std::vector<double> times = bench::compared_times(scene);
@@ -121,7 +121,7 @@ TEST_P(APeer, HasItsOrder) {
   const double coarse = error(step), fine = error(step / 2);
   EXPECT_LT(coarse, 0.02);
   if (peer.name == "jolt-20" || peer.name == "jolt-100") return;
-  EXPECT_NEAR(std::log2(coarse / fine), peer.order, 0.5) << coarse << " and " << fine;
+  EXPECT_NEAR(std::log2(coarse / fine), peer.order, 0.3) << coarse << " and " << fine;
 }
 
 TEST_P(APeer, RefusesStepsThatEndElsewhere) {
