@@ -7,6 +7,7 @@
 #include "bench/commands/commands.hpp"
 #include "bench/commands/names_of.hpp"
 #include "bench/commands/output.hpp"
+#include "bench/commands/report.hpp"
 #include "bench/commands/scene_choice.hpp"
 #include "bench/runs/frames.hpp"
 #include "model/cloth.hpp"
@@ -29,6 +30,7 @@ struct RunArguments {
   double tolerance = 0;
   int threads = 1;
   Frames frames;
+  std::string report;  ///< folder of a page about the runs; empty: none
   Output output;
 };
 
@@ -118,7 +120,16 @@ void run(const RunArguments& a) {
     base::require_empty_folder(a.frames.folder, "the frames");
     output.sweep.observer_for = [&](const RunSpec& spec) { return frame_writer(spec, a.frames); };
   }
-  sweep_and_print(groups, output, "run");
+  if (a.report.empty()) {
+    sweep_and_print(groups, output, "run");
+    return;
+  }
+  if (output.format != "table")
+    throw std::invalid_argument("--report: expected --format table beside it, which it prints as well");
+  constexpr double frame = 0.04;  // [s]
+  if (!output.sweep.frames_every) output.sweep.frames_every = frame;
+  base::create_folder(a.report);
+  report({sweep_and_print(groups, output, "run")}, a.report);
 }
 
 void add_solver_options(CLI::App& command, RunArguments& a) {
@@ -189,7 +200,11 @@ void add_run(CLI::App& app, const std::string& command_line) {
   CLI::App& command = *app.add_subcommand("run", "run methods on a scene and compare them with the reference");
   const auto a = std::make_shared<RunArguments>();
   a->output.sweep.command_line = command_line;
-  command.add_option("--scene", a->choice.scene, "built-in scene or TOML file")->required()->type_name("NAME|FILE.toml");
+  command
+      .add_option("--scene", a->choice.scene,
+                  "built-in scene, or a file: a scene (.toml), a mesh (.obj, .ply) or a pattern (.json)")
+      ->required()
+      ->type_name("NAME|FILE");
   command
       .add_option(
           "--method", a->methods,
@@ -211,6 +226,10 @@ void add_run(CLI::App& app, const std::string& command_line) {
   add_thread_option(command, *a);
   add_frame_options(command, *a);
   add_output_options(command, a->output);
+  command
+      .add_option("--report", a->report, "folder for a page of these runs with their motions, as the command report makes it")
+      ->type_name("DIR")
+      ->check(output_name());
   command.callback([=] { run(*a); });
 }
 

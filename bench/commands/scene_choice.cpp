@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstdio>
 #include <stdexcept>
+#include <string_view>
 
 #include "bench/runs/available_memory.hpp"
 #include "bench/runs/verbosity.hpp"
@@ -10,14 +13,34 @@
 #include "model/at_rest.hpp"
 #include "model/clear_cloth.hpp"
 #include "model/clear_start.hpp"
+#include "model/pattern/sewn_pattern.hpp"
 #include "model/scene_file/scene_file.hpp"
 
 namespace drape::bench {
 
+namespace {
+
+constexpr std::string_view pattern_endings[] = {".obj", ".ply", ".json"};
+
+/// A mesh or a sewing pattern becomes the scene that the command `pattern` prints.
+bool is_pattern(const std::string& file) {
+  return std::ranges::any_of(pattern_endings, [&](std::string_view ending) { return file.ends_with(ending); });
+}
+
+model::Scene load_pattern(const std::string& file, const std::vector<model::Override>& overrides) {
+  const std::string text = model::to_toml(model::sew(model::read_pattern(file), model::usual_spacing));
+  model::Scene loaded = model::parse_scene(text, file, overrides);
+  fmt::print(stderr, "note: {}: {}; to change more than keys: bench/run pattern {} >my.toml\n", base::printable(file),
+             base::printable(loaded.description), base::printable(file));
+  return loaded;
+}
+
+}  // namespace
+
 model::Scene SceneChoice::load() const {
   std::vector<model::Override> overrides;
   for (const std::string& text : sets) overrides.push_back(model::parse_override(text));
-  model::Scene loaded = model::load_scene(scene, overrides);
+  model::Scene loaded = is_pattern(scene) ? load_pattern(scene, overrides) : model::load_scene(scene, overrides);
   require_memory(loaded);
   try {
     model::require_bodies(loaded);

@@ -8,7 +8,7 @@
 
 namespace drape::bench {
 
-/// A scene on the command line: its name or TOML file, and keys that are set differently.
+/// A scene on the command line: its name or file, also one of a mesh or a sewing pattern, and keys that are set differently.
 struct SceneChoice {
   std::string scene;
   std::vector<std::string> sets;

@@ -1,132 +1,32 @@
+#include "model/pattern/garment_mesh.hpp"
+
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <map>
 #include <numbers>
 #include <optional>
-#include <sstream>
-#include <string_view>
-#include <tuple>
 #include <utility>
 
 #include "model/keys/scene_error.hpp"
 #include "model/pattern/readers.hpp"
 #include "solver/base/disjoint_sets.hpp"
-#include "solver/base/printable.hpp"
 
 namespace drape::model {
 namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-using VertexPair = std::pair<int, int>;
-
-/// A face of the file.
-struct MeshFace {
-  std::array<int, 3> vertices;  ///< in space
-  std::array<int, 3> places;    ///< on the pattern
-  int line;                     ///< of the file
-};
-
-/// The lines of an OBJ that have to do with the shape of a garment.
-struct GarmentMesh {
-  std::string file;                ///< for messages
-  std::vector<Vector3d> vertices;  ///< [m]
-  std::vector<Vector2d> places;    ///< on the pattern [m], one for each pair of a vertex and its coordinates
-  std::vector<MeshFace> faces;
-
-  [[noreturn]] void fail(int line, const std::string& what) const {
-    throw SceneError(fmt::format("{}:{}: {}", file, line, what));
-  }
-};
-
-// --- The file ----------------------------------------------------------------------------------------------------------------
-
-/// Reads an OBJ line by line.
-class ObjReader {
- public:
-  explicit ObjReader(const std::string& file) { mesh_.file = base::printable(file); }
-
-  GarmentMesh read(const std::string& text) {
-    std::istringstream lines(text);
-    for (std::string line; std::getline(lines, line);) {
-      ++line_;
-      std::istringstream words(line);
-      std::string key;
-      words >> key;
-      if (key == "v")
-        mesh_.vertices.push_back(numbers<3>(words));
-      else if (key == "vt")
-        coordinates_.push_back(numbers<2>(words));
-      else if (key == "f")
-        add_polygon(words);
-    }
-    if (mesh_.faces.empty()) throw SceneError(mesh_.file + ": expected an OBJ with faces");
-    return std::move(mesh_);
-  }
-
- private:
-  template <int size>
-  Eigen::Vector<double, size> numbers(std::istringstream& words) {
-    constexpr double largest = 1e6;
-    Eigen::Vector<double, size> all;
-    for (int c = 0; c < size; ++c)
-      if (!(words >> all[c]) || !(std::abs(all[c]) <= largest))
-        mesh_.fail(line_, fmt::format("expected {} numbers, of at most a million", size));
-    return all;
-  }
-
-  /// A number of a list that counts from 1, or backwards from −1.
-  int index(std::string_view text, std::size_t size, const char* list) {
-    int number = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    const int place = number < 0 ? static_cast<int>(size) + number : number - 1;
-    if (error != std::errc() || end != text.data() + text.size() || place < 0 || place >= static_cast<int>(size))
-      mesh_.fail(line_, fmt::format("'{}': expected one of the {} {} before it", base::quoted(text), size, list));
-    return place;
-  }
-
-  /// The place on the pattern that a vertex has: exporters write the same coordinates again and again.
-  int place_of(int vertex, int coordinates) {
-    const Vector2d& p = coordinates_[static_cast<std::size_t>(coordinates)];
-    const auto [found, is_new] = places_.try_emplace({vertex, p.x(), p.y()}, static_cast<int>(mesh_.places.size()));
-    if (is_new) mesh_.places.push_back(p);
-    return found->second;
-  }
-
-  void add_polygon(std::istringstream& words) {
-    std::vector<VertexPair> corners;
-    for (std::string word; words >> word;) {
-      const std::string_view text = word;
-      const auto slash = text.find('/');
-      const std::string_view vertex = text.substr(0, slash), rest = slash == text.npos ? "" : text.substr(slash + 1);
-      const std::string_view coordinates = rest.substr(0, rest.find('/'));
-      const int corner = index(vertex, mesh_.vertices.size(), "vertices");
-      if (coordinates.empty())
-        mesh_.fail(line_, fmt::format("'{}': expected texture coordinates, which are those of the pattern (v/vt)",
-                                      base::quoted(text)));
-      corners.emplace_back(corner, place_of(corner, index(coordinates, coordinates_.size(), "texture coordinates")));
-    }
-    if (corners.size() < 3) mesh_.fail(line_, "expected a face of at least three corners");
-    for (std::size_t k = 2; k < corners.size(); ++k) {
-      const VertexPair &a = corners[0], &b = corners[k - 1], &c = corners[k];
-      mesh_.faces.push_back({{a.first, b.first, c.first}, {a.second, b.second, c.second}, line_});
-    }
-  }
-
-  GarmentMesh mesh_;
-  std::vector<Vector2d> coordinates_;
-  std::map<std::tuple<int, double, double>, int> places_;
-  int line_ = 0;
-};
 
 // --- Islands -----------------------------------------------------------------------------------------------------------------
+
+using VertexPair = std::pair<int, int>;
 
 double signed_area(const GarmentMesh& mesh, const MeshFace& face) {
   const auto& [a, b, c] = face.places;
@@ -317,6 +217,46 @@ std::vector<std::size_t> add_edges(const GarmentMesh& mesh, const Island& island
   return edge_of;
 }
 
+double length_of(const GarmentMesh& mesh) {
+  Eigen::AlignedBox3d box;
+  for (const Vector3d& vertex : mesh.vertices) box.extend(vertex);
+  return box.sizes().maxCoeff();
+}
+
+void check_length(const GarmentMesh& mesh) {
+  constexpr double longest = 20, longest_of_centimetres = 200;
+  const double length = length_of(mesh);
+  if (length > longest)
+    throw SceneError(fmt::format("{}: expected vertices in metres, not a cloth {:.4g} m long: {}", mesh.file, length,
+                                 length > longest_of_centimetres ? "these may be millimetres, to be divided by 1000"
+                                                                 : "these may be centimetres, to be divided by 100"));
+}
+
+/// Without texture coordinates the pattern is the mesh itself, if it is flat: seen from the front or, if it lies, from above.
+void lay_flat(GarmentMesh& mesh) {
+  constexpr double flat = 1e-4;  // of its length: files have six digits
+  weld(mesh);
+  Vector3d middle = Vector3d::Zero();
+  for (const Vector3d& vertex : mesh.vertices) middle += vertex / static_cast<double>(mesh.vertices.size());
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (const Vector3d& vertex : mesh.vertices) spread += (vertex - middle) * (vertex - middle).transpose();
+  Vector3d normal = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(0);
+  double off = 0;
+  for (const Vector3d& vertex : mesh.vertices) off = std::max(off, std::abs(normal.dot(vertex - middle)));
+  if (off > flat * length_of(mesh))
+    throw SceneError(
+        fmt::format("{}: expected texture coordinates, which are those of the pattern, or a flat mesh, not one that "
+                    "is up to {:.3g} m off a plane",
+                    mesh.file, off));
+  constexpr double steep = 0.7;
+  const Vector3d up = std::abs(normal.z()) < steep ? Vector3d::UnitZ() : Vector3d::UnitY();
+  const Vector3d v = (up - up.dot(normal) * normal).normalized();
+  Vector3d u = v.cross(normal);
+  if (u.x() + u.y() < 0) u = -u;
+  for (const Vector3d& vertex : mesh.vertices) mesh.places.emplace_back(u.dot(vertex), v.dot(vertex));
+  for (MeshFace& face : mesh.faces) face.places = face.vertices;
+}
+
 /// Texture coordinates are often parts of a picture.
 void check_units(const GarmentMesh& mesh) {
   double drawn = 0, worn = 0;
@@ -334,8 +274,24 @@ void check_units(const GarmentMesh& mesh) {
 
 }  // namespace
 
+void weld(GarmentMesh& mesh) {
+  std::map<std::array<double, 3>, int> known;
+  std::vector<int> welded;
+  std::vector<Vector3d> vertices;
+  for (const Vector3d& v : mesh.vertices) {
+    const auto [at, is_new] = known.try_emplace({v.x(), v.y(), v.z()}, static_cast<int>(vertices.size()));
+    if (is_new) vertices.push_back(v);
+    welded.push_back(at->second);
+  }
+  mesh.vertices = std::move(vertices);
+  for (MeshFace& face : mesh.faces)
+    for (int& corner : face.vertices) corner = welded[static_cast<std::size_t>(corner)];
+}
+
 SewingPattern read_garment_mesh(const std::string& file) {
-  const GarmentMesh mesh = ObjReader(file).read(pattern_text(file));
+  GarmentMesh mesh = file.ends_with(".ply") ? read_ply(file) : read_obj(file);
+  check_length(mesh);
+  if (mesh.places.empty()) lay_flat(mesh);
   std::vector<Island> islands = islands_of(mesh);
   if (islands.size() > most_panels)
     throw SceneError(fmt::format("{}: expected at most {} islands, not {}", mesh.file, most_panels, islands.size()));

@@ -24,8 +24,9 @@ SewingPattern read_garmentcode(const std::string& file);
 /// TOML with pieces and stitches; lengths in mm.
 SewingPattern read_draft(const std::string& file);
 
-/// OBJ of a garment: its texture coordinates are those of the pattern, its islands on it the panels, and edges that are one in
-/// space and two on the pattern are sewn. Panels begin where they come nearest to their places in space.
+/// OBJ or PLY of a garment: its texture coordinates are those of the pattern, its islands on it the panels, and edges that are
+/// one in space and two on the pattern are sewn. Panels begin where they come nearest to their places in space. Without texture
+/// coordinates the mesh has to be flat, and is its own pattern.
 SewingPattern read_garment_mesh(const std::string& file);
 
 }  // namespace drape::model

@@ -38,7 +38,8 @@ struct PatternFormat {
   std::string_view ending;
   SewingPattern (*read)(const std::string& file);
 };
-constexpr PatternFormat pattern_formats[] = {{".json", read_garmentcode}, {".toml", read_draft}, {".obj", read_garment_mesh}};
+constexpr PatternFormat pattern_formats[] = {
+    {".json", read_garmentcode}, {".toml", read_draft}, {".obj", read_garment_mesh}, {".ply", read_garment_mesh}};
 
 }  // namespace
 
@@ -47,8 +48,8 @@ std::string SewingPattern::place(std::size_t panel) const { return fmt::format("
 SewingPattern read_pattern(const std::string& file) {
   for (const auto& [ending, read] : pattern_formats)
     if (file.ends_with(ending)) return read(file);
-  throw SceneError(
-      fmt::format("{}: expected a pattern, whose name ends in .json (GarmentCode), .toml or .obj", base::printable(file)));
+  throw SceneError(fmt::format("{}: expected a pattern, whose name ends in .json (GarmentCode), .toml, .obj or .ply",
+                               base::printable(file)));
 }
 
 std::string pattern_text(const std::string& file) try {

@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <numeric>
 #include <string_view>
 #include <utility>
+#include <variant>
 
 #include "model/garment.hpp"
 #include "model/keys/scene_error.hpp"
@@ -156,7 +158,61 @@ double excess(const Scene& scene, const SeamRule& seam) {
   return std::max(one, other) / std::min(one, other) - 1;
 }
 
+/// Makes a sheet of the only panel, without a body, and pins the two corners beside each other that are highest, or farthest
+/// back if all are as high.
+void hang(Scene& scene) {
+  const Grid grid = scene.sheet.grid = scene.panels.front().grid;
+  scene.start = scene.panels.front().start;
+  scene.panels.clear();
+  const int u = grid.nu - 1, v = grid.nv - 1;
+  const std::array<std::pair<int, int>, 4> corners = {{{0, 0}, {u, 0}, {u, v}, {0, v}}};
+  const solver::Vectors x = start_of(grid, scene.start).x;
+  const auto height = [&](std::size_t side) {  // to a tenth of a millimetre
+    const auto row = [&](std::size_t k) { return x.row(grid.index(corners[k % 4].first, corners[k % 4].second)); };
+    const Eigen::RowVector3d both = row(side) + row(side + 1);
+    return std::pair(std::round(1e4 * both.z()), std::round(1e4 * both.y()));
+  };
+  std::size_t highest = 0;
+  for (std::size_t side = 1; side < 4; ++side)
+    if (height(side) > height(highest)) highest = side;
+  scene.obstacles.clear();
+  scene.contact = {};
+  scene.end = 1;
+  scene.pins.push_back({.where = {}, .particles = {corners[highest], corners[(highest + 1) % 4]}});
+}
+
+/// Keys that differ from the usual ones as TOML; lists as tables, behind them.
+std::string changed_keys(const Scene& scene) {
+  std::map<std::string, std::string> usual, own;
+  for (const KeyValue& row : key_values(Scene{})) usual[row.key] = to_toml(row.value);
+  const std::vector<KeyValue> rows = key_values(scene);
+  std::string text;
+  for (const KeyValue& row : rows) {
+    const std::string value = own[row.key] = to_toml(row.value);
+    if (!std::holds_alternative<Entries>(row.value) && usual[row.key] != value)
+      text += fmt::format("{} = {}\n", row.key, value);
+  }
+  for (const KeyValue& row : rows) {
+    const auto* table = std::get_if<Entries>(&row.value);
+    if (table == nullptr) continue;
+    text += fmt::format("\n[[{}]]\n", row.key);
+    for (const auto& [key, data] : *table) {
+      const std::string value = to_toml(data);
+      const bool is_usual = own.contains(key) ? own[key] == value : value.empty() || value == "[]";
+      if (!is_usual) text += fmt::format("{} = {}\n", key, value);
+    }
+  }
+  return text;
+}
+
 }  // namespace
+
+std::string to_toml(const SewnPattern& sewn) {
+  std::string text;
+  if (!sewn.remarks.empty()) text += "# Seams:\n";
+  for (const std::string& remark : sewn.remarks) text += fmt::format("#   {}\n", remark);
+  return text + "\n" + changed_keys(sewn.scene);
+}
 
 SewnPattern sew(const SewingPattern& pattern, double spacing) {
   double area = 0;
@@ -202,11 +258,15 @@ SewnPattern sew(const SewingPattern& pattern, double spacing) {
     }
     scene.seams.push_back(std::move(seam));
   }
+  const bool is_one_sheet = scene.panels.size() == 1 && scene.seams.empty();
   if (!scene.seams.empty()) scene.phases.push_back({sewing_time, Eigen::Vector3d::Zero(), SeamState::pulled, {}});
+  if (is_one_sheet) hang(scene);
   try {
     const Garment garment(scene);
-    scene.description = fmt::format("The pattern {} of {} panels, {} particles, sewn around a mannequin", pattern.name,
-                                    pattern.panels.size(), garment.nodes());
+    scene.description = is_one_sheet
+                            ? fmt::format("The cloth {}, {} particles, hung by two corners", pattern.name, garment.nodes())
+                            : fmt::format("The pattern {} of {} panels, {} particles, sewn around a mannequin", pattern.name,
+                                          pattern.panels.size(), garment.nodes());
   } catch (const std::invalid_argument& error) {
     throw SceneError(fmt::format("{}: {}", pattern.file, error.what()));
   }

@@ -9,6 +9,7 @@
 
 #include "model/fabric.hpp"
 #include "model/obstacles/mesh_file.hpp"
+#include "model/scene_file/arcsim_material.hpp"
 #include "model/scene_file/obstacle_keys.hpp"
 #include "model/scene_file/outline_keys.hpp"
 #include "model/scene_file/panel_keys.hpp"
@@ -117,9 +118,13 @@ void read_grading(const Value& value, Scene& scene) {
 
 Data grading_data(const Scene& scene) { return List{scene.sheet.grid.grading_u, scene.sheet.grid.grading_v}; }
 
-/// Keys that follow change what the fabric has.
+/// Keys that follow change what the fabric has. Of a file the scene keeps the numbers alone.
 void read_fabric(const Value& value, Scene& scene) {
   scene.fabric = value.text();
+  if (scene.fabric.ends_with(".json")) {
+    scene.sheet.material = read_arcsim_material(value.input_file("a material file of ARCSim", most_arcsim_bytes));
+    scene.fabric.clear();
+  }
   if (scene.fabric.empty()) return;
   std::vector<std::string_view> names;
   for (const Fabric& fabric : fabrics()) names.push_back(fabric.name);
@@ -338,7 +343,7 @@ std::span<const SceneKey> scene_key_table() {
       {"grid.cut", "", "a closed curve on the pattern, inside of which there is cloth: list of pieces as those of the sides", read_cut,
        cut_data},
 
-      {"material.fabric", "", "a measured cloth, see bench_integrators list fabrics: its density and moduli, which other keys change",
+      {"material.fabric", "", "a measured cloth, see bench_integrators list fabrics, or a material file of ARCSim (.json): its density and moduli, which other keys change",
        read_fabric, fabric_data},
       {"material.density", "kg/m²", "ρ", in_material<&Material::density>, check::positive},
       {"material.tension", "N/m", "k1, k2: one number for both, or [weft, warp]",

@@ -243,7 +243,7 @@ std::string text_of_scene(const std::string& name_or_file) {
   try {
     return std::string(base::find_named(builtin_scenes(), "scene", name_or_file).toml);
   } catch (const std::invalid_argument& error) {
-    throw SceneError(fmt::format("{}, or a file ending in .toml", error.what()));
+    throw SceneError(fmt::format("{}, or a file: a scene (.toml), a mesh (.obj, .ply) or a pattern (.json)", error.what()));
   }
 }
 

@@ -55,7 +55,8 @@ def _toml(key: str, value: typing.Any) -> str:
 
 
 def scene(name_or_file: str | os.PathLike[str], overrides: typing.Mapping[str, typing.Any] | None = None, **keys: typing.Any) -> Scene:
-    """A scene: one of drape.scenes(), or a file ending in .toml, with some keys set differently.
+    """A scene: one of drape.scenes(), or a file (.toml; a mesh, .obj or .ply; a pattern, .json), with some
+    keys set differently.
 
     Keys are given by their last words, if these tell them from others, or by their paths in a dictionary:
 

@@ -10,6 +10,7 @@
 #include <map>
 #include <set>
 
+#include "results/file/run_file.hpp"
 #include "solver/methods.hpp"
 #include "verify/support/bench_integrators.hpp"
 #include "verify/support/slow.hpp"
@@ -40,14 +41,57 @@ Words all_methods() {
 }
 const Words methods = all_methods();
 
+const char* const denim = R"({"density": 0.324, "stretching": [[205.352005, 10.234077, 1013.88629, 53.387184], [1, 2, 3, 4],
+    [1, 2, 3, 4], [1, 2, 3, 4], [1, 2, 3, 4], [1, 2, 3, 4]],
+    "bending": [[6e-5, 1, 1, 1, 1], [7e-5, 1, 1, 1, 1], [9e-5, 1, 1, 1, 1]]})";
+
 TEST(ProgramFabric, MakesKeysOfAMaterialOfArcsim) {
   const BenchIntegrators program;
-  program.write("denim.json", R"({"density": 0.324, "stretching": [[205.352005, 10.234077, 1013.88629, 53.387184], [1, 2, 3, 4],
-    [1, 2, 3, 4], [1, 2, 3, 4], [1, 2, 3, 4], [1, 2, 3, 4]],
-    "bending": [[6e-5, 1, 1, 1, 1], [7e-5, 1, 1, 1, 1], [9e-5, 1, 1, 1, 1]]})");
+  program.write("denim.json", denim);
   const std::string keys = program.output({"fabric", "denim.json"});
   EXPECT_THAT(keys, HasSubstr("[material]\ndensity = 0.324  # kg/m²\ntension = [410.70401, 2027.77258]  # N/m\n"));
   EXPECT_THAT(keys, HasSubstr("bend = [6e-05, 9e-05]  # N m\n"));
+}
+
+/// A scene keeps what the file says, not the file.
+TEST(ProgramFabric, OfArcsimIsTakenByScenes) {
+  const BenchIntegrators program;
+  program.write("denim.json", denim);
+  program.write("bad.json", "{}");
+  const Words run{"run",    "--scene", "hung-corners", "--set", "grid.n=4",       "--until", "0.02",     "--method", "bdf2",
+                  "--step", "0.01",    "--repeat",     "1",     "--no-reference", "--out",   "denim.h5", "--set"};
+  program.output(run + Words{"material.fabric=denim.json"});
+  const std::string scene = results::read_runs(program.folder() / "denim.h5").at(0).scene_toml;
+  EXPECT_THAT(scene, HasSubstr("\nmaterial.fabric = \"\"\nmaterial.density = 0.324\n"));
+  EXPECT_THAT(scene, HasSubstr("\nmaterial.tension = [410.70401, 2027.77258]\n"));
+  for (const auto& [file, why] :
+       {std::pair("bad.json", "bad.json: expected the key \"density\""), {"none.json", "none.json"}}) {
+    const ProgramResult result = program.run(run + Words{std::string("material.fabric=") + file});
+    EXPECT_EQ(result.exit_code, 2) << file;
+    EXPECT_THAT(result.err, HasSubstr(why));
+    EXPECT_EQ(lines(result.err).size(), 1u) << result.err;
+  }
+}
+
+TEST(ProgramRun, TakesAMeshFromItsFileToAPage) {
+  const BenchIntegrators program;
+  program.write("mm.obj", "v 0 0 0\nv 300 0 0\nv 300 300 0\nv 0 300 0\nf 1 2 3 4\n");
+  program.write("cloth.obj", "v 0 0 0.3\nv 0.3 0 0.3\nv 0.3 0.3 0.3\nv 0 0.3 0.3\nf 1 2 3 4\n");
+  const Words run{"run", "--method", "bdf2", "--step",   "0.02", "--until",
+                  "0.1", "--repeat", "1",    "--report", "page", "--scene"};
+  const ProgramResult result = program.run(run + Words{"cloth.obj"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("note: cloth.obj: The cloth cloth, 121 particles, hung by two corners; "));
+  EXPECT_THAT(result.out, HasSubstr("\nreport: page/index.html\n"));
+  const auto files = program.files();
+  EXPECT_THAT(files.at("page/index.html"), HasSubstr("\"trajectory\""));
+  for (const auto& [file, why] : {std::pair("mm.obj", "these may be millimetres"), {"none.ply", "none.ply: "}}) {
+    const ProgramResult wrong = program.run(run + Words{file});
+    EXPECT_EQ(wrong.exit_code, 2) << file;
+    EXPECT_THAT(wrong.err, HasSubstr(why));
+    EXPECT_EQ(lines(wrong.err).size(), 1u) << wrong.err;
+  }
+  EXPECT_EQ(program.files(), files) << "nothing else is written";
 }
 
 TEST(ProgramFabric, RefusesInOneLineWhatIsNoMaterial) {
@@ -162,7 +206,7 @@ TEST(ProgramHelp, OfTheProgramLeadsToItsSubcommands) {
 TEST(ProgramHelp, OfRunHasEveryOptionAndAllThatThereIsToChooseFrom) {
   const BenchIntegrators program;
   const std::string help = program.output({"run", "--help"});
-  expect_all_in(help, {"--scene NAME|FILE.toml", "--method A,B", "--step H1,H2", "--until T", "--set key=value", "--repeat R",
+  expect_all_in(help, {"--scene NAME|FILE", "--method A,B", "--step H1,H2", "--until T", "--set key=value", "--repeat R",
                        "--out FILE.h5", "--format table|csv|json", "--no-reference", "--trajectory every=SECONDS",
                        "--loop-tolerance", "--cg-tolerance", "--max-updates", "--verlet-fraction", "--control MIN MAX",
                        "--resume", "--time-limit SECONDS", "--memory-limit MB"});

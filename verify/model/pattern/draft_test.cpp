@@ -224,7 +224,7 @@ TEST(Pattern, IsReadByTheEndOfItsName) {
     }
     return "no error";
   };
-  EXPECT_EQ(message("skirt.dxf"), "skirt.dxf: expected a pattern, whose name ends in .json (GarmentCode), .toml or .obj");
+  EXPECT_EQ(message("skirt.dxf"), "skirt.dxf: expected a pattern, whose name ends in .json (GarmentCode), .toml, .obj or .ply");
   for (const char* missing : {"none.json", "none.toml", "none.obj"})
     EXPECT_THAT(message(missing), HasSubstr(fmt::format("{}: ", missing)));
 }

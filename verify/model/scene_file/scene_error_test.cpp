@@ -287,7 +287,7 @@ TEST(SceneError, OfASceneWithoutAName) {
 TEST(SceneError, OfAnUnknownSceneSaysTheNamesOfAll) {
   const std::string said = message([] { load_scene("hung-egde"); });
   EXPECT_THAT(said, AllOf(StartsWith("unknown scene 'hung-egde' (did you mean hung-edge?): expected "),
-                          HasSubstr("a file ending in .toml")));
+                          HasSubstr("or a file: a scene (.toml), a mesh (.obj, .ply)")));
   for (const auto& scene : model::builtin_scenes()) EXPECT_THAT(said, HasSubstr(std::string(scene.name)));
 }
 
