@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <stdexcept>
 #include <string_view>
 
@@ -30,8 +29,7 @@ bool is_pattern(const std::string& file) {
 model::Scene load_pattern(const std::string& file, const std::vector<model::Override>& overrides) {
   const std::string text = model::to_toml(model::sew(model::read_pattern(file), model::usual_spacing));
   model::Scene loaded = model::parse_scene(text, file, overrides);
-  fmt::print(stderr, "note: {}: {}; to change more than keys: bench/run pattern {} >my.toml\n", base::printable(file),
-             base::printable(loaded.description), base::printable(file));
+  say_note(fmt::format("{}: {}; to change more than keys: bench/run pattern {} >my.toml", file, loaded.description, file));
   return loaded;
 }
 
