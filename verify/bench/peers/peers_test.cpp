@@ -187,12 +187,12 @@ TEST_F(ProgramPeers, WriteMotionsThatScoreMeasuresAsTheyDo) {
   if (const std::string what = bench::peers::missing(*peer.simulator); !what.empty()) GTEST_SKIP() << what;
   const auto rows = nlohmann::json::parse(
       program.output(Words{"peers"} + scene +
-                     Words{"--peer", "petsc-verlet", "--step", "0.001,0.0005", "--out", "motions", "--format", "json"}));
+                     Words{"--peer", "petsc-verlet", "--step", "0.005,0.0025", "--out", "motions", "--format", "json"}));
   ASSERT_THAT(rows, SizeIs(2));
   EXPECT_GT(rows[0].at("error_3"), rows[1].at("error_3"));
   const auto scored = nlohmann::json::parse(
       program.output(Words{"score"} + scene + Words{"--method", "imex-euler", "--repeat", "1", "--format", "json"} +
-                     Words{"motions/petsc-verlet-0.001.h5"}));
+                     Words{"motions/petsc-verlet-0.005.h5"}));
   const auto& frames = scored.at("score");
   ASSERT_THAT(frames, SizeIs(11));
   EXPECT_NEAR(frames[10].at("rms").get<double>() * 0.76, rows[0].at("error_3"), 1e-3 * rows[0].at("error_3").get<double>());
