@@ -60,7 +60,7 @@ const std::vector<BadInput> bad_inputs = {
     // Names.
     {"Kind", {"list", "colours"}, {"'colours'", "scenes, methods, studies"}},
     {"Scene", run_with("--scene", {"flag"}), {"'flag'", "hung-corners, hung-edge", ".toml"}},
-    {"MeshForAScene", run_with("--scene", {"open.obj"}), {"open.obj: ", "ending in .toml", "pattern"}},
+    {"MeshForAScene", run_with("--scene", {"open.obj"}), {"open.obj: ", "expected four corners", "not 3"}},
     {"Method", run_with("--method", {"rk9"}), {"'rk9'", "imex-euler, implicit-euler, sbdf2, bdf2"}},
     {"OneOfTheMethods", run_with("--method", {"bdf2,rk9"}), {"'rk9'", "imex-euler, implicit-euler, sbdf2, bdf2"}},
     {"LinearSolver", run_with("--method", {"bdf2/lu"}), {"'lu'", "auto, ic0, mic0, cholesky, multigrid"}},

@@ -79,19 +79,19 @@ TEST(Pattern, PanelsAreFilledHoweverTheyGoRound) {
   const std::string backwards = R"({"endpoints": [0, 3]}, {"endpoints": [3, 2]}, {"endpoints": [2, 1]}, {"endpoints": [1, 0]})";
   const auto one = model::sew(read(json("\"a\": " + panel(square, around))), 0.1).scene;
   const auto other = model::sew(read(json("\"a\": " + panel(square, backwards))), 0.1).scene;
-  ASSERT_EQ(one.panels.size(), 1);
-  const model::Grid& grid = one.panels[0].grid;
+  EXPECT_TRUE(one.panels.empty()) << "one piece is a sheet";
+  const model::Grid& grid = one.sheet.grid;
   EXPECT_EQ(grid.nu, 11);
   EXPECT_EQ(grid.nv, 11);
   expect_near(grid.parameters().row(grid.index(3, 2)).transpose(), Vector3d(0.3, 0.2, 0));
-  EXPECT_EQ(grid.parameters(), other.panels[0].grid.parameters());
+  EXPECT_EQ(grid.parameters(), other.sheet.grid.parameters());
 }
 
 /// y of a pattern points up, z towards the viewer, who stands at −y.
 TEST(Pattern, PanelsAreWhereTheyArePlaced) {
   const auto corner = [](const std::string& rotation, int a, int b) -> Vector3d {
     const auto scene = model::sew(read(json("\"a\": " + panel(square, around, "[10, 20, 30]", rotation))), 0.5).scene;
-    return Garment(scene).start().x.row(scene.panels[0].grid.index(a, b));
+    return Garment(scene).start().x.row(scene.sheet.grid.index(a, b));
   };
   expect_near(corner("[0, 0, 0]", 0, 0), Vector3d(0.1, -0.3, 0.2));
   expect_near(corner("[0, 0, 0]", 2, 0), Vector3d(1.1, -0.3, 0.2));
