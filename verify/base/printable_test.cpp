@@ -87,7 +87,8 @@ TEST(NearestName, IsWhatMayHaveBeenMeant) {
 
 TEST(NearestName, IsNoneIfNoneIsNear) {
   const std::vector<std::string_view> names{"bdf2", "midpoint"};
-  for (const std::string name : {"rk4", "", "verlet", "xxxxxxxxxxxx", "fbd2"}) EXPECT_EQ(base::nearest_name(name, names), "") << name;
+  for (const std::string name : {"rk4", "", "verlet", "xxxxxxxxxxxx", "fbd2"})
+    EXPECT_EQ(base::nearest_name(name, names), "") << name;
   EXPECT_EQ(base::nearest_name(std::string(1 << 20, 'm'), names), "");
   EXPECT_EQ(base::nearest_name("bdf2", {}), "");
 }
