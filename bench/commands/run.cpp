@@ -126,8 +126,8 @@ void run(const RunArguments& a) {
   }
   if (output.format != "table")
     throw std::invalid_argument("--report: expected --format table beside it, which it prints as well");
-  constexpr double frame = 0.04;  // [s]
-  if (!output.sweep.frames_every) output.sweep.frames_every = frame;
+  constexpr double frame_spacing = 0.04;  // [s]
+  if (!output.sweep.frames_every) output.sweep.frames_every = frame_spacing;
   base::create_folder(a.report);
   report({sweep_and_print(groups, output, "run")}, a.report);
 }
