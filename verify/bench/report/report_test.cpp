@@ -429,8 +429,8 @@ void expect_looks(const json& seen) {
   std::map<std::string, std::string> colours, names;
   for (const json& curve : seen.at("curves")) {
     const std::string name = curve.at("name"), method = name.substr(0, name.find_first_of("/:,"));
-    const std::string look = curve.at("figure").get<std::string>() + curve.at("look").get<std::string>();
-    EXPECT_EQ(names.emplace(look, name).first->second, name) << curve;
+    const std::string of_curve = curve.at("figure").get<std::string>() + curve.at("look").get<std::string>();
+    EXPECT_EQ(names.emplace(of_curve, name).first->second, name) << curve;
     EXPECT_EQ(colours.emplace(method, curve.at("colour")).first->second, curve.at("colour")) << curve;
   }
   EXPECT_THAT(colours, AllOf(Contains(testing::Key("bdf2")), Contains(testing::Key("sbdf2"))));
