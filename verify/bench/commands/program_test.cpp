@@ -485,6 +485,7 @@ class Completed {
 };
 
 TEST(ProgramCompletion, ProposesCommandsOptionsAndNames) {
+  DRAPE_SLOW();
   const BenchIntegrators program;
   const Completed completed(program);
   program.write("scene_of_mine.toml", "");
@@ -510,6 +511,7 @@ TEST(ProgramCompletion, ProposesCommandsOptionsAndNames) {
 }
 
 TEST(ProgramMan, HasAllThatHelpHas) {
+  DRAPE_SLOW();
   const BenchIntegrators program;
   std::string page = program.output({"man"});
   EXPECT_THAT(page, StartsWith(".TH BENCH_INTEGRATORS 1 "));
