@@ -1,7 +1,6 @@
 // MuJoCo on springs: each particle is a body with three slides, each spring a tendon between the sites of two.
 
-const {load, main, solve} = require("./program.js");
-const {arena, requireNoReset} = require("./mujoco_limits.js");
+const {root, run} = require("./mujoco_run.js");
 
 function particle(problem, i) {
   const x = problem.positions.slice(3 * i, 3 * i + 3).join(" ");
@@ -20,33 +19,12 @@ function spring(problem, k) {
 
 const list = (all, one) => Array.from(all, (_, k) => one(k)).join("\n");
 
-function model(problem) {
-  return `<mujoco><option timestep="${problem.step}" integrator="${problem.integrator}" gravity="${
-             problem.gravity.join(" ")}">` +
-      `<flag contact="disable"/></option><size memory="${arena}"/>
-<worldbody>${list(problem.mass, i => particle(problem, i))}</worldbody>
-<tendon>${list(problem.ends, k => spring(problem, k))}</tendon></mujoco>`;
-}
+const model = problem => root(problem, `<worldbody>${list(problem.mass, i => particle(problem, i))}</worldbody>
+<tendon>${list(problem.ends, k => spring(problem, k))}</tendon>`);
 
-main(async problem => {
-  const {version, exported} = await load("@mujoco/mujoco", "mujoco.js");
-  const mujoco = await exported.default();
-  const compiled = mujoco.MjModel.from_xml_string(model(problem));
-  const data = new mujoco.MjData(compiled);
-  const free = problem.mass.map((_, i) => i).filter(i => !problem.pinned.includes(i));
-  free.forEach((i, place) => {
-    for (let c = 0; c < 3; ++c) data.qvel[3 * place + c] = problem.velocities[3 * i + c];
-  });
-  const frame = () => {
-    requireNoReset(data);
-    const x = [...problem.positions], v = [...problem.velocities], q = data.qpos, w = data.qvel;
-    free.forEach((i, place) => {
-      for (let c = 0; c < 3; ++c) {
-        x[3 * i + c] += q[3 * place + c];
-        v[3 * i + c] = w[3 * place + c];
-      }
-    });
-    return [x, v];
-  };
-  return solve(problem, `MuJoCo ${version}`, () => mujoco.mj_step(compiled, data), frame);
+/** Slides are what a particle has moved by. */
+run(model, (problem, {data, forFree}) => {
+  const x = [...problem.positions], q = data.qpos;
+  forFree((one, own) => x[one] += q[own]);
+  return x;
 });
