@@ -46,11 +46,7 @@ void export_scene(const ExportArguments& a) {
 void add_export(CLI::App& app) {
   CLI::App& command = *app.add_subcommand("export", "a scene with its reference as a benchmark for other simulators");
   const auto a = std::make_shared<ExportArguments>();
-  command
-      .add_option("--scene", a->choice.scene,
-                  "built-in scene, or a file: a scene (.toml), a mesh (.obj, .ply) or a pattern (.json)")
-      ->required()
-      ->type_name("NAME|FILE");
+  add_scene_option(command, a->choice);
   command.add_option("--out", a->out, "new or empty folder for it")->required()->type_name("DIR")->check(output_name());
   add_overrides(command, a->choice);
   command.add_option("--every", a->every, "simulated seconds between two frames of the reference")

@@ -92,7 +92,7 @@ void run_peers(const PeersArguments& a) {
 void add_peers(CLI::App& app) {
   CLI::App& command = *app.add_subcommand("peers", "run other simulators on a scene and measure them by the reference");
   const auto a = std::make_shared<PeersArguments>();
-  command.add_option("--scene", a->choice.scene, "built-in scene or TOML file")->required()->type_name("NAME|FILE.toml");
+  add_scene_option(command, a->choice);
   command.add_option("--peer", a->peers, "peers; names: list peers")
       ->required()
       ->type_name("A,B")

@@ -200,11 +200,7 @@ void add_run(CLI::App& app, const std::string& command_line) {
   CLI::App& command = *app.add_subcommand("run", "run methods on a scene and compare them with the reference");
   const auto a = std::make_shared<RunArguments>();
   a->output.sweep.command_line = command_line;
-  command
-      .add_option("--scene", a->choice.scene,
-                  "built-in scene, or a file: a scene (.toml), a mesh (.obj, .ply) or a pattern (.json)")
-      ->required()
-      ->type_name("NAME|FILE");
+  add_scene_option(command, a->choice);
   command
       .add_option(
           "--method", a->methods,

@@ -2,9 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <stdexcept>
-#include <string_view>
 
 #include "bench/runs/available_memory.hpp"
 #include "bench/runs/verbosity.hpp"
@@ -19,13 +17,7 @@ namespace drape::bench {
 
 namespace {
 
-constexpr std::string_view pattern_endings[] = {".obj", ".ply", ".json"};
-
 /// A mesh or a sewing pattern becomes the scene that the command `pattern` prints.
-bool is_pattern(const std::string& file) {
-  return std::ranges::any_of(pattern_endings, [&](std::string_view ending) { return file.ends_with(ending); });
-}
-
 model::Scene load_pattern(const std::string& file, const std::vector<model::Override>& overrides) {
   const std::string text = model::to_toml(model::sew(model::read_pattern(file), model::usual_spacing));
   model::Scene loaded = model::parse_scene(text, file, overrides);
@@ -38,7 +30,7 @@ model::Scene load_pattern(const std::string& file, const std::vector<model::Over
 model::Scene SceneChoice::load() const {
   std::vector<model::Override> overrides;
   for (const std::string& text : sets) overrides.push_back(model::parse_override(text));
-  model::Scene loaded = is_pattern(scene) ? load_pattern(scene, overrides) : model::load_scene(scene, overrides);
+  model::Scene loaded = model::is_pattern(scene) ? load_pattern(scene, overrides) : model::load_scene(scene, overrides);
   require_memory(loaded);
   try {
     model::require_bodies(loaded);
@@ -49,6 +41,14 @@ model::Scene SceneChoice::load() const {
   }
   if (model::is_at_rest(loaded)) say_note(fmt::format("in the scene {} {}", loaded.name, model::at_rest_remark));
   return loaded;
+}
+
+void add_scene_option(CLI::App& command, SceneChoice& choice) {
+  command
+      .add_option("--scene", choice.scene,
+                  "built-in scene, or a file: a scene (.toml), a mesh (.obj, .ply) or a pattern (.json)")
+      ->required()
+      ->type_name("NAME|FILE");
 }
 
 void add_overrides(CLI::App& command, SceneChoice& choice) {

@@ -17,6 +17,9 @@ struct SceneChoice {
   model::Scene load() const;
 };
 
+/// The option --scene, where there has to be one.
+void add_scene_option(CLI::App& command, SceneChoice& choice);
+
 /// The option --set.
 void add_overrides(CLI::App& command, SceneChoice& choice);
 

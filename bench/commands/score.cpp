@@ -41,11 +41,7 @@ void add_score(CLI::App& app, const std::string& command_line) {
   CLI::App& command = *app.add_subcommand("score", "measure another simulator's motion of a scene against the reference");
   const auto a = std::make_shared<ScoreArguments>();
   a->output.sweep.command_line = command_line;
-  command
-      .add_option("--scene", a->choice.scene,
-                  "built-in scene, or a file: a scene (.toml), a mesh (.obj, .ply) or a pattern (.json)")
-      ->required()
-      ->type_name("NAME|FILE");
+  add_scene_option(command, a->choice);
   command
       .add_option("FILE", a->files,
                   "an HDF5 file with /time, /positions and maybe /velocities, or meshes (OBJ, PLY, VTK, VTU), one a frame")

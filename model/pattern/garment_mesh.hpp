@@ -2,9 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <map>
 #include <string>
-#include <tuple>
 #include <vector>
 
 namespace drape::model {
@@ -36,16 +34,6 @@ struct MeshCorner {
 
 /// Puts triangles of a polygon into a mesh. Throws SceneError with its line unless it has three corners.
 void add_polygon(GarmentMesh& mesh, const std::vector<MeshCorner>& corners, int line);
-
-/// The places of vertices on the pattern: exporters write the same coordinates again and again.
-class MeshPlaces {
- public:
-  /// That of a vertex with these coordinates, a new one of the mesh if it has none.
-  int of(GarmentMesh& mesh, int vertex, const Eigen::Vector2d& coordinates);
-
- private:
-  std::map<std::tuple<int, double, double>, int> known_;
-};
 
 /// Vertices in one place become one: some programs write the corners of every face, or those of every place on the pattern.
 void weld(GarmentMesh& mesh);

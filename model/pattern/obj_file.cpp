@@ -2,9 +2,12 @@
 
 #include <charconv>
 #include <cmath>
+#include <map>
 #include <sstream>
 #include <string_view>
+#include <tuple>
 #include <utility>
+#include <vector>
 
 #include "model/keys/scene_error.hpp"
 #include "model/pattern/garment_mesh.hpp"
@@ -58,6 +61,13 @@ class ObjReader {
     return place;
   }
 
+  /// The place on the pattern that a vertex has: exporters write the same coordinates again and again.
+  int place_of(int vertex, const Eigen::Vector2d& p) {
+    const auto [found, is_new] = places_.try_emplace({vertex, p.x(), p.y()}, static_cast<int>(mesh_.places.size()));
+    if (is_new) mesh_.places.push_back(p);
+    return found->second;
+  }
+
   void read_polygon(std::istringstream& words) {
     std::vector<MeshCorner> corners;
     for (std::string word; words >> word;) {
@@ -71,14 +81,14 @@ class ObjReader {
         mesh_.fail(line_, fmt::format("'{}': expected texture coordinates, which are those of the pattern (v/vt)",
                                       base::quoted(text)));
       const int place = index(coordinates, coordinates_.size(), "texture coordinates");
-      corner.place = places_.of(mesh_, corner.vertex, coordinates_[static_cast<std::size_t>(place)]);
+      corner.place = place_of(corner.vertex, coordinates_[static_cast<std::size_t>(place)]);
     }
     add_polygon(mesh_, corners, line_);
   }
 
   GarmentMesh mesh_;
   std::vector<Eigen::Vector2d> coordinates_;
-  MeshPlaces places_;
+  std::map<std::tuple<int, double, double>, int> places_;
   int line_ = 0;
 };
 
@@ -94,13 +104,6 @@ void add_polygon(GarmentMesh& mesh, const std::vector<MeshCorner>& corners, int 
     const MeshCorner &a = corners[0], &b = corners[k - 1], &c = corners[k];
     mesh.faces.push_back({{a.vertex, b.vertex, c.vertex}, {a.place, b.place, c.place}, line});
   }
-}
-
-int MeshPlaces::of(GarmentMesh& mesh, int vertex, const Eigen::Vector2d& coordinates) {
-  const auto [found, is_new] =
-      known_.try_emplace({vertex, coordinates.x(), coordinates.y()}, static_cast<int>(mesh.places.size()));
-  if (is_new) mesh.places.push_back(coordinates);
-  return found->second;
 }
 
 GarmentMesh read_obj(const std::string& file) { return ObjReader(file).read(pattern_text(file)); }

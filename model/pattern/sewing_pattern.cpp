@@ -45,6 +45,11 @@ constexpr PatternFormat pattern_formats[] = {
 
 std::string SewingPattern::place(std::size_t panel) const { return fmt::format("{}: panel {}", file, panels[panel].name); }
 
+bool is_pattern(const std::string& file) {
+  return std::ranges::any_of(
+      pattern_formats, [&](const PatternFormat& format) { return format.ending != ".toml" && file.ends_with(format.ending); });
+}
+
 SewingPattern read_pattern(const std::string& file) {
   for (const auto& [ending, read] : pattern_formats)
     if (file.ends_with(ending)) return read(file);

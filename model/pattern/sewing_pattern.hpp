@@ -50,6 +50,9 @@ struct SewingPattern {
   std::string place(std::size_t panel) const;
 };
 
+/// Whether a file's name ends as those of patterns and meshes do. One that ends in .toml may be a scene.
+bool is_pattern(const std::string& file);
+
 /// A pattern in the format that the end of the file's name tells. Lengths become metres. Throws SceneError, naming the panel
 /// and the edge, unless it can be sewn.
 SewingPattern read_pattern(const std::string& file);
