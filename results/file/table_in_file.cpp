@@ -6,6 +6,7 @@
 #include <iterator>
 #include <limits>
 #include <sstream>
+#include <stdexcept>
 
 #include "results/file/dimensions.hpp"
 #include "results/file/schema_4.hpp"
@@ -41,9 +42,15 @@ void write_texts(const Handle& group, const Column& column) {
     hdf5::write_texts(group, standings_of(column.name), standings, "met, open or missed; empty: the text beside it classifies");
 }
 
-/// A column has one type in the file: text, whole numbers if all its cells are such, else real numbers, NaN for none.
+bool is_number(const Datum& cell) { return is<double>(cell) || is<std::int64_t>(cell); }
+bool is_text(const Datum& cell) { return is<std::string>(cell) || is<Verdict>(cell); }
+
+/// A column has one type in the file: text, whole numbers if all its cells are such, else real numbers, NaN for none. Throws
+/// std::logic_error where that would lose a cell.
 void write_column(const Handle& group, const Column& column) {
   const auto& [name, title, unit, description, role, cells, shown, classes, in_group, part] = column;
+  if (unit.empty() ? std::ranges::any_of(cells, is_number) : std::ranges::any_of(cells, is_text))
+    throw std::logic_error(fmt::format("column '{}': numbers need a unit (\"1\" for none), texts have none", name));
   if (unit.empty()) {
     write_texts(group, column);
   } else if (!cells.empty() && std::ranges::all_of(cells, is<std::int64_t>)) {

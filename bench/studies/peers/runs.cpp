@@ -146,9 +146,10 @@ void run_entrant(PeerRun& run, const PeerSheet& sheet, const reference::Trajecto
 
 }  // namespace
 
+bool Entrant::divides_steps() const { return !is_peer && solver::method(name).sub_steps; }
+
 std::string Entrant::setting() const {
-  return !is_peer && solver::method(name).sub_steps ? fmt::format("{}, {:g} of its limit", name, value)
-                                                    : fmt::format("{}, h = {:g} s", name, value);
+  return divides_steps() ? fmt::format("{}, {:g} of its limit", name, value) : fmt::format("{}, h = {:g} s", name, value);
 }
 
 double PeerRun::error() const { return base::largest(std::vector(errors.begin(), errors.end())); }

@@ -23,6 +23,7 @@ struct Entrant {
   bool is_peer = false;
   double value = 0;  ///< step [s], or fraction of the stability limit of a method that divides its steps
 
+  bool divides_steps() const;
   std::string setting() const;  ///< "bullet-explicit, h = 0.001 s", "verlet, 0.9 of its limit"
 };
 

@@ -15,6 +15,9 @@ using solver::Vectors;
 constexpr int long_block = 128, short_block = 32;
 constexpr int cached_particles = 20'000;
 
+/// Columns between a block and the one that is fetched meanwhile: memory takes longer to answer than a block takes to compute.
+constexpr int fetch_lead = 64;
+
 /// Distance of coordinates where there is no column, so that no edge has the length 0.
 constexpr double far = 1e100;
 
@@ -184,7 +187,8 @@ void FusedForces::operator()(const Vectors& x, const Vectors& v, Vectors& f) {
     if (b == grid_.nv + 1) clear_warp(before);
     for (Columns columns{0, 0}; columns.end < length_; columns.begin = columns.end) {
       columns.end = std::min(columns.begin + (fetches_ ? short_block : long_block), length_);
-      const std::ptrdiff_t next = 3 * (grid_.index(0, b) + static_cast<std::ptrdiff_t>(columns.end) + column_block);
+      const std::ptrdiff_t next =
+          3 * (grid_.index(0, b) + static_cast<std::ptrdiff_t>(columns.end) + column_block + fetch_lead);
       if (b < grid_.nv) read(b, columns, x, line.x);
       if (b < grid_.nv && velocities) read(b, columns, v, line.v);
       if (b > 1) write(b - 2, columns, line, before, f);

@@ -264,6 +264,17 @@ TEST(RunFile, NamesDimensionsForOthersAlsoOfWhatAnEarlierStartWrote) {
   EXPECT_EQ(as_text(read_runs(file.path()).front()), as_text(full_record()));
 }
 
+TEST(RunFile, RefusesTablesWhoseColumnsWouldLoseCells) {
+  const base::TemporaryFolder folder;
+  RunFile file(folder / "runs.h5", {});
+  const auto add = [&](const Column& one) { file.add(Table{"lossy", "", {one}}); };
+  EXPECT_THROW(add(column("step", "", Role::key, {"a", 0.5})), std::logic_error);
+  EXPECT_THROW(add(column("step", "", Role::key, {std::int64_t{3}})), std::logic_error);
+  EXPECT_THROW(add(column("step", "s", Role::key, {0.5, "a"})), std::logic_error);
+  EXPECT_THROW(add(column("step", "s", Role::verdict, {Verdict{Standing::met, "1"}})), std::logic_error);
+  EXPECT_NO_THROW(file.add(Table{"whole", "", {column("step", "s", Role::key, {0.5, Datum()})}}));
+}
+
 // --- Nothing that was recorded is lost -----------------------------------------------------------------------------------
 
 RunRecord numbered_record(int number) {
