@@ -219,7 +219,8 @@ TEST(ProgramHelp, OfTheOthersSaysWhatTheyTake) {
   const BenchIntegrators program;
   expect_all_in(program.output({"study", "--help"}),
                 {"study [OPTIONS] NAME", "--quick", "--repeat R", "--out FILE.h5", "--format table|csv|json", "hung-sheets"});
-  expect_all_in(program.output({"list", "--help"}), {"list [OPTIONS] [KIND]", "scenes, methods, studies, fabrics or peers"});
+  expect_all_in(program.output({"list", "--help"}),
+                {"list [OPTIONS] [KIND]", "scenes, methods, studies, forces, fabrics or peers"});
 }
 
 /// All that reads like help, wherever it is printed.
@@ -505,7 +506,7 @@ TEST(ProgramCompletion, ProposesCommandsOptionsAndNames) {
   EXPECT_THAT(completed("bench/run run --format "), testing::ElementsAre("table", "csv", "json"));
   EXPECT_THAT(completed("bench/run run --step "), IsEmpty());
   EXPECT_THAT(completed("bench/run study hung"), testing::ElementsAre("hung-sheets"));
-  EXPECT_THAT(completed("bench/run list "), testing::ElementsAre("scenes", "methods", "studies", "fabrics", "peers"));
+  EXPECT_THAT(completed("bench/run list "), testing::ElementsAre("scenes", "methods", "studies", "forces", "fabrics", "peers"));
   EXPECT_THAT(completed("bench/run inspect scene_"), testing::ElementsAre("scene_of_mine.toml"));
   EXPECT_THAT(completed("bench/run inspect a.h5 --"), AllOf(Contains("--table"), Not(Contains("--scene"))));
 }
