@@ -4,16 +4,15 @@
 #include <vector>
 
 #include "bench/commands/commands.hpp"
+#include "bench/commands/force_check.hpp"
 #include "bench/commands/help.hpp"
 #include "bench/commands/output.hpp"
 #include "bench/commands/scene_choice.hpp"
-#include "model/force_check.hpp"
 #include "results/columns.hpp"
 
 namespace drape::bench {
 namespace {
 
-using model::ForceCheck;
 using results::ColumnOf;
 using results::field;
 using results::Role;
@@ -32,7 +31,7 @@ constexpr ColumnOf<ForceCheck> force_columns[] = {
 };
 
 int check(const SceneChoice& choice, const std::string& format) {
-  const std::vector<ForceCheck> rows = model::check_forces(choice.load());
+  const std::vector<ForceCheck> rows = check_forces(choice.load());
   print_table(
       results::make_table("forces", "Energies and Jacobians of the scene's forces, against differences", force_columns, rows),
       format);

@@ -1,4 +1,4 @@
-#include "model/force_check.hpp"
+#include "bench/commands/force_check.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,10 +8,13 @@
 #include "model/panel_forces.hpp"
 #include "model/phases.hpp"
 #include "model/sheet/edges.hpp"
+#include "solver/base/largest.hpp"
 #include "solver/base/noise.hpp"
 
-namespace drape::model {
+namespace drape::bench {
 namespace {
+
+using solver::Vectors;
 
 constexpr double largest_difference = 1e-6;
 constexpr double difference_step = 1e-5;  ///< of the direction, whose components are up to an edge long
@@ -32,15 +35,15 @@ double relative_error(const Vectors& differences, const Vectors& product, double
 /// One panel in motion, the directions of derivatives, and the force of one term.
 class Differences {
  public:
-  explicit Differences(const Sheet& sheet, const Start& start)
-      : grid_(sheet.grid), normals_(sheet.grid), at_(start_of(sheet.grid, start)) {
-    const auto [weft, warp] = shortest_edges(grid_);
+  explicit Differences(const model::Sheet& sheet, const model::Start& start)
+      : grid_(sheet.grid), normals_(sheet.grid), at_(model::start_of(sheet.grid, start)) {
+    const auto [weft, warp] = model::shortest_edges(grid_);
     const double l = std::min(weft, warp);
     at_.x += l / 4 * random(1), at_.v += l * random(2);
     dx_ = l * random(3), dv_ = l * random(4);
   }
 
-  ForceCheck check(std::string_view name, const Term& term) const {
+  ForceCheck check(std::string_view name, const model::Term& term) const {
     const Vectors rest = Vectors::Zero(at_.x.rows(), 3);
     const auto by_x = [&](double s) { return force(term, at_.x + s * dx_, at_.v); };
     const auto by_v = [&](double s) { return force(term, at_.x, at_.v + s * dv_); };
@@ -62,33 +65,33 @@ class Differences {
     return Eigen::Map<const Vectors>(base::noise(3 * grid_.particles(), seed).data(), grid_.particles(), 3);
   }
 
-  Vectors normals_at(const Term& term, const Vectors& x) const {
+  Vectors normals_at(const model::Term& term, const Vectors& x) const {
     Vectors normals(term.needs_normals ? x.rows() : 0, 3);
     if (term.needs_normals) normals_.evaluate(x, normals);
     return normals;
   }
 
-  Vectors force(const Term& term, const Vectors& x, const Vectors& v) const {
+  Vectors force(const model::Term& term, const Vectors& x, const Vectors& v) const {
     Vectors f = Vectors::Zero(x.rows(), 3);
-    if (term.law.acts()) FusedForces(grid_, term.law)(x, v, f);
+    if (term.law.acts()) model::FusedForces(grid_, term.law)(x, v, f);
     if (term.force) term.force({0, x, v, normals_at(term, x)}, f);
     return f;
   }
 
   /// The Jacobians times the directions.
-  std::pair<Vectors, Vectors> products(const Term& term) const {
+  std::pair<Vectors, Vectors> products(const model::Term& term) const {
     std::pair all(Vectors(Vectors::Zero(dx_.rows(), 3)), Vectors(Vectors::Zero(dx_.rows(), 3)));
     const auto times = [](const Vectors& direction, Vectors& product) {
       return [&](int i, int j, const Eigen::Matrix3d& block) { product.row(i) += direction.row(j) * block.transpose(); };
     };
     if (term.jacobian)
       term.jacobian({0, at_.x, at_.v, normals_at(term, at_.x)},
-                    {Curvature::exact, times(dx_, all.first), times(dv_, all.second)});
+                    {model::Curvature::exact, times(dx_, all.first), times(dv_, all.second)});
     return all;
   }
 
-  Grid grid_;
-  Normals normals_;
+  model::Grid grid_;
+  model::Normals normals_;
   solver::State at_;
   Vectors dx_, dv_;
 };
@@ -99,12 +102,12 @@ bool ForceCheck::agrees() const {
   return by_x <= largest_difference && by_v <= largest_difference && energy.value_or(0) <= largest_difference;
 }
 
-std::vector<ForceCheck> check_forces(const Scene& scene) {
+std::vector<ForceCheck> check_forces(const model::Scene& scene) {
   std::vector<ForceCheck> all;
-  const Garment garment(phases(scene).front());
-  for (const Garment::Panel& panel : garment.panels()) {
+  const model::Garment garment(model::phases(scene).front());
+  for (const model::Garment::Panel& panel : garment.panels()) {
     const Differences differences(panel.sheet, panel.start);
-    const PanelForces forces(panel.sheet);
+    const model::PanelForces forces(panel.sheet);
     for (const auto& [name, term] : forces.terms()) {
       if (term.memory) continue;
       const ForceCheck found = differences.check(name, term);
@@ -113,11 +116,11 @@ std::vector<ForceCheck> check_forces(const Scene& scene) {
         all.push_back(found);
         continue;
       }
-      same->by_x = std::max(same->by_x, found.by_x), same->by_v = std::max(same->by_v, found.by_v);
-      if (found.energy) same->energy = std::max(same->energy.value_or(0), *found.energy);
+      same->by_x = base::larger(same->by_x, found.by_x), same->by_v = base::larger(same->by_v, found.by_v);
+      if (found.energy) same->energy = base::larger(same->energy.value_or(0), *found.energy);
     }
   }
   return all;
 }
 
-}  // namespace drape::model
+}  // namespace drape::bench

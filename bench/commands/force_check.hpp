@@ -6,7 +6,7 @@
 
 #include "model/scene.hpp"
 
-namespace drape::model {
+namespace drape::bench {
 
 /// What a force says of its derivatives, against central differences, along a direction in which every particle moves. Errors
 /// are the largest in a component, over the largest component of derivative and force.
@@ -21,6 +21,6 @@ struct ForceCheck {
 
 /// All forces of a scene, of panels the worst, except those that remember the motion. The sheet is at its start, deformed by a
 /// quarter of the shortest edge. Throws as compile.
-std::vector<ForceCheck> check_forces(const Scene& scene);
+std::vector<ForceCheck> check_forces(const model::Scene& scene);
 
-}  // namespace drape::model
+}  // namespace drape::bench
