@@ -72,10 +72,10 @@ std::vector<int> held(const model::Scene& scene, const model::Cloth& cloth) {
   return particles;
 }
 
-/// One sheet of equal cells with our own forces, smooth and without memory.
+/// One sheet of equal cells, smooth and without memory.
 bool is_plain(const model::Scene& scene, const model::Cloth& cloth) {
-  return scene.panels.empty() && scene.sheet.grid.uniform() && scene.sheet.added.empty() && model::phases(scene).size() == 1 &&
-         !cloth.ode.has_contacts() && !cloth.ode.memory && !cloth.ode.step_forces;
+  return scene.panels.empty() && scene.sheet.grid.uniform() && model::phases(scene).size() == 1 && !cloth.ode.has_contacts() &&
+         !cloth.ode.memory && !cloth.ode.step_forces;
 }
 
 void set_particles(Problem& problem, const model::Scene& scene, const model::Cloth& cloth) {
