@@ -14,7 +14,7 @@ namespace drape::model {
 
 /// A key of scenes: a row of ours, or a parameter of a force that was added.
 struct SceneKey : KeyInfo {
-  SceneKey(const Key<Scene>& row) : KeyInfo(row), unit_of(row.unit_of), read(row.read), data(row.data) {}  // NOLINT
+  explicit SceneKey(const Key<Scene>& row) : KeyInfo(row), unit_of(row.unit_of), read(row.read), data(row.data) {}
   SceneKey(const KeyInfo& info, std::function<void(const Value&, Scene&)> own_read, std::function<Data(const Scene&)> own_data)
       : KeyInfo(info), read(std::move(own_read)), data(std::move(own_data)) {}
 
@@ -22,7 +22,7 @@ struct SceneKey : KeyInfo {
 
   std::string_view (*unit_of)(const Scene&) = nullptr;
   std::function<void(const Value&, Scene&)> read;
-  std::function<Data(const Scene&)> data;  ///< empty: the scene does without the key
+  std::function<Data(const Scene&)> data;  ///< gives none if the scene does without the key
 };
 
 /// All keys of scene files in the order in which they are read and written. The table is the only place that knows a key.
