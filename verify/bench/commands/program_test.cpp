@@ -172,7 +172,7 @@ TEST(ProgramList, HasTheNamesThatOtherProgramsRelyOn) {
 TEST(ProgramList, DescribesTheNamesOfAllKinds) {
   const BenchIntegrators program;
   const Words all = lines(program.output({"list"}));
-  for (const std::string kind : {"scenes", "methods", "studies", "fabrics"}) {
+  for (const std::string kind : {"scenes", "methods", "studies", "forces", "fabrics"}) {
     EXPECT_THAT(all, Contains(kind + ":"));
     for (const std::string& name : lines(program.output({"list", kind})))
       EXPECT_THAT(all, Contains(MatchesRegex("  " + name + "  +[^ ].+")));
@@ -189,6 +189,12 @@ TEST(ProgramList, HasOnlyWhatRuns) {
     EXPECT_THAT(parse_csv(program.output(command)),
                 AllOf(SizeIs(of_the_thesis.size()), Each(Contains(Row::value_type("outcome", "success")))));
   }
+}
+
+TEST(ProgramForces, AgreeWithDifferences) {
+  const BenchIntegrators program;
+  const auto rows = parse_csv(program.output({"forces", "--scene", "pulled", "--set", "grid.n=5", "--format", "csv"}));
+  EXPECT_THAT(rows, AllOf(SizeIs(6), Each(Contains(Row::value_type("verdict", "met: agrees")))));
 }
 
 // --- Help ----------------------------------------------------------------------------------------------------------------
