@@ -13,7 +13,7 @@ bool is_driven(const Scene& scene) {
   const bool pushed = std::ranges::any_of(scene.obstacles, [](const ObstacleRule& rule) { return moves(rule); });
   const bool thrown = std::ranges::any_of(scene.panels, [](const PanelRule& panel) { return !panel.start.velocity.isZero(0); });
   return pulled || pushed || thrown || !scene.sheet.gravity.isZero(0) || scene.sheet.wind.blows() ||
-         !scene.start.velocity.isZero(0);
+         !scene.sheet.added.empty() || !scene.start.velocity.isZero(0);
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ GarmentForces::GarmentForces(std::shared_ptr<const Garment> garment, solver::Cou
       jacobians_(work.counter("jacobians", "evaluations of the exact Jacobian")),
       newton_matrices_(work.counter("newton_matrices", "assemblies of the Newton matrix from the exact Jacobian")),
       normal_evaluations_(work.counter("normals", "evaluations of all vertex normals")) {
-  for (const TermKind& kind : term_kinds()) {
+  for (const TermKind& kind : term_kinds_of(garment_->panels().front().sheet)) {  // panels have the same forces added
     const std::string name(kind.name);
     kinds_.push_back({kind.name, &work.counter("force/" + name, "evaluations of: " + std::string(kind.description))});
   }

@@ -7,8 +7,8 @@ namespace drape::model {
 PanelForces::PanelForces(const Sheet& sheet) : grid_(sheet.grid), vertex_normals_(sheet.grid) {
   GridLaw active, unconstrained;
   bool constrained = false;
-  for (const TermKind& kind : term_kinds()) {
-    std::optional<Term> term = kind.make(sheet);
+  for (const TermKind& kind : term_kinds_of(sheet)) {
+    std::optional<Term> term = make_term(kind, sheet);
     if (!term) continue;
     needs_normals_ = needs_normals_ || term->needs_normals;
     constrained = constrained || term->list_constraints;

@@ -1,7 +1,6 @@
 #include "solver/methods.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <iterator>
 #include <stdexcept>
 #include <string>
@@ -10,6 +9,7 @@
 #include "solver/added_methods.hpp"
 #include "solver/base/printable.hpp"
 #include "solver/base/registry.hpp"
+#include "solver/base/row_name.hpp"
 
 namespace drape::solver {
 
@@ -366,11 +366,6 @@ std::vector<Method>& method_table() {
   return all;
 }
 
-bool is_name(std::string_view text) {
-  const auto plain = [](unsigned char c) { return std::islower(c) != 0 || std::isdigit(c) != 0 || c == '-'; };
-  return !text.empty() && text.size() <= 60 && std::ranges::all_of(text, plain);
-}
-
 }  // namespace
 
 std::string_view Method::family() const {
@@ -388,7 +383,7 @@ void add_methods(std::span<const Method> rows) {
   std::vector<Method>& all = method_table();
   for (const Method& row : rows) {
     const std::string name = "method '" + base::quoted(row.name) + "': ";
-    if (!is_name(row.name)) throw std::invalid_argument(name + "expected a name of small letters, digits and '-', 60 at most");
+    if (!base::is_row_name(row.name)) throw std::invalid_argument(name + std::string(base::row_name_rule));
     if (std::ranges::find(all, row.name, &Method::name) != all.end())
       throw std::invalid_argument(name + "there is one of this name; expected another");
     if (row.step == nullptr || row.order < 1) throw std::invalid_argument(name + "expected a step and an order from 1 on");

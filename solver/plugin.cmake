@@ -12,7 +12,7 @@ function(drape_tell_flags target options)
   target_compile_definitions(${target} PRIVATE "DRAPE_COMPILE_FLAGS=\"${flags}\"")
 endfunction()
 
-# A shared library with methods. The functions of the solver that it calls are those in the program: only headers and flags are its own.
+# A shared library with methods or forces. The functions that it calls are those in the program: only headers and flags are its own.
 function(drape_plugin name)
   add_library(${name} MODULE ${ARGN})
   target_link_libraries(${name} PRIVATE drape::drape_flags)

@@ -6,11 +6,11 @@
 #include "solver/header_hash.hpp"
 #include "solver/methods.hpp"
 
-/// A plugin is a shared library with methods that the program loads: a source that includes this header and ends in
+/// A plugin is a shared library that the program loads. It has methods by a source that includes this header and ends in
 ///
 ///     DRAPE_PLUGIN(rows)    // rows: an array of drape::solver::Method
 ///
-/// compiled by drape_plugin() of find_package(drape). It calls the solver's functions in the program.
+/// compiled by drape_plugin() of find_package(drape), or forces (model/plugin.hpp). It calls the functions in the program.
 namespace drape::solver {
 
 /// One thing that must be the same in a plugin and the program, since they share classes and are to compute the same.
@@ -19,7 +19,8 @@ struct BuildFact {
   const char* value;
 };
 
-/// What a plugin shows. The first two members stay as they are: they are read before it is known who has made the rest.
+/// What a plugin with methods shows. The first two members stay as they are: they are read before it is known who has made the
+/// rest.
 struct Plugin {
   const BuildFact* facts;
   std::size_t fact_count;

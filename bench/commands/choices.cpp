@@ -8,6 +8,7 @@
 #include "bench/peers/peers.hpp"
 #include "bench/studies/studies.hpp"
 #include "model/fabric.hpp"
+#include "model/forces/term.hpp"
 #include "model/scene_file/scene_file.hpp"
 #include "solver/base/terminal.hpp"
 #include "solver/methods.hpp"
@@ -45,6 +46,8 @@ Choices linear_solver_choices() { return from_table(solver::linear_solvers()); }
 
 Choices study_choices() { return from_table(studies()); }
 
+Choices force_choices() { return from_table(model::term_kinds()); }
+
 Choices fabric_choices() { return from_table(model::fabrics()); }
 Choices peer_choices() { return from_table(peers::all_peers()); }
 
@@ -61,11 +64,8 @@ Choices format_choices() {
 Choices shell_choices() { return {{"bash", "also for zsh, by its bashcompinit"}}; }
 
 std::span<const KindOfNames> kinds_of_names() {
-  static constexpr KindOfNames table[] = {{"scenes", scene_choices},
-                                          {"methods", method_choices},
-                                          {"studies", study_choices},
-                                          {"fabrics", fabric_choices},
-                                          {"peers", peer_choices}};
+  static constexpr KindOfNames table[] = {{"scenes", scene_choices}, {"methods", method_choices}, {"studies", study_choices},
+                                          {"forces", force_choices}, {"fabrics", fabric_choices}, {"peers", peer_choices}};
   return table;
 }
 

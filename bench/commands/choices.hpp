@@ -20,6 +20,7 @@ Choices method_choices();
 Choices stage_solver_choices();
 Choices linear_solver_choices();
 Choices study_choices();
+Choices force_choices();
 Choices fabric_choices();
 Choices peer_choices();
 Choices kind_choices();    ///< of the names below

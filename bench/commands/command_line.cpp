@@ -84,6 +84,7 @@ void add_commands(CLI::App& app, const std::string& command_line, int& exit_code
   add_inspect(app, exit_code);
   add_compare(app, exit_code);
   add_check(app, command_line, exit_code);
+  add_forces(app, exit_code);
   add_report(app);
   add_export(app);
   add_fabric(app);
@@ -112,7 +113,7 @@ int run_command_line(int argc, const char* const* argv) {
   app.set_version_flag("--version", version_text, "show the version");
   app.add_option_function<std::vector<std::string>>(
          "--plugin", [](const std::vector<std::string>& files) { std::ranges::for_each(files, load_plugin); },
-         "load methods from a shared library (repeatable; bench/plugin)")
+         "load methods and forces from a shared library (repeatable; bench/plugin)")
       ->type_name("FILE.so")
       ->allow_extra_args(false);
   bool dry_run = false;

@@ -22,6 +22,7 @@ void add_man(CLI::App& app);
 void add_inspect(CLI::App& app, int& exit_code);
 void add_compare(CLI::App& app, int& exit_code);
 void add_check(CLI::App& app, const std::string& command_line, int& exit_code);
+void add_forces(CLI::App& app, int& exit_code);
 
 /// All of them.
 void add_commands(CLI::App& app, const std::string& command_line, int& exit_code);

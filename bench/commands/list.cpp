@@ -24,9 +24,10 @@ void list(const std::string& kind) {
 }  // namespace
 
 void add_list(CLI::App& app) {
-  CLI::App& command = *app.add_subcommand("list", "names of scenes, methods, studies, fabrics or peers, one a line");
+  CLI::App& command = *app.add_subcommand("list", "names of scenes, methods, studies, forces, fabrics or peers, one a line");
   const auto kind = std::make_shared<std::string>();
-  command.add_option("KIND", *kind, "scenes, methods, studies, fabrics or peers [all, with descriptions]")->type_name("");
+  command.add_option("KIND", *kind, "scenes, methods, studies, forces, fabrics or peers [all, with descriptions]")
+      ->type_name("");
   command.callback([=] { list(*kind); });
 }
 

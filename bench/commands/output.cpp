@@ -81,6 +81,15 @@ void add_wide_option(CLI::App& command) {
       "--wide", [] { all_columns = true; }, "tables with all columns, however wide the terminal is");
 }
 
+void add_format_option(CLI::App& command, std::string& format) {
+  const std::vector<std::string> formats = names(format_choices());
+  command.add_option("--format", format, "what is printed")
+      ->type_name(fmt::format("{}", fmt::join(formats, "|")))
+      ->check(one_of("format", formats))
+      ->capture_default_str();
+  add_wide_option(command);
+}
+
 void add_agreement(CLI::App& command, double& agreement) {
   command
       .add_option("--agreement", agreement, "largest disagreement of the two solvers behind a reference, over the scene's size")
@@ -100,12 +109,7 @@ void add_record_options(CLI::App& command, Output& output) {
           "--resume", [&] { output.sweep.start = results::Start::resumed; },
           "continue FILE.h5 where a process before this one was killed; without one, begin it")
       ->needs("--out");
-  const std::vector<std::string> formats = names(format_choices());
-  command.add_option("--format", output.format, "what is printed")
-      ->type_name(fmt::format("{}", fmt::join(formats, "|")))
-      ->check(one_of("format", formats))
-      ->capture_default_str();
-  add_wide_option(command);
+  add_format_option(command, output.format);
   add_verbosity_options(command);
 }
 

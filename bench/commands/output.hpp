@@ -20,7 +20,10 @@ struct Output {
 /// The option --agreement.
 void add_agreement(CLI::App& command, double& agreement);
 
-/// The options --out, --resume and --format.
+/// The options --format and --wide.
+void add_format_option(CLI::App& command, std::string& format);
+
+/// The options --out, --resume, --format and those of verbosity.
 void add_record_options(CLI::App& command, Output& output);
 
 /// Options of commands that write tables.

@@ -59,6 +59,9 @@ std::vector<std::int64_t> steps_to_frames(const std::vector<double>& times, doub
 }
 
 Problem problem_of(const Peer& peer, const model::Scene& scene, double step) {
+  if (!scene.sheet.added.empty())
+    throw std::invalid_argument(fmt::format("{}: expected a scene without forces.{}: peers have no forces of plugins",
+                                            peer.name, scene.sheet.added.front().name));
   Problem problem{.integrator = std::string(peer.integrator), .step = step};
   const std::vector<double> times = compared_times(scene);
   problem.steps = steps_to_frames(times, step);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <ranges>
+#include <string>
 
 #include "bench/runs/motion_error.hpp"
 #include "bench/runs/verbosity.hpp"
@@ -100,7 +101,9 @@ reference::Reference References::tight(const model::Scene& scene, const model::C
 reference::Reference References::at(double tolerance, const model::Scene& scene, const model::Cloth& cloth,
                                     const std::vector<double>& times, double seconds) {
   reference::SolveOptions options{.rtol = tolerance, .size = model::size(scene)};
-  const auto key = [&] { return reference::cache_key(model::to_toml(model::without_trim(scene)), 0, times, options); };
+  std::string text = model::to_toml(model::without_trim(scene));
+  for (const model::AddedForce& force : scene.sheet.added) text += fmt::format("forces.{} is of {}\n", force.name, force.code);
+  const auto key = [&] { return reference::cache_key(text, 0, times, options); };
   const auto check = [&](const reference::Reference& found) {
     reference::require_plausible(found, cloth.ode, cloth.start, 0, times, options.size);
   };

@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "model/forces/fused/law.hpp"
 #include "model/memory/term_memory.hpp"
@@ -69,14 +70,39 @@ struct Term {
   const GridLaw& law_without_constraints() const { return list_constraints ? unconstrained_law : law; }
 };
 
-/// A row of the table of forces. `make` returns nothing if the sheet does not have the force.
+/// A number that a scene gives a force that was added, by the key forces.FORCE.NAME.
+struct ForceParameter {
+  enum class Range { any, non_negative, positive };
+  std::string_view name;  ///< small letters, digits and '-'
+  std::string_view unit;  ///< "1": a number without dimension
+  std::string_view description;
+  Range range = Range::any;
+  double usual = 0;  ///< its value where a scene has the force and does not say
+};
+
+/// A row of the table of forces. Those that were added to the model's own have parameters.
 struct TermKind {
   std::string_view name;
   std::string_view description;
-  std::optional<Term> (*make)(const Sheet&);
+
+  /// Returns nothing if the sheet does not have the force. Those that were added throw std::invalid_argument if it cannot have
+  /// it. `parameters`: the values of those of the row.
+  std::optional<Term> (*make)(const Sheet&, std::span<const double> parameters);
+  std::span<const ForceParameter> parameters = {};
 };
 
-/// All forces of the model.
+/// All forces, those that were added last.
 std::span<const TermKind> term_kinds();
+
+/// Adds a row for as long as the program runs; what it points to must stay. To be called before forces are used.
+void add_term_kind(const TermKind& row);
+
+/// The rows of term_kinds() that a sheet may have: the model's own, and those added that it names. Throws
+/// std::invalid_argument if one of these is not there.
+std::vector<TermKind> term_kinds_of(const Sheet& sheet);
+
+/// The force of one of these rows; nothing if the sheet does not have it. Throws std::invalid_argument, naming the force, if it
+/// was added and the sheet cannot have it.
+std::optional<Term> make_term(const TermKind& kind, const Sheet& sheet);
 
 }  // namespace drape::model

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <string>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "model/fabric.hpp"
 #include "model/obstacles/mesh_file.hpp"
@@ -318,12 +320,10 @@ bool is_membrane(const Scene& scene) { return scene.sheet.material.bend_form == 
 std::string_view bend_unit(const Scene& scene) { return is_membrane(scene) ? "N/m" : "N m"; }
 std::string_view bend_damping_unit(const Scene& scene) { return is_membrane(scene) ? "N s/m" : "N m s"; }
 
-}  // namespace
-
-std::span<const SceneKey> scene_key_table() {
+std::vector<SceneKey> own_keys() {
   static const std::string of_obstacles = obstacle_help();
   // clang-format off
-  static const SceneKey table[] = {
+  static const Key<Scene> table[] = {
       {"name", "", "what tables and files call the scene [the file's name without .toml]", at<&Scene::name>, check::title},
       {"description", "", "one sentence", at<&Scene::description>, check::text},
 
@@ -481,7 +481,19 @@ std::span<const SceneKey> scene_key_table() {
       {"end.time", "s", "simulated time", at<&Scene::end>, check::positive},
   };
   // clang-format on
-  return table;
+  return {std::begin(table), std::end(table)};
 }
+
+/// The rows, and those that are added.
+std::vector<SceneKey>& key_table() {
+  static std::vector<SceneKey> all = own_keys();
+  return all;
+}
+
+}  // namespace
+
+std::span<const SceneKey> scene_key_table() { return key_table(); }
+
+void add_scene_key(SceneKey key) { key_table().push_back(std::move(key)); }
 
 }  // namespace drape::model

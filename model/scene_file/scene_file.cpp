@@ -103,7 +103,7 @@ void collect(const toml::table& table, const std::string& prefix, std::map<std::
     const std::string path = prefix + std::string(key.str());
     const bool section =
         std::ranges::any_of(scene_key_table(), [&](const SceneKey& known) { return known.name.starts_with(path + "."); });
-    if (section && node.is_table())
+    if (section && node.is_table() && (prefix.empty() || !node.as_table()->empty()))  // else a force without parameters
       collect(*node.as_table(), path + ".", found);
     else
       found.emplace(path, &node);
@@ -119,7 +119,8 @@ void check_known(const std::string& path, const std::string& where) {
     if (section.empty() || known.name.starts_with(section)) choices.push_back(known.name);
   if (choices.empty())
     for (const SceneKey& known : scene_key_table()) choices.push_back(known.name);
-  throw SceneError(fmt::format("{}: {}", where, base::unknown_name("key", path, choices)));
+  throw SceneError(fmt::format("{}: {}{}", where, base::unknown_name("key", path, choices),
+                               section == "forces." ? ", or of a force that --plugin loads" : ""));
 }
 
 /// Rules that no single key of a sheet can break.
@@ -166,6 +167,12 @@ void check_sheet(const Scene& scene, const std::string& origin) {
   if (scene.sheet.air != 0 && (grid.nu < 2 || grid.nv < 2)) fail("forces.air: expected 0, a chain has no normals");
   if (scene.start.wrap > 0 && (scene.start.plane != Plane::vertical || grid.nu < 2))
     fail("start.wrap: expected start.plane = \"vertical\" and at least 2 particles along the weft, or 0");
+  for (const TermKind& kind : term_kinds_of(scene.sheet))
+    if (!kind.parameters.empty()) try {
+        make_term(kind, scene.sheet);
+      } catch (const std::invalid_argument& error) {
+        fail(error.what());
+      }
 }
 
 void check_panels(const Scene& scene, const std::string& origin) {
@@ -291,7 +298,9 @@ Scene load_scene(const std::string& name_or_file, std::span<const Override> over
 
 std::string to_toml(const Scene& scene) {
   std::string text;
-  for (const SceneKey& key : scene_key_table()) text += fmt::format("{} = {}\n", key.name, to_toml(key.data(scene)));
+  for (const SceneKey& key : scene_key_table())
+    if (const Data data = key.data(scene); !std::holds_alternative<std::monostate>(data))
+      text += fmt::format("{} = {}\n", key.name, to_toml(data));
   return text;
 }
 
@@ -305,6 +314,7 @@ std::vector<KeyValue> key_values(const Scene& scene) {
   std::vector<KeyValue> values;
   for (const SceneKey& key : scene_key_table()) {
     KeyValue row = key_value(key, scene);
+    if (std::holds_alternative<std::monostate>(row.value)) continue;
     const auto* list = std::get_if<List>(&row.value);
     if (list == nullptr || (!list->empty() && !std::holds_alternative<Entries>(list->front())))
       values.push_back(std::move(row));

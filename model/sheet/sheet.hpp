@@ -1,5 +1,8 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "model/memory/curve.hpp"
 #include "model/memory/spectrum.hpp"
 #include "model/sheet/grid.hpp"
@@ -129,6 +132,13 @@ struct Wind {
   bool needs_normals() const { return blows() && drag != lift; }  ///< else the surface takes it undivided
 };
 
+/// A force that was added to the model's own (model/scene_file/added_forces.hpp), as a scene has it.
+struct AddedForce {
+  std::string name;
+  std::vector<double> parameters;  ///< in the order of its row
+  std::string code;                ///< hash of what computes it
+};
+
 /// A sheet before it is compiled, from which every force is made.
 struct Sheet {
   Grid grid;
@@ -137,6 +147,7 @@ struct Sheet {
   Wind wind = {};
   double air = 0;             ///< c = c_w ρ_air of the air's resistance (2.37) [N s/m³]
   solver::Vectors rest = {};  ///< positions that it would rest in without gravity, as far as bending knows; empty: flat
+  std::vector<AddedForce> added = {};
 };
 
 }  // namespace drape::model

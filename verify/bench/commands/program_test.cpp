@@ -172,7 +172,7 @@ TEST(ProgramList, HasTheNamesThatOtherProgramsRelyOn) {
 TEST(ProgramList, DescribesTheNamesOfAllKinds) {
   const BenchIntegrators program;
   const Words all = lines(program.output({"list"}));
-  for (const std::string kind : {"scenes", "methods", "studies", "fabrics"}) {
+  for (const std::string kind : {"scenes", "methods", "studies", "forces", "fabrics"}) {
     EXPECT_THAT(all, Contains(kind + ":"));
     for (const std::string& name : lines(program.output({"list", kind})))
       EXPECT_THAT(all, Contains(MatchesRegex("  " + name + "  +[^ ].+")));
@@ -189,6 +189,12 @@ TEST(ProgramList, HasOnlyWhatRuns) {
     EXPECT_THAT(parse_csv(program.output(command)),
                 AllOf(SizeIs(of_the_thesis.size()), Each(Contains(Row::value_type("outcome", "success")))));
   }
+}
+
+TEST(ProgramForces, AgreeWithDifferences) {
+  const BenchIntegrators program;
+  const auto rows = parse_csv(program.output({"forces", "--scene", "pulled", "--set", "grid.n=5", "--format", "csv"}));
+  EXPECT_THAT(rows, AllOf(SizeIs(6), Each(Contains(Row::value_type("verdict", "met: agrees")))));
 }
 
 // --- Help ----------------------------------------------------------------------------------------------------------------
@@ -219,7 +225,8 @@ TEST(ProgramHelp, OfTheOthersSaysWhatTheyTake) {
   const BenchIntegrators program;
   expect_all_in(program.output({"study", "--help"}),
                 {"study [OPTIONS] NAME", "--quick", "--repeat R", "--out FILE.h5", "--format table|csv|json", "hung-sheets"});
-  expect_all_in(program.output({"list", "--help"}), {"list [OPTIONS] [KIND]", "scenes, methods, studies, fabrics or peers"});
+  expect_all_in(program.output({"list", "--help"}),
+                {"list [OPTIONS] [KIND]", "scenes, methods, studies, forces, fabrics or peers"});
 }
 
 /// All that reads like help, wherever it is printed.
@@ -505,7 +512,7 @@ TEST(ProgramCompletion, ProposesCommandsOptionsAndNames) {
   EXPECT_THAT(completed("bench/run run --format "), testing::ElementsAre("table", "csv", "json"));
   EXPECT_THAT(completed("bench/run run --step "), IsEmpty());
   EXPECT_THAT(completed("bench/run study hung"), testing::ElementsAre("hung-sheets"));
-  EXPECT_THAT(completed("bench/run list "), testing::ElementsAre("scenes", "methods", "studies", "fabrics", "peers"));
+  EXPECT_THAT(completed("bench/run list "), testing::ElementsAre("scenes", "methods", "studies", "forces", "fabrics", "peers"));
   EXPECT_THAT(completed("bench/run inspect scene_"), testing::ElementsAre("scene_of_mine.toml"));
   EXPECT_THAT(completed("bench/run inspect a.h5 --"), AllOf(Contains("--table"), Not(Contains("--scene"))));
 }

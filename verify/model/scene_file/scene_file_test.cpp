@@ -147,8 +147,9 @@ void expect_obstacles(const std::vector<model::ObstacleRule>& obstacles) {
 void expect_complete(const Scene& scene) {
   EXPECT_EQ(scene.name, "all");
   EXPECT_EQ(scene.description, "says \"everything\", with a \\ and a ü");
-  const auto& [grid, material, gravity, wind, air, rest] = scene.sheet;
+  const auto& [grid, material, gravity, wind, air, rest, added] = scene.sheet;
   EXPECT_EQ(rest.size(), 0) << "flat";
+  EXPECT_TRUE(added.empty());
   EXPECT_THAT((std::array{grid.nu, grid.nv}), ElementsAre(5, 3));
   EXPECT_THAT((std::array{grid.size_u, grid.size_v}), ElementsAre(0.6, 0.4));
   EXPECT_EQ(material.density, 0.3);
