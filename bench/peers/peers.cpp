@@ -169,8 +169,9 @@ std::string reason_against(const Peer& peer, const model::Scene& scene, double s
 }
 
 PeerMotion measuring_motion(const Peer& peer, const model::Scene& scene, double step, double limit) {
-  constexpr double longest = 2.5e-4, round_off = 1e-9;  // [s], of a quotient
-  return run_peer(bench::peers::peer(peer.measured_by), scene, step / std::ceil(step / longest * (1 - round_off)), limit);
+  constexpr double longest = 2.5e-4, round_off = 1e-9;                              // [s], of a quotient
+  const double parts = std::max(2.0, std::ceil(step / longest * (1 - round_off)));  // 1 would measure a peer by itself
+  return run_peer(bench::peers::peer(peer.measured_by), scene, step / parts, limit);
 }
 
 PeerMotion run_peer(const Peer& peer, const model::Scene& scene, double step, double limit) {

@@ -67,8 +67,8 @@ class PeerError : public std::runtime_error {
 /// Why a peer cannot run a scene in such steps, in one line; empty if it can.
 std::string reason_against(const Peer& peer, const model::Scene& scene, double step);
 
-/// The motion in short steps that the errors of a peer with a cloth of its own are measured by; `step` [s] is that of the run.
-/// Exceptions as for run_peer().
+/// The motion that the errors of a peer with a cloth of its own are measured by, in steps of half of `step` [s], that of the
+/// run, or shorter. Exceptions as for run_peer().
 PeerMotion measuring_motion(const Peer& peer, const model::Scene& scene, double step, double limit);
 
 /// Runs a peer on a scene in steps [s]. Throws std::invalid_argument with reason_against(), and PeerError if it fails, if

@@ -124,6 +124,14 @@ TEST_P(APeer, HasItsOrder) {
   EXPECT_NEAR(std::log2(coarse / fine), peer.order, 0.3) << coarse << " and " << fine;
 }
 
+TEST_P(APeer, IsNotMeasuredByItself) {
+  if (!missing().empty() || peer.measured_by.empty()) GTEST_SKIP() << missing();
+  constexpr double step = 2.5e-4;
+  const model::Scene scene = sheet({{"end.time", "0.01"}});
+  const auto run = bench::peers::run_peer(peer, scene, step, 60), truth = bench::peers::measuring_motion(peer, scene, step, 60);
+  EXPECT_GT(reference::rms_distance(run.states.back().x, truth.states.back().x), 0);
+}
+
 TEST_P(APeer, RefusesStepsThatEndElsewhere) {
   if (!missing().empty()) GTEST_SKIP() << missing();
   EXPECT_EQ(reason_against(peer, sheet(), 1e-3), "");
