@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <iterator>
 #include <memory_resource>
 #include <span>
 #include <unordered_set>

@@ -4,8 +4,10 @@
 #include <sundials/sundials_context.h>
 
 #include <cmath>
+#include <exception>
 #include <initializer_list>
 #include <memory>
+#include <new>
 #include <stdexcept>
 #include <string>
 #include <string_view>

@@ -2,6 +2,8 @@
 
 #include <cholmod.h>
 
+#include <cstddef>
+
 #include "solver/state.hpp"
 
 namespace drape::solver {
