@@ -54,14 +54,16 @@ void merge(const MergeArguments& a) {
 }  // namespace
 
 void add_merge(CLI::App& app) {
-  CLI::App& command = *app.add_subcommand("merge", "one file of all shards of a sweep, which run and study compute with --shard");
+  CLI::App& command =
+      *app.add_subcommand("merge", "one file of all shards of a sweep, which run and study compute with --shard");
   const auto a = std::make_shared<MergeArguments>();
   command.add_option("OUT", a->out, "HDF5 file to record in; must not exist")->required()->type_name("")->check(output_name());
   command.add_option("SHARD", a->shards, "journals of the shards, OUT.shard-i-of-n.journal")
       ->required()
       ->type_name("...")
       ->check(not_empty());
-  command.footer(help_text("Run it in the folder in which the shards ran, by the same program. Exit code: 1 if results are missing."));
+  command.footer(
+      help_text("Run it in the folder in which the shards ran, by the same program. Exit code: 1 if results are missing."));
   command.callback([=] { merge(*a); });
 }
 

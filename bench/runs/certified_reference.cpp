@@ -112,7 +112,8 @@ reference::Reference References::at(double tolerance, const model::Scene& scene,
   }
   options.rtol = tolerance;
   return reference::cached(
-      cache_, key(), [&] { return compute_reference(scene, cloth, times, options, watch_, seconds); }, check, check_interruption);
+      cache_, key(), [&] { return compute_reference(scene, cloth, times, options, watch_, seconds); }, check,
+      check_interruption);
 }
 
 results::ErrorRecord distance(const results::RunRecord& run, const reference::Reference& reference, const model::Scene& scene,

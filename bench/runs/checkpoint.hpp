@@ -17,8 +17,8 @@ namespace drape::bench {
 /// results of finished pieces from the journal. Also shows the progress of the sweep.
 class Checkpoint {
  public:
-  /// `parts`: how often advance() will be called. `shards`: with whom the sweep is shared, if it is; `machine`: its lock, if this
-  /// computes a shard.
+  /// `parts`: how often advance() will be called. `shards`: with whom the sweep is shared, if it is; `machine`: its lock, if
+  /// this computes a shard.
   Checkpoint(results::Journal& journal, int parts, Shards* shards = nullptr, MachineLock* machine = nullptr)
       : journal_(journal), progress_(parts), shards_(shards), machine_(machine) {}
 
@@ -31,7 +31,8 @@ class Checkpoint {
   void advance() { progress_.advance(); }
 
   /// What compute() returns, or what it returned to a process before this one: something that json holds. A result during which
-  /// the sweep was interrupted is not kept: it may be cut short. Throws ComputedElsewhere if it is another shard's and not there yet.
+  /// the sweep was interrupted is not kept: it may be cut short. Throws ComputedElsewhere if it is another shard's and not
+  /// there yet.
   template <class Compute>
   std::invoke_result_t<Compute> once(const std::string& id, const Compute& compute) {
     return kept<std::invoke_result_t<Compute>>(id, compute);
@@ -48,9 +49,9 @@ class Checkpoint {
     });
   }
 
-  /// Does something with each of a list, none of which needs the results of another. Shards share these; what is done with one of
-  /// them belongs together, as does what is outside of such lists in a job. Where others are to compute some, this does the rest of
-  /// the list before it throws ComputedElsewhere.
+  /// Does something with each of a list, none of which needs the results of another. Shards share these; what is done with one
+  /// of them belongs together, as does what is outside of such lists in a job. Where others are to compute some, this does the
+  /// rest of the list before it throws ComputedElsewhere.
   template <class List, class Body>
   void each(List&& list, const Body& body) {
     const std::string outer = std::exchange(key_, "");

@@ -68,26 +68,30 @@ std::string missing_text(const Shards& shards, const SweepOptions& options, int 
   std::string named;
   std::size_t k = 0;
   for (const auto& [id, number] : shards.missing())
-    if (k++ < most_named) named += fmt::format("{}'{}' of shard {}/{}", named.empty() ? "" : ", ", id, number, count);
-  return fmt::format("{}: not yet recorded, {} checkpoints are missing: {}{}; compute them by the same command with --shard i/{}, i = {}",
-                     options.out.string(), shards.missing().size(), named, k > most_named ? ", ..." : "", count, numbers_of(shards));
+    if (k++ < most_named) named += fmt::format("{}'{}' of shard {}", named.empty() ? "" : ", ", id, number);
+  return fmt::format(
+      "{}: not yet recorded: shards {} of {} lack {} checkpoints: {}{}; compute them by the same command with --shard i/{}",
+      options.out.string(), numbers_of(shards), count, shards.missing().size(), named, k > most_named ? ", ..." : "", count);
 }
 
 bool has_times(const Results& all) {
   const auto is_time = [](const results::Column& column) { return column.role == results::Role::time; };
   return std::ranges::any_of(all.runs, [](const results::RunRecord& run) { return !run.times_ms.empty(); }) ||
-         std::ranges::any_of(all.tables, [&](const results::Table& table) { return std::ranges::any_of(table.columns, is_time); });
+         std::ranges::any_of(all.tables,
+                             [&](const results::Table& table) { return std::ranges::any_of(table.columns, is_time); });
 }
 
-/// Throws MissingCheckpoints unless shards have all that the jobs need, and FileError if times of several machines are among it.
+/// Throws MissingCheckpoints unless shards have all that the jobs need, and FileError if times of several machines are among
+/// it.
 void require_mergeable(const ShardJournals& read, Shards& shards, results::Journal& journal, const SweepOptions& options,
                        const std::vector<Job>& jobs) {
   Checkpoint checkpoint(journal, count_parts(jobs), &shards);
   try {
     const Results all = do_jobs(checkpoint, jobs, [](std::size_t, const Results&) {});
     if (read.processors.size() > 1 && has_times(all))
-      throw base::FileError(fmt::format("{}: cannot be recorded: shards have times of different machines: {}; expected one kind of processor",
-                                        options.out.string(), fmt::join(read.processors, ", ")));
+      throw base::FileError(
+          fmt::format("{}: cannot be recorded: shards have times of different machines: {}; expected one kind of processor",
+                      options.out.string(), fmt::join(read.processors, ", ")));
   } catch (const ComputedElsewhere&) {
     throw MissingCheckpoints(missing_text(shards, options, read.share.count));
   }
@@ -114,8 +118,8 @@ Results record_in_file(const SweepOptions& options, const std::string& sweep, co
   if (shards) require_mergeable(*read, *shards, journal, options, jobs);
   Checkpoint checkpoint(journal, count_parts(jobs), shards ? &*shards : nullptr);
   try {
-    Results all = do_jobs(checkpoint, jobs,
-                          [&](std::size_t runs_before, const Results& some) { add_missing(file, runs_before, some); });
+    Results all =
+        do_jobs(checkpoint, jobs, [&](std::size_t runs_before, const Results& some) { add_missing(file, runs_before, some); });
     file.finish();
     journal.clear();
     return all;
@@ -131,7 +135,7 @@ std::string compute_shard(const SweepOptions& options, const std::string& sweep,
   base::require_creatable(options.out);  // else it is recorded already
   const results::Provenance facts = facts_of(options, sweep);
   results::Journal journal(file, facts, results::Start::resumed);
-  journal.add(origin_id, origin(facts, share));
+  if (journal.find(origin_id) == nullptr) journal.add(origin_id, origin(facts, share));
   MachineLock machine;
   for (;;) {
     Shards shards(share, checkpoints_beside(options.out, share, facts));

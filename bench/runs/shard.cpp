@@ -92,9 +92,10 @@ Checkpoints united(const std::vector<ReadShard>& shards) {
         twice.push_back(fmt::format("'{}' in {} and {}", id, from[id]->path.string(), shard.path.string()));
   constexpr std::size_t most_named = 10;
   if (twice.empty()) return all;
-  throw base::FileError(fmt::format("{} checkpoints are there twice with different results, which one is meant is not known: {}{}",
-                                    twice.size(), fmt::join(twice.begin(), twice.begin() + std::min(twice.size(), most_named), ", "),
-                                    twice.size() > most_named ? ", ..." : ""));
+  throw base::FileError(
+      fmt::format("{} checkpoints are there twice with different results, which one is meant is not known: {}{}", twice.size(),
+                  fmt::join(twice.begin(), twice.begin() + std::min(twice.size(), most_named), ", "),
+                  twice.size() > most_named ? ", ..." : ""));
 }
 
 }  // namespace
@@ -164,9 +165,9 @@ ShardJournals read_shards(const std::vector<fs::path>& journals, const Provenanc
     const ReadShard& shard = shards.emplace_back(read_shard(path));
     require_same_program(path, shard.origin, own);
     if (shard.share.count != shards.front().share.count)
-      throw base::FileError(fmt::format("{}: cannot be merged: it is shard {}, and {} is shard {}; expected the same number of shards",
-                                        path.string(), to_string(shard.share), journals.front().string(),
-                                        to_string(shards.front().share)));
+      throw base::FileError(
+          fmt::format("{}: cannot be merged: it is shard {}, and {} is shard {}; expected the same number of shards",
+                      path.string(), to_string(shard.share), journals.front().string(), to_string(shards.front().share)));
     if (const std::string cpu = value_of(shard.origin, "cpu"); std::ranges::find(processors, cpu) == processors.end())
       processors.push_back(cpu);
   }

@@ -33,8 +33,8 @@ std::filesystem::path shard_file(const std::filesystem::path& out, const Share& 
 /// Checkpoints by their ids.
 using Checkpoints = std::map<std::string, results::Journal::Bytes>;
 
-/// Thrown where a sweep needs a checkpoint that another shard computes and that is not there yet. No std::exception, so that it does
-/// not pass for the failure of a run.
+/// Thrown where a sweep needs a checkpoint that another shard computes and that is not there yet. No std::exception, so that it
+/// does not pass for the failure of a run.
 struct ComputedElsewhere {};
 
 /// What a process knows of the shards of its sweep.
@@ -68,17 +68,18 @@ results::Journal::Bytes origin(const results::Provenance& facts, const Share& sh
 
 /// The journals of shards, to be merged.
 struct ShardJournals {
-  Share share;                ///< computes nothing
-  results::Provenance facts;  ///< what they have in common; where the processors, hosts or starts differ, all of them or the first
-  Checkpoints checkpoints;    ///< of all
+  Share share;  ///< computes nothing
+  results::Provenance
+      facts;  ///< what they have in common; where the processors, hosts or starts differ, all of them or the first
+  Checkpoints checkpoints;  ///< of all
   std::vector<std::string> processors;
 };
 
 /// What is known of a shard's start. Throws FileError if the file is not the journal of a shard.
 results::Provenance origin_of(const std::filesystem::path& journal);
 
-/// Throws FileError, naming the files, if one is not the journal of a shard or is not of the same sweep, commit, flags, program and
-/// number of shards as the others and `own`, except for the processor; and if two have different results under an id.
+/// Throws FileError, naming the files, if one is not the journal of a shard or is not of the same sweep, commit, flags, program
+/// and number of shards as the others and `own`, except for the processor; and if two have different results under an id.
 ShardJournals read_shards(const std::vector<std::filesystem::path>& journals, const results::Provenance& own);
 
 }  // namespace drape::bench

@@ -197,7 +197,7 @@ Results run_group(const Group& group, const SweepOptions& options, Checkpoint& c
   });
   checkpoint.show("timing " + scene.name);
   auto timed = checkpoint.timed("times " + base::long_hash_text(ids),
-                               [&] { return time_all(group, options.repetitions, measured, checkpoint); });
+                                [&] { return time_all(group, options.repetitions, measured, checkpoint); });
   for (std::size_t k = 0; k < measured.size(); ++k) {
     if (timed[k].times.empty()) continue;
     measured[k].run.times_ms = std::move(timed[k].times);

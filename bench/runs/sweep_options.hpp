@@ -26,7 +26,7 @@ struct SweepOptions {
   std::string command_line;
   std::optional<Share> shard;                 ///< of the sweep, which is all that is computed
   std::vector<std::filesystem::path> merged;  ///< journals of all its shards, from which it is recorded; empty: it is computed
-  std::optional<double> frames_every;  ///< [s] between the frames of trajectories; none are kept without
+  std::optional<double> frames_every;         ///< [s] between the frames of trajectories; none are kept without
   std::function<std::unique_ptr<Observer>(const RunSpec&)> observer_for;  ///< of runs that are recorded; may be empty
 };
 

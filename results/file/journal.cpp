@@ -109,7 +109,8 @@ struct Beginning {
 Beginning beginning(const std::string& bytes, const fs::path& path) {
   std::istringstream sequence(bytes);
   Beginning all{{facts_in(next_item(sequence)), {}}};
-  if (all.content.facts.empty()) throw base::FileError(fmt::format("{}: is not a journal of this program; remove it", path.string()));
+  if (all.content.facts.empty())
+    throw base::FileError(fmt::format("{}: is not a journal of this program; remove it", path.string()));
   all.size = sequence.tellg();
   for (json item = next_item(sequence); is_checkpoint(item); item = next_item(sequence)) {
     all.content.entries.insert_or_assign(item[0].get<std::string>(), Journal::Bytes(item[1].get_binary()));

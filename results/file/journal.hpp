@@ -55,8 +55,8 @@ struct JournalContent {
   std::map<std::string, Journal::Bytes> entries;
 };
 
-/// Reads a journal without its lock: all checkpoints that are complete. None, and no facts, if it has not begun. Throws FileError
-/// if the file cannot be read or is not a journal.
+/// Reads a journal without its lock: all checkpoints that are complete. None, and no facts, if it has not begun. Throws
+/// FileError if the file cannot be read or is not a journal.
 JournalContent read_journal(const std::filesystem::path& path);
 
 }  // namespace drape::results
