@@ -42,6 +42,7 @@ void merge(const MergeArguments& a) {
   std::vector<std::string> command = whole_command(a);
   SweepOptions defaults;
   defaults.merged = a.shards;
+  defaults.start = results::Start::resumed;  // after a merge that was killed
   defaults.command_line = "bench_integrators";
   for (const std::string& word : command) defaults.command_line += " " + shell_word(word);
   CLI::App app;
@@ -57,7 +58,7 @@ void add_merge(CLI::App& app) {
   CLI::App& command =
       *app.add_subcommand("merge", "one file of all shards of a sweep, which run and study compute with --shard");
   const auto a = std::make_shared<MergeArguments>();
-  command.add_option("OUT", a->out, "HDF5 file to record in; must not exist")->required()->type_name("")->check(output_name());
+  command.add_option("OUT", a->out, "HDF5 file to record in")->required()->type_name("")->check(output_name());
   command.add_option("SHARD", a->shards, "journals of the shards, OUT.shard-i-of-n.journal")
       ->required()
       ->type_name("...")

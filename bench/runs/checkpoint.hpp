@@ -35,7 +35,10 @@ class Checkpoint {
   /// there yet.
   template <class Compute>
   std::invoke_result_t<Compute> once(const std::string& id, const Compute& compute) {
-    return kept<std::invoke_result_t<Compute>>(id, compute);
+    return kept<std::invoke_result_t<Compute>>(id, [&] {
+      if (machine_ != nullptr) machine_->beside_others();  // lets those go first who wait to be alone
+      return compute();
+    });
   }
 
   /// The same of what measures times: meanwhile no other shard on this machine computes.

@@ -111,6 +111,7 @@ Results record_in_file(const SweepOptions& options, const std::string& sweep, co
   results::Journal journal(options.out, facts, options.start);
   results::RunFile file(options.out, facts, options.start);
   if (file.finished()) {
+    if (shards) throw base::FileError(fmt::format("{}: is recorded already; choose another file", options.out.string()));
     journal.clear();
     return {results::read_runs(options.out), results::read_tables(options.out), {}};
   }

@@ -125,7 +125,7 @@ TEST(Merge, NamesWhatIsMissingAndWhoComputesIt) {
   EXPECT_FALSE(fs::exists(program.folder() / "a.h5"));
   program.output(shard_of_sweep(small_study, 2, 3));
   program.output(merge_of(3));
-  EXPECT_THAT(refusal(program, merge_of(3), 2), HasSubstr("a.h5"));
+  EXPECT_THAT(refusal(program, merge_of(3), 2), HasSubstr("a.h5: is recorded already"));
   EXPECT_THAT(refusal(program, shard_of_sweep(small_study, 1, 3), 2), HasSubstr("a.h5"));
 }
 
