@@ -15,6 +15,7 @@
 #include "results/file/validate.hpp"
 #include "verify/support/all_but_times.hpp"
 #include "verify/support/bench_integrators.hpp"
+#include "verify/support/slow.hpp"
 
 namespace drape::verify::merge_test {
 namespace {
@@ -85,9 +86,13 @@ void expect_merges_to_the_same(const Words& sweep, int count) {
 
 TEST(Merge, OfASweepIsTheFileOfOneProcess) { expect_merges_to_the_same(small_sweep, 3); }
 
-TEST(Merge, OfAStudyIsTheFileOfOneProcess) { expect_merges_to_the_same(small_study, 4); }
+TEST(Merge, OfAStudyIsTheFileOfOneProcess) {
+  DRAPE_SLOW();
+  expect_merges_to_the_same(small_study, 4);
+}
 
 TEST(Merge, OfKilledShardsThatWereContinuedIsTheFileOfOneProcess) {
+  DRAPE_SLOW();
   const BenchIntegrators program;
   program.output(small_study + Words{"--out", "whole.h5"});
   std::mt19937 random(1);
@@ -152,6 +157,7 @@ void forge(const BenchIntegrators& program, const std::string& from, const std::
 const auto nothing = [](const auto&) {};
 
 TEST(Merge, RefusesShardsOfDifferentSweepsProgramsAndDivisions) {
+  DRAPE_SLOW();
   const BenchIntegrators program;
   ASSERT_GE(compute_all(program, small_study, 2), 1);
   for (const char* fact : {"git_commit", "compiler_flags", "program_hash"}) {
@@ -171,6 +177,7 @@ TEST(Merge, RefusesShardsOfDifferentSweepsProgramsAndDivisions) {
 }
 
 TEST(Merge, RefusesCheckpointsThatAreThereTwiceWithDifferentResults) {
+  DRAPE_SLOW();
   const BenchIntegrators program;
   ASSERT_GE(compute_all(program, small_study, 2), 1);
   std::string id;
@@ -188,6 +195,7 @@ TEST(Merge, RefusesCheckpointsThatAreThereTwiceWithDifferentResults) {
 }
 
 TEST(Merge, TakesShardsOfSeveralMachinesUnlessThereAreTimes) {
+  DRAPE_SLOW();
   const BenchIntegrators study, timed;
   ASSERT_GE(compute_all(study, small_study, 2), 1);
   forge(study, journal(2, 2), "b.journal", "cpu", "Z80", nothing);
