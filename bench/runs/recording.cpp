@@ -147,7 +147,7 @@ std::string compute_shard(const SweepOptions& options, const std::string& sweep,
       return fmt::format("shard {}: all shards are complete, this one in {}.journal", to_string(share), file.string());
     } catch (const ComputedElsewhere&) {  // what others have computed meanwhile may let this one go on
       if (journal.size() > before) continue;
-      return fmt::format("shard {}: {} checkpoints in {}.journal; {} of the shards {} are not there yet", to_string(share),
+      return fmt::format("shard {}: {} checkpoints in {}.journal; {} of shards {} are not there yet", to_string(share),
                          journal.size() - 1, file.string(), shards.missing().size(), numbers_of(shards));
     } catch (Interrupted& interrupted) {
       interrupted.out = options.out;

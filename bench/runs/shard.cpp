@@ -63,8 +63,8 @@ ReadShard read_shard(const fs::path& path) {
   return shard;
 }
 
-/// The earliest start; of what else may differ all that there is.
-Provenance in_common(const std::vector<ReadShard>& shards) {
+/// Our own command line and the earliest start; of what else may differ all that there is.
+Provenance in_common(const std::vector<ReadShard>& shards, const Provenance& own) {
   Provenance facts;
   for (Fact fact : shards.front().origin) {
     if (fact.name == share_fact) continue;
@@ -73,7 +73,10 @@ Provenance in_common(const std::vector<ReadShard>& shards) {
     std::ranges::sort(values);
     const auto [end, last] = std::ranges::unique(values);
     values.erase(end, last);
-    fact.value = fact.name == "started" ? values.front() : fmt::format("{}", fmt::join(values, "; "));
+    if (fact.name == "command_line")
+      fact.value = value_of(own, fact.name);
+    else
+      fact.value = fact.name == "started" ? values.front() : fmt::format("{}", fmt::join(values, "; "));
     facts.push_back(std::move(fact));
   }
   return facts;
@@ -171,7 +174,7 @@ ShardJournals read_shards(const std::vector<fs::path>& journals, const Provenanc
     if (const std::string cpu = value_of(shard.origin, "cpu"); std::ranges::find(processors, cpu) == processors.end())
       processors.push_back(cpu);
   }
-  return {{0, shards.front().share.count}, in_common(shards), united(shards), processors};
+  return {{0, shards.front().share.count}, in_common(shards, own), united(shards), processors};
 }
 
 }  // namespace drape::bench
