@@ -7,9 +7,11 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <csignal>
+#include <cstddef>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -87,6 +89,11 @@ void expect_result(const BenchIntegrators& program, const ProgramResult& result)
   EXPECT_EQ(all_but_times(program.folder() / "a.h5"), all_but_times(program.folder() / "whole.h5"));
 }
 
+/// How often shards were started.
+std::ptrdiff_t rounds(const ProgramResult& result) {
+  return std::ranges::count_if(lines(result.err), [](const std::string& line) { return line.ends_with(" of 2"); });
+}
+
 bool is_there(const char* name) {
   for (const std::string& folder : split(std::getenv("PATH"), ':') + Words{"/usr/sbin"})
     if (fs::exists(fs::path(folder) / name)) return true;
@@ -105,7 +112,7 @@ TEST(Cluster, OnThisMachineStartsAKilledShardAgain) {
   ASSERT_EQ(kill(*process, SIGKILL), 0);
   const ProgramResult result = running.wait();
   expect_result(program, result);
-  EXPECT_THAT(result.err, HasSubstr("shards 1,2 of 2\n"));
+  EXPECT_GE(rounds(result), 2);
 }
 
 /// Ports that were free a moment ago.
@@ -143,10 +150,13 @@ class SlurmCluster {
         << fmt::format("SlurmctldPort={}\nSlurmdPort={}\n", controller_port, node_port)
         << fmt::format("StateSaveLocation={}\nSlurmdSpoolDir={}\n", path("state"), path("spool"))
         << fmt::format("SlurmctldPidFile={}\nSlurmdPidFile={}\n", path("slurmctld.pid"), path("slurmd.pid"))
-        << "ProctrackType=proctrack/linuxproc\nTaskPlugin=task/none\nMpiDefault=none\nReturnToService=2\n"
+        << "SelectType=select/"
+           "cons_tres\nSelectTypeParameters=CR_CPU\nSlurmdParameters=config_overrides\nProctrackType=proctrack/"
+           "linuxproc\nTaskPlugin=task/"
+           "none\nMpiDefault=none\nReturnToService=2\n"
         << "SchedulerParameters=sched_min_interval=0,batch_sched_delay=0,bf_interval=1\n"
         << "MessageTimeout=1\nBatchStartTimeout=1\n"  // so that a job that is gone is noticed after two seconds
-        << fmt::format("NodeName={} NodeAddr=127.0.0.1 CPUs=1\nPartitionName=main Nodes=ALL Default=YES\n", name);
+        << fmt::format("NodeName={} NodeAddr=127.0.0.1 CPUs=2\nPartitionName=main Nodes=ALL Default=YES\n", name);
     controller_.emplace(daemon("exec slurmctld -D >controller.log 2>&1"));
     start_node();
   }
@@ -188,13 +198,14 @@ TEST(Cluster, OfSlurmLosesANodeAndGoesOn) {
   ASSERT_TRUE(comes_true([&] {
     return has_begun(program, "a.h5.shard-1-of-2.journal") || has_begun(program, "a.h5.shard-2-of-2.journal");
   })) << slurm.logs();
+  EXPECT_EQ(slurm.answer("squeue --noheader --array --format=%T | sort | xargs"), "PENDING RUNNING\n") << "one job a node";
   slurm.kill_node();
   std::this_thread::sleep_for(3s);
   slurm.start_node();
   const ProgramResult result = running.wait();
   expect_result(program, result);
   EXPECT_THAT(slurm.logs(), HasSubstr("cancelled by node failure"));
-  EXPECT_THAT(result.err, HasSubstr("shards 1,2 of 2\n"));
+  EXPECT_GE(rounds(result), 2);
 }
 
 TEST(Cluster, RefusesWhatItCannotShare) {
