@@ -21,6 +21,7 @@
 #include <string>
 #include <thread>
 
+#include "results/file/journal.hpp"
 #include "solver/base/descriptor.hpp"
 #include "solver/base/temporary.hpp"
 #include "verify/support/all_but_times.hpp"
@@ -34,10 +35,8 @@ namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 using testing::HasSubstr;
 
-/// Runs that take tenths of a second each, so that there is time to kill one.
-const Words sweep{"run", "--scene",       "hung-edge",          "--set",  "grid.n=10",        "--until",
-                  "2",   "--method",      "midpoint,bdf2,bdf3", "--step", "0.01,0.005,0.002", "--repeat",
-                  "1",   "--no-reference"};
+/// Nine checkpoints in a second, so that there is time to kill a process between two of them.
+const Words sweep{"study", "figure-3.2", "--quick"};
 
 std::string content(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
@@ -66,11 +65,10 @@ std::optional<pid_t> process_of(const std::string& share, const fs::path& folder
   return std::nullopt;
 }
 
-/// Whether a shard has computed something: more than where it comes from.
+/// Whether a shard has computed something, beside noting where it comes from.
 bool has_begun(const BenchIntegrators& program, const std::string& journal) {
-  std::error_code missing;
-  const auto size = fs::file_size(program.folder() / journal, missing);
-  return !missing && size > 10'000;
+  const fs::path path = program.folder() / journal;
+  return fs::exists(path) && results::read_journal(path).entries.size() > 1;
 }
 
 Command cluster(const BenchIntegrators& program, const Words& arguments, const Words& environment = {}) {
