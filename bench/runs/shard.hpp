@@ -23,7 +23,7 @@ struct Share {
 std::string to_string(const Share& share);
 std::optional<Share> share_named(std::string_view text);
 
-/// The number of the shard, of so many, that computes what has this key. It depends on nothing else, so that what is added to a
+/// The number of the shard, from 1 to `count`, that computes what has this key. It depends on nothing else: what is added to a
 /// sweep moves nothing.
 int shard_of(std::string_view key, int count);
 
