@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <limits>
@@ -19,6 +20,14 @@ namespace {
 
 using nlohmann::json;
 
+/// Whether a path, which may be a link, leads to an open file: the holder of the lock removes it.
+bool leads_to(const fs::path& path, int fd) {
+  struct stat opened {
+  }, named{};
+  return fstat(fd, &opened) == 0 && stat(path.c_str(), &named) == 0 && opened.st_ino == named.st_ino &&
+         opened.st_dev == named.st_dev;
+}
+
 /// Opens and locks a file that is made if need be.
 int open_locked(const fs::path& file, const fs::path& path) {
   for (;;) {
@@ -31,7 +40,7 @@ int open_locked(const fs::path& file, const fs::path& path) {
       throw base::FileError(
           fmt::format("{}: another process is recording in it; wait for it or choose another --out", file.string()));
     }
-    if (base::is_at(fd, path)) return fd;  // its last holder has not removed it
+    if (leads_to(path, fd)) return fd;
     close(fd);
   }
 }
