@@ -4,9 +4,11 @@
 #include <fmt/ranges.h>
 
 #include <Eigen/Core>
+#include <chrono>
 #include <cstdlib>
 #include <span>
 #include <system_error>
+#include <thread>
 
 #include "reference/fingerprint.hpp"
 #include "reference/reference_file.hpp"
@@ -14,6 +16,7 @@
 #include "solver/base/atomic_file.hpp"
 #include "solver/base/hash.hpp"
 #include "solver/base/input_file.hpp"
+#include "solver/base/lock_file.hpp"
 #include "solver/base/temporary.hpp"
 
 namespace drape::reference {
@@ -63,6 +66,18 @@ std::optional<Reference> Cache::find(std::string_view key, const Check& check) {
   }
 }
 
+std::unique_ptr<base::LockFile> Cache::lock(std::string_view key, const std::function<void()>& waiting) const {
+  if (folder_.empty()) return nullptr;
+  std::error_code ignored;  // without a folder nothing is kept, which store() says
+  std::filesystem::create_directories(folder_, ignored);
+  auto lock = std::make_unique<base::LockFile>(file(key).string() + ".lock");
+  while (!lock->try_lock()) {
+    if (waiting) waiting();
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+  return lock;
+}
+
 void Cache::store(std::string_view key, const Reference& reference) {
   const std::filesystem::path path = file(key);
   try {
@@ -81,7 +96,9 @@ std::string cache_key(std::string_view scene_toml, double t0, std::span<const do
                      options.size);
 }
 
-Reference cached(Cache& cache, std::string_view key, const std::function<Reference()>& compute, const Cache::Check& check) {
+Reference cached(Cache& cache, std::string_view key, const std::function<Reference()>& compute, const Cache::Check& check,
+                 const std::function<void()>& waiting) {
+  const std::unique_ptr<base::LockFile> lock = cache.lock(key, waiting);
   if (auto known = cache.find(key, check)) return *std::move(known);
   Reference reference = compute();
   cache.store(key, reference);

@@ -2,10 +2,12 @@
 
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string_view>
 
 #include "reference/reference.hpp"
+#include "solver/base/lock_file.hpp"
 
 namespace drape::reference {
 
@@ -30,6 +32,10 @@ class Cache {
   std::optional<Reference> find(std::string_view key, const Check& check = {});
   void store(std::string_view key, const Reference& reference);
 
+  /// Waits until no other process has the lock of the same key, and takes it; every tenth of a second calls `waiting`, which
+  /// may throw. Where nothing can be locked, as where nothing can be kept, it does not wait.
+  std::unique_ptr<base::LockFile> lock(std::string_view key, const std::function<void()>& waiting = {}) const;
+
   /// The file of a key, whether it is there or not.
   std::filesystem::path file(std::string_view key) const;
 
@@ -53,7 +59,9 @@ class Cache {
 /// The caller's part of a key: the complete scene, from which the ODE and y0 follow, and the arguments of reference().
 std::string cache_key(std::string_view scene_toml, double t0, std::span<const double> times, const SolveOptions& options);
 
-/// The reference from the cache, or else from `compute` and into the cache. Exceptions of `compute` pass through.
-Reference cached(Cache& cache, std::string_view key, const std::function<Reference()>& compute, const Cache::Check& check = {});
+/// The reference from the cache, or else from `compute` and into the cache. Of several processes that need the same one at a
+/// time one computes it, and the others wait, as lock() does. Exceptions of `compute` and `waiting` pass through.
+Reference cached(Cache& cache, std::string_view key, const std::function<Reference()>& compute, const Cache::Check& check = {},
+                 const std::function<void()>& waiting = {});
 
 }  // namespace drape::reference

@@ -164,7 +164,7 @@ void expect_parses(const std::string& arguments) {
   bool dry_run = false;
   bench::add_main_job(app, dry_run);
   int exit_code = 0;
-  bench::add_commands(app, "", exit_code);
+  bench::add_commands(app, {}, exit_code);
   app.parse_complete_callback([&app] {  // before the commands' own, which do not run
     for (const CLI::App* command : app.get_subcommands()) expect_names(*command);
     throw CLI::Success();

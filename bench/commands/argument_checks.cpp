@@ -7,6 +7,7 @@
 #include <functional>
 #include <string_view>
 
+#include "bench/runs/shard.hpp"
 #include "solver/base/printable.hpp"
 #include "solver/base/registry.hpp"
 
@@ -80,6 +81,10 @@ double seconds_every(const std::string& text) {
   const std::string key = "every=";
   double seconds = 0;
   return text.starts_with(key) && CLI::detail::lexical_cast(text.substr(key.size()), seconds) ? seconds : 0;
+}
+
+CLI::Validator shard_name() {
+  return expect("i/n with 1 <= i <= n <= 10000", [](const std::string& text) { return share_named(text).has_value(); });
 }
 
 std::string explanation(const CLI::App& app, const CLI::ParseError& error) {

@@ -26,6 +26,9 @@ CLI::Validator output_name();
 CLI::Validator every_seconds();
 double seconds_every(const std::string& text);
 
+/// A shard, "i/n".
+CLI::Validator shard_name();
+
 /// One line on what is wrong with the command line and what would be right.
 std::string explanation(const CLI::App& app, const CLI::ParseError& error);
 

@@ -39,10 +39,10 @@ int check(const CheckArguments& a) {
 
 }  // namespace
 
-void add_check(CLI::App& app, const std::string& command_line, int& exit_code) {
+void add_check(CLI::App& app, const SweepOptions& defaults, int& exit_code) {
   CLI::App& command = *app.add_subcommand("check", "what a method is good for, on one screen: order, stability, energy, cost");
   const auto a = std::make_shared<CheckArguments>();
-  a->output.sweep.command_line = command_line;
+  a->output.sweep = defaults;
   command.add_option("METHOD", a->method, "its name, with /STAGE_SOLVER and /LINEAR_SOLVER if not the first: bdf2/newton")
       ->required()
       ->type_name("");

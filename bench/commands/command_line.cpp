@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -13,13 +12,13 @@
 #include <memory>
 #include <new>
 #include <stdexcept>
-#include <string_view>
 #include <system_error>
 
 #include "bench/commands/argument_checks.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/help.hpp"
 #include "bench/commands/plugin.hpp"
+#include "bench/commands/shell_words.hpp"
 #include "bench/runs/available_memory.hpp"
 #include "bench/runs/interruption.hpp"
 #include "model/scene_file/scene_file.hpp"
@@ -56,17 +55,6 @@ std::string not_enough_memory(const CLI::App& app) {
       app.get_subcommands().empty() ? app.get_name() : app.get_subcommands().front()->get_name(), available_memory() / 1e9);
 }
 
-/// A word as a shell takes it.
-std::string shell_word(const std::string& word) {
-  const auto plain = [](unsigned char c) {
-    return std::isalnum(c) != 0 || std::string_view("-_./,:=+@%").find(char(c)) != std::string_view::npos;
-  };
-  if (!word.empty() && std::ranges::all_of(word, plain)) return word;
-  std::string quoted = "'";
-  for (const char c : word) quoted += c == '\'' ? "'\\''" : std::string(1, c);
-  return quoted + "'";
-}
-
 std::string farewell(const Interrupted& interrupted) {
   const std::string how =
       interrupted.out.empty()
@@ -77,19 +65,20 @@ std::string farewell(const Interrupted& interrupted) {
 
 }  // namespace
 
-void add_commands(CLI::App& app, const std::string& command_line, int& exit_code) {
+void add_commands(CLI::App& app, const SweepOptions& defaults, int& exit_code) {
   add_list(app);
-  add_run(app, command_line);
-  add_study(app, command_line);
+  add_run(app, defaults);
+  add_study(app, defaults);
+  add_merge(app);
   add_inspect(app, exit_code);
   add_compare(app, exit_code);
-  add_check(app, command_line, exit_code);
+  add_check(app, defaults, exit_code);
   add_forces(app, exit_code);
   add_report(app);
   add_export(app);
   add_fabric(app);
   add_pattern(app);
-  add_score(app, command_line);
+  add_score(app, defaults);
   add_peers(app);
   add_completion(app);
   add_man(app);
@@ -119,7 +108,9 @@ int run_command_line(int argc, const char* const* argv) {
   bool dry_run = false;
   add_main_job(app, dry_run);
   int exit_code = 0;
-  add_commands(app, command_line, exit_code);
+  SweepOptions defaults;
+  defaults.command_line = command_line;
+  add_commands(app, defaults, exit_code);
   app.footer(
       fmt::format("Examples:\n"
                   "  {0} run --scene hung-edge --method bdf2,sbdf2 --step 0.01,0.005\n"

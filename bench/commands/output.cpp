@@ -59,6 +59,10 @@ std::filesystem::path sweep_and_print(const std::vector<Group>& groups, Output o
     return {};
   }
   output.sweep.out = out_file(output, job);
+  if (output.sweep.shard) {
+    fmt::print("{}\n", base::printable(compute_shard(groups, output.sweep)));
+    return {};
+  }
   print_table(results::to_table(sweep(groups, output.sweep)), output.format);
   say_where(output.sweep.out, output.format);
   if (output.sweep.frames_every && output.format == "table")
@@ -124,6 +128,13 @@ void add_table_options(CLI::App& command, Output& output) {
 
 void add_output_options(CLI::App& command, Output& output) {
   add_table_options(command, output);
+  command
+      .add_option_function<std::string>(
+          "--shard", [&](const std::string& text) { output.sweep.shard = share_named(text); },
+          "only part i of n of the sweep, begun or continued, in FILE.h5.shard-i-of-n.journal; merge makes FILE.h5 of all n")
+      ->type_name("i/n")
+      ->check(shard_name())
+      ->needs("--out");
   command.add_flag("-n,--dry-run", output.dry_run, "only say how much would be computed, and how long that may take");
   command
       .add_option("--time-limit", output.sweep.limits.seconds, "wall time of a run, which ends as out of time beyond it [none]")

@@ -41,7 +41,8 @@ void add_output_options(CLI::App& command, Output& output);
 /// The file asked for, or one named after the job.
 std::filesystem::path out_file(const Output& output, const std::string& job);
 
-/// Runs all groups, prints the runs, says where they are recorded and returns that; or prints how much that would be.
+/// Runs all groups, prints the runs, says where they are recorded and returns that; or prints how much that would be, or what
+/// is to be said about a shard of them.
 std::filesystem::path sweep_and_print(const std::vector<Group>& groups, Output output, const std::string& job);
 
 /// A table for users, as wide as the terminal, or with all columns where standard output is none.

@@ -108,6 +108,9 @@ Group run_group(const RunArguments& a) {
 }
 
 void run(const RunArguments& a) {
+  if (a.output.sweep.shard && (!a.frames.folder.empty() || !a.report.empty()))
+    throw std::invalid_argument(fmt::format("{} cannot be combined with --shard: it is for all runs",
+                                            a.frames.folder.empty() ? "--report" : "--frames"));
   base::use_threads(a.threads);
   const std::vector<Group> groups{run_group(a)};
   Output output = a.output;
@@ -196,10 +199,10 @@ void add_frame_options(CLI::App& run, RunArguments& a) {
 
 }  // namespace
 
-void add_run(CLI::App& app, const std::string& command_line) {
+void add_run(CLI::App& app, const SweepOptions& defaults) {
   CLI::App& command = *app.add_subcommand("run", "run methods on a scene and compare them with the reference");
   const auto a = std::make_shared<RunArguments>();
-  a->output.sweep.command_line = command_line;
+  a->output.sweep = defaults;
   add_scene_option(command, a->choice);
   command
       .add_option(

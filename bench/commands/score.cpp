@@ -37,10 +37,10 @@ void score(const ScoreArguments& a) {
 
 }  // namespace
 
-void add_score(CLI::App& app, const std::string& command_line) {
+void add_score(CLI::App& app, const SweepOptions& defaults) {
   CLI::App& command = *app.add_subcommand("score", "measure another simulator's motion of a scene against the reference");
   const auto a = std::make_shared<ScoreArguments>();
-  a->output.sweep.command_line = command_line;
+  a->output.sweep = defaults;
   add_scene_option(command, a->choice);
   command
       .add_option("FILE", a->files,

@@ -91,15 +91,19 @@ std::filesystem::path run_study(const StudyArguments& a) {
   }
   SweepOptions options = a.output.sweep;
   options.out = out_file(a.output, a.name);
+  if (options.shard) {
+    fmt::print("{}\n", base::printable(compute_shard(options, sweep, jobs)));
+    return {};
+  }
   print_tables(record_in_file(options, sweep, jobs).tables, a.output.format);
   say_where(options.out, a.output.format);
   return options.out;
 }
 
-void add_study(CLI::App& app, const std::string& command_line) {
+void add_study(CLI::App& app, const SweepOptions& defaults) {
   CLI::App& command = *app.add_subcommand("study", "run one of the studies");
   const auto a = std::make_shared<StudyArguments>();
-  a->output.sweep.command_line = command_line;
+  a->output.sweep = defaults;
   command.add_option("NAME", a->name, "its name")->required()->type_name("");
   command.add_flag("--quick", a->quick, "a short form, for tests");
   command
@@ -115,7 +119,7 @@ void add_study(CLI::App& app, const std::string& command_line) {
   add_output_options(command, a->output);
   command.callback([=] {
     const std::filesystem::path out = run_study(*a);
-    if (a->output.format == "table" && !a->output.dry_run)
+    if (a->output.format == "table" && !out.empty())
       fmt::print("to draw it: bench/run report {} --out DIR\n", base::printable(out.string()));
   });
 }

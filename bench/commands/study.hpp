@@ -18,8 +18,9 @@ struct StudyArguments {
   Output output;
 };
 
-/// Runs the study, prints what it finds, and returns the file that it is recorded in; or prints how much that would be. Throws
-/// std::invalid_argument if the arguments do not go together, and what record_in_file() throws.
+/// Runs the study, prints what it finds, and returns the file that it is recorded in; or prints how much that would be, or what
+/// is to be said about a shard of it. Throws std::invalid_argument if the arguments do not go together, and what
+/// record_in_file() throws.
 std::filesystem::path run_study(const StudyArguments& a);
 
 }  // namespace drape::bench

@@ -6,6 +6,7 @@
 #include <ranges>
 #include <string>
 
+#include "bench/runs/interruption.hpp"
 #include "bench/runs/motion_error.hpp"
 #include "bench/runs/verbosity.hpp"
 #include "model/phases.hpp"
@@ -114,7 +115,8 @@ reference::Reference References::at(double tolerance, const model::Scene& scene,
   }
   options.rtol = tolerance;
   return reference::cached(
-      cache_, key(), [&] { return compute_reference(scene, cloth, times, options, watch_, seconds); }, check);
+      cache_, key(), [&] { return compute_reference(scene, cloth, times, options, watch_, seconds); }, check,
+      check_interruption);
 }
 
 results::ErrorRecord distance(const results::RunRecord& run, const reference::Reference& reference, const model::Scene& scene,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -50,6 +51,19 @@ Job job(std::string name, int parts, Compute compute, Present present) {
 /// each job its results are in the file. A process before this one leaves checkpoints, so that all jobs are done again from
 /// these at little cost, and nothing is recorded twice. If the file is finished already, nothing is done but to read it.
 /// `sweep`: identity of the jobs. Returns all results. Throws base::FileError, and Interrupted, naming the file.
+///
+/// If the options name journals of shards, all is taken from these, as if this process had computed it. Throws
+/// MissingCheckpoints, and what read_shards() throws, before there is a file.
 Results record_in_file(const SweepOptions& options, const std::string& sweep, const std::vector<Job>& jobs);
+
+/// Shards lack results; the message names them and the numbers of the shards.
+struct MissingCheckpoints : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// Computes the shard of the jobs that the options name, as far as that is possible without what others have yet to compute,
+/// and keeps it in its journal. A process before this one, and those that run beside it, have left theirs. Returns what there
+/// is to say about it. Throws like record_in_file().
+std::string compute_shard(const SweepOptions& options, const std::string& sweep, const std::vector<Job>& jobs);
 
 }  // namespace drape::bench

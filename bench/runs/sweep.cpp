@@ -184,20 +184,20 @@ Results run_group(const Group& group, const SweepOptions& options, Checkpoint& c
   const model::Scene& scene = group.front().scene;
   std::vector<MeasuredRun> measured;
   std::string ids;
-  for (const RunSpec& spec : group) {
+  checkpoint.each(group, [&](const RunSpec& spec) {
     const std::string id = identity(spec, options);
     ids += id;
-    measured.push_back(checkpoint.once(id, [&] {
+    measured.push_back(checkpoint.once(fmt::format("{} {}", title(spec), id), [&] {
       checkpoint.show(title(spec));
       MeasuredRun one = measure(spec, options);
       one.run.cell = id;
       return one;
     }));
     checkpoint.advance();
-  }
+  });
   checkpoint.show("timing " + scene.name);
-  auto timed = checkpoint.once("times " + base::long_hash_text(ids),
-                               [&] { return time_all(group, options.repetitions, measured, checkpoint); });
+  auto timed = checkpoint.timed("times " + base::long_hash_text(ids),
+                                [&] { return time_all(group, options.repetitions, measured, checkpoint); });
   for (std::size_t k = 0; k < measured.size(); ++k) {
     if (timed[k].times.empty()) continue;
     measured[k].run.times_ms = std::move(timed[k].times);
@@ -213,9 +213,8 @@ Results run_group(const Group& group, const SweepOptions& options, Checkpoint& c
   return group_results;
 }
 
-}  // namespace
-
-std::vector<results::RunRecord> sweep(const std::vector<Group>& groups, const SweepOptions& options) {
+/// A job for each group; neither may be gone before the jobs are done.
+std::vector<Job> sweep_jobs(const std::vector<Group>& groups, const SweepOptions& options) {
   if (options.frames_every) require_trajectories(groups, options);
   const auto parts_of = [&](const Group& group) {
     return static_cast<int>(group.size()) * (1 + options.repetitions) + (options.reference ? 1 : 0);
@@ -224,9 +223,19 @@ std::vector<results::RunRecord> sweep(const std::vector<Group>& groups, const Sw
   for (const Group& group : groups)
     jobs.push_back({fmt::format("group {}", jobs.size()), parts_of(group),
                     [&](Checkpoint& checkpoint) { return run_group(group, options, checkpoint); }});
-  std::vector<results::RunRecord> all = record_in_file(options, identity(groups, options), jobs).runs;
+  return jobs;
+}
+
+}  // namespace
+
+std::vector<results::RunRecord> sweep(const std::vector<Group>& groups, const SweepOptions& options) {
+  std::vector<results::RunRecord> all = record_in_file(options, identity(groups, options), sweep_jobs(groups, options)).runs;
   if (options.frames_every) results::write_xdmf(options.out, all);
   return all;
+}
+
+std::string compute_shard(const std::vector<Group>& groups, const SweepOptions& options) {
+  return compute_shard(options, identity(groups, options), sweep_jobs(groups, options));
 }
 
 std::filesystem::path default_out(const std::string& job) {

@@ -5,10 +5,12 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "bench/runs/limits.hpp"
 #include "bench/runs/observer.hpp"
 #include "bench/runs/run_spec.hpp"
+#include "bench/runs/shard.hpp"
 #include "results/provenance.hpp"
 
 namespace drape::bench {
@@ -22,7 +24,9 @@ struct SweepOptions {
   std::filesystem::path out;
   results::Start start = results::Start::fresh;  ///< whether a file that is there is continued
   std::string command_line;
-  std::optional<double> frames_every;  ///< [s] between the frames of trajectories; none are kept without
+  std::optional<Share> shard;                 ///< of the sweep, which is all that is computed
+  std::vector<std::filesystem::path> merged;  ///< journals of all its shards, from which it is recorded; empty: it is computed
+  std::optional<double> frames_every;         ///< [s] between the frames of trajectories; none are kept without
   std::function<std::unique_ptr<Observer>(const RunSpec&)> observer_for;  ///< of runs that are recorded; may be empty
 };
 

@@ -133,7 +133,7 @@ results::Table choice_table(const std::vector<SheetRuns>& all) {
 std::vector<SheetRuns> run_sheets(const std::vector<HungSheet>& list, Checkpoint& checkpoint) {
   std::vector<SheetRuns> all;
   all.reserve(list.size());  // runs point into what is in it
-  for (const HungSheet& sheet : list) run_defaults(all.emplace_back(SheetRuns{sheet, {}}), checkpoint);
+  checkpoint.each(list, [&](const HungSheet& sheet) { run_defaults(all.emplace_back(SheetRuns{sheet, {}}), checkpoint); });
   return all;
 }
 

@@ -153,14 +153,15 @@ std::vector<StageMatrix> systems(bool quick) {
 
 std::vector<Conditioned> conditions(bool quick, Checkpoint& checkpoint) {
   std::vector<Conditioned> rows;
-  for (const StageMatrix& system : systems(quick))
-    for (const char* name : compared_solvers) {
+  checkpoint.each(systems(quick), [&](const StageMatrix& system) {
+    checkpoint.each(compared_solvers, [&](const char* name) {
       const std::string id = fmt::format("{} × {}, {} pinned, d = {}, {}, {}", system.n, system.n, system.border.name,
                                          system.damping, system.stage.method, name);
       checkpoint.show(id);
       rows.push_back(checkpoint.once(id, [&] { return condition(system, solver::linear_solver(name)); }));
       checkpoint.advance();
-    }
+    });
+  });
   return rows;
 }
 
@@ -249,12 +250,12 @@ const std::vector<int>& inverse_sizes(bool quick) {
 
 std::vector<Inverse> inverses(bool quick, Checkpoint& checkpoint) {
   std::vector<Inverse> rows;
-  for (const int n : inverse_sizes(quick)) {
+  checkpoint.each(inverse_sizes(quick), [&](const int n) {
     const std::string id = fmt::format("dense inverse, {} particles", n * n);
     checkpoint.show(id);
-    rows.push_back(checkpoint.once(id, [&] { return time_inverse(n, quick); }));
+    rows.push_back(checkpoint.timed(id, [&] { return time_inverse(n, quick); }));
     checkpoint.advance();
-  }
+  });
   return rows;
 }
 

@@ -247,7 +247,7 @@ constexpr results::ColumnOf<Equilibrium> equilibrium_columns[] = {
 std::vector<Equilibrium> curve(const Experiment& experiment, const std::vector<int>& resolutions, Checkpoint& checkpoint) {
   std::vector<Equilibrium> all;
   std::vector<double> spacings, rms;
-  for (const int n : resolutions) {
+  checkpoint.each(resolutions, [&](const int n) {
     checkpoint.show(fmt::format("{}, {}, {} × {}", experiment.name, experiment.form, n, n));
     Equilibrium& row = all.emplace_back(Equilibrium{experiment.name, experiment.form, n, {}, {}, experiment.uncertainty, {}});
     if (n <= experiment.finest)
@@ -259,7 +259,7 @@ std::vector<Equilibrium> curve(const Experiment& experiment, const std::vector<i
       spacings.push_back(1.0 / (n - 1));
     }
     checkpoint.advance();
-  }
+  });
   const auto fit = results::fit_order(spacings, rms, experiment.uncertainty);
   all.front().curve = {fit, conclusion(experiment, fit, rms.empty() ? NAN : rms.back())};
   return all;
@@ -268,8 +268,9 @@ std::vector<Equilibrium> curve(const Experiment& experiment, const std::vector<i
 std::vector<Equilibrium> equilibrium_curves(const std::vector<Experiment>& experiments, const std::vector<int>& resolutions,
                                             Checkpoint& checkpoint) {
   std::vector<Equilibrium> rows;
-  for (const Experiment& experiment : experiments)
+  checkpoint.each(experiments, [&](const Experiment& experiment) {
     std::ranges::move(curve(experiment, resolutions, checkpoint), std::back_inserter(rows));
+  });
   return rows;
 }
 

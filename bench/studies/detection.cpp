@@ -187,14 +187,15 @@ std::vector<Job> detection(const Question& question) {
       "detection", runs,
       [=](Checkpoint& checkpoint) {
         std::vector<Detection> rows;
-        for (const std::string_view scene : scenes)
-          for (const Between& between : betweens) {
+        checkpoint.each(scenes, [&](const std::string_view scene) {
+          checkpoint.each(betweens, [&](const Between& between) {
             const std::string id = fmt::format("{} with {}", scene, between.name);
             checkpoint.show(id);
-            std::ranges::move(checkpoint.once(id, [&] { return detections_on(scene, between, quick); }),
+            std::ranges::move(checkpoint.timed(id, [&] { return detections_on(scene, between, quick); }),
                               std::back_inserter(rows));
             checkpoint.advance();
-          }
+          });
+        });
         return rows;
       },
       [](const std::vector<Detection>& rows) {

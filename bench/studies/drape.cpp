@@ -230,12 +230,13 @@ std::vector<Job> drape_study(const Question& question) {
   }
   const auto compute = [=](Checkpoint& checkpoint) {
     std::vector<Drape> all;
-    for (const auto& [fabric, one] : cases) {
+    checkpoint.each(cases, [&](const auto& drape_case) {
+      const auto& [fabric, one] = drape_case;
       const std::string id = fmt::format("{} {} cells, seed {}, h = {}", fabric->name, one.cells, one.seed, one.step);
       checkpoint.show("drape of " + id);
-      all.push_back(checkpoint.once(id, [&] { return let_fall(*fabric, one); }));
+      all.push_back(checkpoint.once(id, [&, fabric = fabric, one = one] { return let_fall(*fabric, one); }));
       checkpoint.advance();
-    }
+    });
     return all;
   };
   return {job("drape", static_cast<int>(cases.size()), compute, [](const std::vector<Drape>& all) {

@@ -129,12 +129,13 @@ Flutters compare(const char* damping, bool quick, Checkpoint& checkpoint) {
   if (quick) overrides.insert(overrides.end(), {{"grid.n", "8"}, {"end.time", "1.5"}});
   const model::Scene scene = model::load_scene("wind", overrides);
   Flutters all;
-  for (std::size_t k = 0; k < all.size(); ++k) {
-    checkpoint.show(fmt::format("{}, d = {}, {}", scene.name, damping, figure_methods[k]));
-    all[k] =
-        checkpoint.once(fmt::format("{} {}", damping, figure_methods[k]), [&] { return flutter(scene, figure_methods[k]); });
+  std::size_t k = 0;
+  checkpoint.each(figure_methods, [&](const auto& method) {
+    Flutter& one = all[k++];
+    checkpoint.show(fmt::format("{}, d = {}, {}", scene.name, damping, method));
+    one = checkpoint.once(fmt::format("{} {}", damping, method), [&] { return flutter(scene, method); });
     checkpoint.advance();
-  }
+  });
   return all;
 }
 
@@ -270,7 +271,7 @@ results::Table spectrum(const Runs& runs) {
 std::vector<Job> figure_3_2(const Question& question) {
   const auto compute = [quick = question.quick](Checkpoint& checkpoint) {
     Runs runs;
-    for (const char* damping : dampings) runs.push_back(compare(damping, quick, checkpoint));
+    checkpoint.each(dampings, [&](const char* damping) { runs.push_back(compare(damping, quick, checkpoint)); });
     return runs;
   };
   const auto present = [](const Runs& runs) { return std::vector{swings(runs), spectrum(runs)}; };

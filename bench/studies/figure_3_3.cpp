@@ -211,12 +211,13 @@ std::vector<Job> figure_3_3(const Question& question) {
   const std::vector<double> ratios = question.quick ? std::vector{1.0, 100.0} : std::vector{1.0, 10.0, 100.0, 1000.0};
   const auto compute = [=](Checkpoint& checkpoint) {
     std::vector<Lags> rows;
-    for (const double nu : stiffnesses)
-      for (const double ratio : ratios) {
+    checkpoint.each(stiffnesses, [&](const double nu) {
+      checkpoint.each(ratios, [&](const double ratio) {
         checkpoint.show(fmt::format("ν = {}, h k/d = {}", nu, ratio));
         rows.push_back(checkpoint.once(fmt::format("{} {}", nu, ratio), [&] { return lags(nu, ratio); }));
         checkpoint.advance();
-      }
+      });
+    });
     return rows;
   };
   return {job("figure-3.3", static_cast<int>(stiffnesses.size() * ratios.size()), compute, lags_table)};

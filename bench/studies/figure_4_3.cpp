@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <numeric>
 #include <optional>
@@ -189,14 +190,14 @@ std::vector<Ratio> contact_costs(bool quick, Checkpoint& checkpoint) {
   const model::Scene scene = swing(quick);
   model::Scene without_box = scene;
   without_box.obstacles.clear();
-  for (const solver::Method& method : solver::thesis_methods()) {
-    if (!method.implicit()) continue;
+  checkpoint.each(solver::thesis_methods(), [&](const solver::Method& method) {
+    if (!method.implicit()) return;
     checkpoint.show(fmt::format("cost of contact, {}", method.name));
     const Group group{spec(scene, method.name), spec(without_box, method.name)};
-    std::ranges::move(checkpoint.once(std::string(method.name), [&] { return ratios(group, quick ? 1 : 5); }),
+    std::ranges::move(checkpoint.timed(std::string(method.name), [&] { return ratios(group, quick ? 1 : 5); }),
                       std::back_inserter(rows));
     checkpoint.advance();
-  }
+  });
   return rows;
 }
 
@@ -212,11 +213,11 @@ std::vector<Job> figure_4_3(const Question& question) {
   const auto implicit = std::ranges::count_if(solver::thesis_methods(), [](const solver::Method& m) { return m.implicit(); });
   const auto swing_runs = [=](Checkpoint& checkpoint) {
     std::vector<BoxRun> runs;
-    for (const char* method : {"bdf2", "sbdf2"}) {
+    checkpoint.each(std::array{"bdf2", "sbdf2"}, [&](const char* method) {
       checkpoint.show(fmt::format("{} against the box", method));
       runs.push_back(checkpoint.once(method, [&] { return swing_run(spec(swing(quick), method)); }));
       checkpoint.advance();
-    }
+    });
     return runs;
   };
   const auto present = [](const std::vector<BoxRun>& runs) {

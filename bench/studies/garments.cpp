@@ -126,21 +126,22 @@ std::vector<DressRun> run_dress(bool quick, Checkpoint& checkpoint) {
       row.thesis_seconds = printed.seconds;
     }
   std::vector<std::size_t> counts;
-  for (std::size_t k = 0; k < group.size(); ++k) {
-    DressRun& row = rows[k];
+  std::size_t k = 0;
+  checkpoint.each(rows, [&](DressRun& row) {
+    const RunSpec& spec = group[k++];
     const auto run = checkpoint.once(fmt::format("dress {} {}", row.solver, row.method), [&] {
       checkpoint.show(fmt::format("dress, {} with the solvers of {}", row.method, row.solver));
-      return record(group[k]);
+      return record(spec);
     });
     row.updates = work_count(run, "updates"), row.cg_iterations = work_count(run, "cg_iterations");
     row.clearance = run.contact->clearance, row.energy_rise = run.contact->energy_rise;
     row.outcome = ending(run.outcome, run.last_good_time);
     counts.push_back(steps_to_time(run));
     checkpoint.advance();
-  }
+  });
   checkpoint.show("timing the dress");
-  const auto times = checkpoint.once("times dress", [&] { return time_group(group, counts, quick ? 1 : 3, [] {}); });
-  for (std::size_t k = 0; k < rows.size(); ++k) rows[k].solver_ms = base::quantile(times[k], 0.5);
+  const auto times = checkpoint.timed("times dress", [&] { return time_group(group, counts, quick ? 1 : 3, [] {}); });
+  for (k = 0; k < rows.size(); ++k) rows[k].solver_ms = base::quantile(times[k], 0.5);
   judge(rows);
   return rows;
 }
@@ -289,7 +290,7 @@ std::vector<GarmentRun> run_scene(const std::string& name, bool quick, Checkpoin
   std::vector<GarmentRun> rows;
   Group group;
   std::vector<std::size_t> counts;
-  for (const std::string_view method : garment_methods) {
+  checkpoint.each(garment_methods, [&](const std::string_view method) {
     const auto run = kept(method, usual_step);
     GarmentRun& row = rows.emplace_back(GarmentRun{name, std::string(method), std::string(to_string(run.outcome))});
     row.particles = model::nodes(scene);
@@ -302,9 +303,9 @@ std::vector<GarmentRun> run_scene(const std::string& name, bool quick, Checkpoin
     group.push_back({scene, "", &solver::method(method), usual_step, {}});
     counts.push_back(steps_to_time(run));
     checkpoint.advance();
-  }
+  });
   checkpoint.show("timing " + name);
-  return checkpoint.once("costs " + name, [&] {
+  return checkpoint.timed("costs " + name, [&] {
     const std::vector<MedianCosts> times = median_costs(group, counts, quick ? 1 : 3);
     for (std::size_t k = 0; k < rows.size(); ++k) {
       const Costs& median = times[k].median;

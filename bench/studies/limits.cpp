@@ -126,13 +126,14 @@ constexpr results::ColumnOf<Onset> onset_columns[] = {
 
 std::vector<Onset> onsets(bool quick, Checkpoint& checkpoint) {
   std::vector<Onset> rows;
-  for (const ExplicitForce& force : explicit_forces)
-    for (const LimitedMethod& limited : limited_methods) {
+  checkpoint.each(explicit_forces, [&](const ExplicitForce& force) {
+    checkpoint.each(limited_methods, [&](const LimitedMethod& limited) {
       const std::string id = fmt::format("{}, {}", force.name, limited.name);
       checkpoint.show(id);
       rows.push_back(checkpoint.once(id, [&] { return find_onset(limited, force, quick); }));
       checkpoint.advance();
-    }
+    });
+  });
   return rows;
 }
 

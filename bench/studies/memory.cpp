@@ -282,11 +282,11 @@ constexpr double cost_qualities[] = {0, 100, 20, 5};
 
 std::vector<MemoryCost> costs(bool quick, Checkpoint& checkpoint) {
   std::vector<MemoryCost> all;
-  for (const double quality : cost_qualities) {
-    const auto rows = checkpoint.once(fmt::format("cost {:g}", quality), [&] { return costs_of(quality, quick, checkpoint); });
+  checkpoint.each(cost_qualities, [&](const double quality) {
+    const auto rows = checkpoint.timed(fmt::format("cost {:g}", quality), [&] { return costs_of(quality, quick, checkpoint); });
     all.insert(all.end(), rows.begin(), rows.end());
     checkpoint.advance();
-  }
+  });
   return all;
 }
 

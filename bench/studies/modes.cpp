@@ -214,11 +214,11 @@ Job table_of(const char* name, const char* description, const results::ColumnOf<
              std::vector<Row> (*rows_of)(const Method&, bool quick, Checkpoint&), bool quick, const Methods& methods) {
   const auto compute = [=](Checkpoint& checkpoint) {
     std::vector<Row> rows;
-    for (const Method* method : methods) {
+    checkpoint.each(methods, [&](const Method* method) {
       checkpoint.show(fmt::format("{} of {}", name, method->name));
       std::ranges::move(rows_of(*method, quick, checkpoint), std::back_inserter(rows));
       checkpoint.advance();
-    }
+    });
     return rows;
   };
   const auto present = [=, &columns](const std::vector<Row>& rows) {

@@ -113,7 +113,7 @@ results::Table to_table(const std::vector<Grown>& rows) {
 
 std::vector<Grown> grown(bool quick, Checkpoint& checkpoint) {
   std::vector<Grown> rows;
-  for (const GrowthScene& sheet : growing) {
+  checkpoint.each(growing, [&](const GrowthScene& sheet) {
     std::vector<model::Override> overrides{{"grid.n", quick ? "4" : "6"}, {"material.damping", sheet.damping}};
     if (sheet.pleats != nullptr) overrides.push_back({"start.pleats", sheet.pleats});
     model::Scene scene = model::load_scene(sheet.scene, overrides);
@@ -122,7 +122,7 @@ std::vector<Grown> grown(bool quick, Checkpoint& checkpoint) {
     checkpoint.show(name);
     rows.push_back({scene, checkpoint.once(name, [&] { return grow(scene); })});
     checkpoint.advance();
-  }
+  });
   return rows;
 }
 
@@ -199,7 +199,7 @@ std::vector<PeerSolution> compared_on(const std::string& name, const std::string
   for (const Peer& peer : compared_peers) {
     checkpoint.show(fmt::format("{}, d = {}, {}", name, damping, peer.solver));
     Solution solution =
-        checkpoint.once(fmt::format("{} {} {}", name, damping, peer.solver), [&] { return solve(peer, scene); });
+        checkpoint.timed(fmt::format("{} {} {}", name, damping, peer.solver), [&] { return solve(peer, scene); });
     checkpoint.advance();
     std::optional<double> distance;
     if (!rows.empty()) distance = largest_distance(solution, rows.front().solution, model::size(scene));
@@ -210,9 +210,11 @@ std::vector<PeerSolution> compared_on(const std::string& name, const std::string
 
 std::vector<PeerSolution> compare(bool quick, Checkpoint& checkpoint) {
   std::vector<PeerSolution> rows;
-  for (const std::string& name : reference_scenes)
-    for (const std::string& damping : reference_dampings)
+  checkpoint.each(reference_scenes, [&](const std::string& name) {
+    checkpoint.each(reference_dampings, [&](const std::string& damping) {
       std::ranges::move(compared_on(name, damping, quick, checkpoint), std::back_inserter(rows));
+    });
+  });
   return rows;
 }
 

@@ -136,8 +136,8 @@ OrdersOnScene compute_orders(const model::Scene& scene, double most_work, const 
   checkpoint.advance();
   const bool kinks = has_kinks(cloth);
   std::vector<RefinedRun> runs;
-  for (const solver::Method* method : methods) {
-    if (method->needs_energies && !cloth.plan.without_energy.empty()) continue;
+  checkpoint.each(methods, [&](const solver::Method* method) {
+    if (method->needs_energies && !cloth.plan.without_energy.empty()) return;
     checkpoint.show(fmt::format("{} on {}", method->name, scene.name));
     const std::string name(method->name);
     const bool ends_at_kinks = kinks && method->order > 2;  // a few kinks cost a lower order nothing
@@ -152,7 +152,7 @@ OrdersOnScene compute_orders(const model::Scene& scene, double most_work, const 
       std::ranges::move(curve, std::back_inserter(runs));
     }
     checkpoint.advance();
-  }
+  });
   return {fmt::format("{} + {}", reference.name, reference.witness), std::move(runs)};
 }
 

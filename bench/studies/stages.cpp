@@ -254,7 +254,7 @@ std::vector<double> dampings(bool quick) { return quick ? std::vector{5.0} : std
 
 std::vector<StageWork> run_stages(bool quick, Checkpoint& checkpoint) {
   std::vector<StageWork> rows;
-  for (const double damping : dampings(quick)) {
+  checkpoint.each(dampings(quick), [&](const double damping) {
     const StagesOfSheet stages = stages_of(damping, quick);
     for (const Beside beside : {Beside::right_hand_side, Beside::inertia})
       for (const double residual : residuals)
@@ -262,11 +262,11 @@ std::vector<StageWork> run_stages(bool quick, Checkpoint& checkpoint) {
           if (!ends_beside(solver, beside)) continue;
           const std::string id = fmt::format("{}, d = {}, {} {}", name_of(solver), damping, residual, to_string(beside));
           checkpoint.show(id);
-          rows.push_back(checkpoint.once(id, [&] { return solve_stages(stages, solver, beside, residual); }));
+          rows.push_back(checkpoint.timed(id, [&] { return solve_stages(stages, solver, beside, residual); }));
           if (quick) rows.back().known.reset();  // of another sheet
         }
     checkpoint.advance();
-  }
+  });
   return rows;
 }
 

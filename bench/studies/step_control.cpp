@@ -196,7 +196,7 @@ void time_policies(const Group& group, std::vector<PolicyRun>& runs, bool quick,
       most_steps.push_back(runs[k].most_steps);
       rows.push_back(&runs[k]);
     }
-  const auto times = checkpoint.once("times", [&] { return time_group(timed, most_steps, quick ? 1 : 3, [] {}); });
+  const auto times = checkpoint.timed("times", [&] { return time_group(timed, most_steps, quick ? 1 : 3, [] {}); });
   for (std::size_t k = 0; k < rows.size(); ++k) rows[k]->ms = base::quantile(times[k], 0.5);
 }
 
@@ -208,13 +208,13 @@ std::vector<PolicyRun> run_policies(const Controlled& setting, bool quick, Check
   const reference::Reference truth = references(scene, model::compile(scene));
   Group group;
   std::vector<PolicyRun> runs;
-  for (const Policy& policy : policies(quick)) {
+  checkpoint.each(policies(quick), [&](const Policy& policy) {
     const std::string id = policy.kind + " " + policy.setting;
     checkpoint.show(fmt::format("{} {}, {}", scene.name, setting.set(), id));
     group.push_back(controlled_spec(policy, scene));
     runs.push_back(checkpoint.once(id, [&] { return run_policy(setting, policy, group.back(), truth); }));
     checkpoint.advance();
-  }
+  });
   time_policies(group, runs, quick, checkpoint);
   for (PolicyRun& run : runs)
     if (run.kind != "constant") run.verdict = verdict_on(run, runs);
@@ -234,8 +234,9 @@ std::vector<Job> step_control(const Question& question) {
   const std::vector<Controlled> list = controlled_scenes(quick);
   const auto compute = [=](Checkpoint& checkpoint) {
     std::vector<PolicyRun> rows;
-    for (const Controlled& setting : list)
+    checkpoint.each(list, [&](const Controlled& setting) {
       std::ranges::move(run_policies(setting, quick, checkpoint), std::back_inserter(rows));
+    });
     return rows;
   };
   return {job("step-control", static_cast<int>(list.size() * policies(quick).size()), compute, policy_table)};

@@ -141,14 +141,14 @@ std::vector<Reproduced> reproduce(bool quick, Checkpoint& checkpoint) {
   std::vector<Reproduced> all;
   std::string damping;
   std::optional<Case> on;
-  for (const PeerRow& row : rows(quick)) {
+  checkpoint.each(rows(quick), [&](const PeerRow& row) {
     checkpoint.show(fmt::format("d = {}, {}: {:g}", row.damping, row.setup.name(), row.value));
-    all.push_back({row, checkpoint.once(fmt::format("{} {} {}", row.damping, row.setup.name(), row.value), [&] {
+    all.push_back({row, checkpoint.timed(fmt::format("{} {} {}", row.damping, row.setup.name(), row.value), [&] {
                      if (row.damping != damping) on = make_case(damping = row.damping, quick);
                      return measure(row, *on);
                    })});
     checkpoint.advance();
-  }
+  });
   return all;
 }
 

@@ -107,7 +107,8 @@ std::vector<BlockRun> rows_of(const Block& block, bool quick, Checkpoint& checkp
 
 std::vector<BlockRun> run_blocks(bool quick, Checkpoint& checkpoint) {
   std::vector<BlockRun> rows;
-  for (const Block& block : blocks()) std::ranges::move(rows_of(block, quick, checkpoint), std::back_inserter(rows));
+  checkpoint.each(blocks(),
+                  [&](const Block& block) { std::ranges::move(rows_of(block, quick, checkpoint), std::back_inserter(rows)); });
   return rows;
 }
 

@@ -91,18 +91,18 @@ MethodRun row_of(const TableclothBlock& block, const RunSpec& cell, const result
 std::vector<results::RunRecord> timed_runs(const std::string& block, const Group& group, int count, Checkpoint& checkpoint) {
   std::vector<results::RunRecord> runs;
   std::vector<std::size_t> steps;
-  for (const RunSpec& spec : group) {
+  checkpoint.each(group, [&](const RunSpec& spec) {
     runs.push_back(checkpoint.once(fmt::format("{} {}", block, spec.method->name), [&] { return record(spec); }));
     steps.push_back(steps_to_time(runs.back()));
-  }
-  const auto times = checkpoint.once("times " + block, [&] { return time_group(group, steps, count, [] {}); });
+  });
+  const auto times = checkpoint.timed("times " + block, [&] { return time_group(group, steps, count, [] {}); });
   for (std::size_t k = 0; k < runs.size(); ++k) runs[k].times_ms = times[k];
   return runs;
 }
 
 std::vector<MethodRun> run_tablecloths(bool quick, Checkpoint& checkpoint) {
   std::vector<MethodRun> rows;
-  for (const TableclothBlock& block : tablecloth_blocks()) {
+  checkpoint.each(tablecloth_blocks(), [&](const TableclothBlock& block) {
     checkpoint.show("tablecloth, " + block.name);
     const Group group = cells(block, quick);
     const auto runs = timed_runs(block.name, group, repetitions(quick), checkpoint);
@@ -110,7 +110,7 @@ std::vector<MethodRun> run_tablecloths(bool quick, Checkpoint& checkpoint) {
       rows.push_back(row_of(block, group[k], runs[k]));
       checkpoint.advance();
     }
-  }
+  });
   return rows;
 }
 

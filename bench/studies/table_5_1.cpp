@@ -166,7 +166,7 @@ class Refinements {
 };
 
 std::vector<RefinementCost> refinement_costs(bool quick, Checkpoint& checkpoint) {
-  return checkpoint.once("costs", [&] {
+  return checkpoint.timed("costs", [&] {
     std::vector<std::unique_ptr<Refinements>> all;
     for (const PublishedRefinement& one : refined_scenes(quick)) {
       checkpoint.show(fmt::format("refining {}", one.scene));
@@ -315,7 +315,7 @@ std::vector<Worth> worth_on(std::string_view name, bool quick, Checkpoint& check
   }
   checkpoint.show(fmt::format("timing {}", name));
   const auto times =
-      checkpoint.once(fmt::format("times {}", name), [&] { return time_group(group, counts, quick ? 1 : 5, [] {}); });
+      checkpoint.timed(fmt::format("times {}", name), [&] { return time_group(group, counts, quick ? 1 : 5, [] {}); });
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const double seconds = static_cast<double>(counts[k]) * worth_step;
     rows[k].time = base::quantile(times[k], 0.5) / seconds;
@@ -424,8 +424,9 @@ std::vector<Job> table_5_1(const Question& question) {
               "table-5.1-worth", static_cast<int>(scenes.size()) * (quick ? 2 : static_cast<int>(std::size(compared_sheets))),
               [=](Checkpoint& checkpoint) {
                 std::vector<Worth> rows;
-                for (const PublishedRefinement& one : scenes)
+                checkpoint.each(scenes, [&](const PublishedRefinement& one) {
                   std::ranges::move(worth_on(one.scene, quick, checkpoint), std::back_inserter(rows));
+                });
                 return rows;
               },
               worth_table),
@@ -433,13 +434,14 @@ std::vector<Job> table_5_1(const Question& question) {
               "table-5.1-jumps", 2 * static_cast<int>(tried.size()),
               [=](Checkpoint& checkpoint) {
                 std::vector<Jumps> rows;
-                for (const solver::Method& method : tried)
+                checkpoint.each(tried, [&](const solver::Method& method) {
                   for (const bool adaptive : {false, true}) {
                     const std::string id = fmt::format("{} adaptive = {}", method.name, adaptive);
                     checkpoint.show(id);
                     rows.push_back(checkpoint.once(id, [&] { return jumps_of(method.name, adaptive); }));
                     checkpoint.advance();
                   }
+                });
                 return rows;
               },
               [](const std::vector<Jumps>& rows) {

@@ -197,7 +197,7 @@ ControlledRuns tolerances_on(const Setting& setting, const Methods& methods, Che
   const Measurement measure(setting, scene, references(scene, model::compile(scene)));
   checkpoint.advance();
   ControlledRuns all{setting.name, scene.name, {}};
-  for (const Method* const chosen : methods) {
+  checkpoint.each(methods, [&](const Method* chosen) {
     const Method& method = *chosen;
     for (int digits = 2; digits <= setting.digits; ++digits) {
       checkpoint.show(fmt::format("{} on {}, 1e-{}", method.name, scene.name, digits));
@@ -206,7 +206,7 @@ ControlledRuns tolerances_on(const Setting& setting, const Methods& methods, Che
           checkpoint.once(fmt::format("{} {}", method.name, digits), [&] { return measure(method, tolerance); }));
     }
     checkpoint.advance();
-  }
+  });
   return all;
 }
 
@@ -279,7 +279,7 @@ std::vector<Job> tolerance(const Question& question) {
   const std::vector<Setting> list = settings(question.quick);
   const auto compute = [=](Checkpoint& checkpoint) {
     std::vector<ControlledRuns> all;
-    for (const Setting& setting : list) all.push_back(tolerances_on(setting, methods, checkpoint));
+    checkpoint.each(list, [&](const Setting& setting) { all.push_back(tolerances_on(setting, methods, checkpoint)); });
     return all;
   };
   const auto present = [=](const auto& all) { return tolerance_tables(all, methods); };

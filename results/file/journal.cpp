@@ -20,8 +20,8 @@ namespace {
 
 using nlohmann::json;
 
-/// Whether a descriptor is still what a path names: the holder of the lock removes the file.
-bool is_at(int fd, const fs::path& path) {
+/// Whether a path, which may be a link, leads to an open file: the holder of the lock removes it.
+bool leads_to(const fs::path& path, int fd) {
   struct stat opened {
   }, named{};
   return fstat(fd, &opened) == 0 && stat(path.c_str(), &named) == 0 && opened.st_ino == named.st_ino &&
@@ -40,7 +40,7 @@ int open_locked(const fs::path& file, const fs::path& path) {
       throw base::FileError(
           fmt::format("{}: another process is recording in it; wait for it or choose another --out", file.string()));
     }
-    if (is_at(fd, path)) return fd;
+    if (leads_to(path, fd)) return fd;
     close(fd);
   }
 }
@@ -109,7 +109,31 @@ std::string content(const fs::path& path) {
   }
 }
 
+/// What a journal begins with: its complete part.
+struct Beginning {
+  JournalContent content;
+  std::streamoff size = 0;  ///< [bytes]
+};
+
+Beginning beginning(const std::string& bytes, const fs::path& path) {
+  std::istringstream sequence(bytes);
+  Beginning all{{facts_in(next_item(sequence)), {}}};
+  if (all.content.facts.empty())
+    throw base::FileError(fmt::format("{}: is not a journal of this program; remove it", path.string()));
+  all.size = sequence.tellg();
+  for (json item = next_item(sequence); is_checkpoint(item); item = next_item(sequence)) {
+    all.content.entries.insert_or_assign(item[0].get<std::string>(), Journal::Bytes(item[1].get_binary()));
+    all.size = sequence.tellg();
+  }
+  return all;
+}
+
 }  // namespace
+
+JournalContent read_journal(const fs::path& path) {
+  const std::string bytes = content(path);
+  return bytes.empty() ? JournalContent() : beginning(bytes, path).content;
+}
 
 Journal::Journal(const fs::path& file, const Provenance& provenance, Start start)
     : file_(file), path_(file.string() + ".journal"), lock_(open_locked(file_, path_)), header_(header_of(provenance)) {
@@ -124,19 +148,13 @@ Journal::~Journal() {
 void Journal::read(const Provenance& provenance, Start start) {
   const std::string bytes = content(path_);
   if (std::string(header_.begin(), header_.end()).starts_with(bytes)) return clear();
-  std::istringstream sequence(bytes);
-  const Provenance theirs = facts_in(next_item(sequence));
-  if (theirs.empty()) throw base::FileError(fmt::format("{}: is not a journal of this program; remove it", path_.string()));
-  auto good = sequence.tellg();
-  for (json item = next_item(sequence); is_checkpoint(item); item = next_item(sequence)) {
-    entries_.insert_or_assign(item[0].get<std::string>(), Bytes(item[1].get_binary()));
-    good = sequence.tellg();
-  }
+  auto [theirs, good] = beginning(bytes, path_);
+  entries_ = std::move(theirs.entries);
   if (entries_.empty()) return clear();
   if (start == Start::fresh)
     throw base::FileError(
         fmt::format("{} is left of a sweep that did not end; continue it by --resume, or remove it", path_.string()));
-  if (const std::string why = why_not_resumed(theirs, provenance); !why.empty())
+  if (const std::string why = why_not_resumed(theirs.facts, provenance); !why.empty())
     throw base::FileError(fmt::format("{}: cannot be continued: {}; choose another --out, or remove it", path_.string(), why));
   if (ftruncate(lock_.fd, good) != 0) base::fail(path_, "cannot be written");
 }

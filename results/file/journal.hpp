@@ -29,6 +29,7 @@ class Journal {
   Journal& operator=(const Journal&) = delete;
 
   bool empty() const { return entries_.empty(); }
+  std::size_t size() const { return entries_.size(); }  ///< number of checkpoints
 
   /// What was recorded at a checkpoint, null if nothing was.
   const Bytes* find(const std::string& id) const;
@@ -47,5 +48,15 @@ class Journal {
   Bytes header_;
   std::map<std::string, Bytes> entries_;
 };
+
+/// What is in a journal, which its process may be writing.
+struct JournalContent {
+  Provenance facts;  ///< that all processes share which may write it
+  std::map<std::string, Journal::Bytes> entries;
+};
+
+/// Reads a journal without its lock: all checkpoints that are complete. None, and no facts, if it has not begun. Throws
+/// FileError if the file cannot be read or is not a journal.
+JournalContent read_journal(const std::filesystem::path& path);
 
 }  // namespace drape::results

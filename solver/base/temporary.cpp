@@ -27,11 +27,6 @@ Temporary folder_in(const fs::path& parent, const std::string& name) {
   }
 }
 
-fs::path system_folder() {
-  const char* named = std::getenv("TMPDIR");
-  return named == nullptr || *named == 0 ? "/tmp" : named;
-}
-
 constexpr std::string_view prefix = ".drape-tmp-";  // of names that are ours alone to remove
 
 bool is_temporary(std::string_view name) {
@@ -41,14 +36,6 @@ bool is_temporary(std::string_view name) {
 fs::path next_name(const fs::path& folder) {
   static std::atomic<int> count = 0;
   return folder / (std::string(prefix) + std::to_string(getpid()) + "-" + std::to_string(count++));
-}
-
-/// Whether a descriptor is still what a path names.
-bool is_at(int fd, const fs::path& path) {
-  struct stat opened {
-  }, named{};
-  return fstat(fd, &opened) == 0 && lstat(path.c_str(), &named) == 0 && opened.st_ino == named.st_ino &&
-         opened.st_dev == named.st_dev;
 }
 
 /// A new entry, opened; negative with the reason in errno.
@@ -64,6 +51,18 @@ int create(const fs::path& path, Temporary::Kind kind) {
 bool locked(int fd) { return flock(fd, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK; }
 
 }  // namespace
+
+bool is_at(int fd, const fs::path& path) {
+  struct stat opened {
+  }, named{};
+  return fstat(fd, &opened) == 0 && lstat(path.c_str(), &named) == 0 && opened.st_ino == named.st_ino &&
+         opened.st_dev == named.st_dev;
+}
+
+fs::path system_folder() {
+  const char* named = std::getenv("TMPDIR");
+  return named == nullptr || *named == 0 ? "/tmp" : named;
+}
 
 TemporaryFolder::TemporaryFolder()
     : folder_(folder_in(system_folder(), fmt::format("TMPDIR, the folder for temporary files, {}", system_folder().string()))) {

@@ -30,6 +30,12 @@ class Temporary {
 /// ignored: leftovers do no harm.
 void remove_leftovers(const std::filesystem::path& folder);
 
+/// Whether a descriptor is still what a path names: who holds its lock may have removed it.
+bool is_at(int fd, const std::filesystem::path& path);
+
+/// The folder that TMPDIR names, or else /tmp.
+std::filesystem::path system_folder();
+
 /// A new folder that is gone, with all it contains, at the end of the scope; if its process is killed before, when the next one
 /// makes such a folder.
 class TemporaryFolder {

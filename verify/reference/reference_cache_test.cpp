@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -8,6 +10,9 @@
 #include <fstream>
 #include <iterator>
 #include <numbers>
+#include <stdexcept>
+#include <thread>
+#include <vector>
 
 #include "reference/cache.hpp"
 #include "verify/support/temporary_folder.hpp"
@@ -167,6 +172,34 @@ TEST_F(ReferenceCache, KeepsNothingOfAFailedComputation) {
   EXPECT_THROW(cached(cache, "scene", []() -> Reference { throw reference::ReferenceError("no", "CV_CONV_FAILURE", 0); }),
                reference::ReferenceError);
   ask("scene");
+  EXPECT_EQ(computed, 1);
+}
+
+TEST_F(ReferenceCache, OfProcessesThatNeedTheSameOneComputesIt) {
+  std::atomic<int> computed_by_all = 0, asked = 0;
+  const auto slowly = [&] {
+    ++computed_by_all;
+    std::this_thread::sleep_for(std::chrono::milliseconds(250));
+    return some_reference();
+  };
+  std::vector<std::thread> threads;
+  for (int k = 0; k < 3; ++k)
+    threads.emplace_back([&] {
+      Cache cache(folder);
+      EXPECT_TRUE(equal(cached(cache, "scene", slowly, {}, [&] { ++asked; }), some_reference()));
+    });
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(computed_by_all, 1);
+  EXPECT_GE(asked, 2);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 1) << "the lock is gone";
+}
+
+TEST_F(ReferenceCache, WaitsNoLongerThanItsCallerLikes) {
+  Cache cache(folder);
+  const auto lock = cache.lock("scene");
+  EXPECT_THROW(cached(cache, "scene", compute, {}, [] { throw std::runtime_error("enough"); }), std::runtime_error);
+  EXPECT_EQ(computed, 0);
+  cached(cache, "another scene", compute);
   EXPECT_EQ(computed, 1);
 }
 

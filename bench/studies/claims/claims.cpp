@@ -101,11 +101,12 @@ constexpr ColumnOf<CaseRow> case_columns[] = {
 
 std::vector<LedgerRow> measure_claims(Checkpoint& checkpoint) {
   std::vector<LedgerRow> rows;
-  for (const Claim* claim : all_claims()) {
+  checkpoint.each(all_claims(), [&](const Claim* claim) {
     checkpoint.show(fmt::format("{}: {}", claim->id, claim->claim));
-    rows.push_back({claim, checkpoint.once(std::string(claim->id), [&] { return claim->measure(); })});
+    const std::string id(claim->id);
+    rows.push_back({claim, claim->timed ? checkpoint.timed(id, claim->measure) : checkpoint.once(id, claim->measure)});
     checkpoint.advance();
-  }
+  });
   return rows;
 }
 

@@ -248,7 +248,7 @@ void study_contact(const std::string& name, std::span<const char* const> methods
   std::vector<WatchedRun> usual_runs;
   Group group;
   std::vector<std::size_t> counts;
-  for (const std::string_view method : methods) {
+  checkpoint.each(methods, [&](const std::string_view method) {
     const WatchedRun& usual = usual_runs.emplace_back(kept(method, contact_step));
     ContactRun& row = rows.emplace_back(contact_row(name, method, usual));
     const auto largest = std::ranges::find_if(
@@ -261,11 +261,11 @@ void study_contact(const std::string& name, std::span<const char* const> methods
     group.push_back(contact_spec(scene, method));
     counts.push_back(std::max<std::size_t>(1, steps_to_time(usual.run)));
     checkpoint.advance();
-  }
+  });
   checkpoint.show("reference of " + name);
   const auto errors = checkpoint.once("errors " + name, [&] { return contact_errors(scene, usual_runs); });
   checkpoint.show("timing " + name);
-  const auto times = checkpoint.once("times " + name, [&] {
+  const auto times = checkpoint.timed("times " + name, [&] {
     std::vector<std::array<double, 5>> found;
     for (const auto& [median, spread] : median_costs(group, counts, quick ? 1 : 3))
       found.push_back({median.forces, median.detection, median.response, median.rest, spread});
@@ -300,8 +300,11 @@ std::vector<Job> contact(const Question& question) {
               "contact", static_cast<int>(scenes.size() * methods.size() + garments.size() * garment_methods.size()),
               [=](Checkpoint& checkpoint) {
                 ContactStudy study;
-                for (const char* name : scenes) study_contact(name, methods, quick, checkpoint, study);
-                for (const char* name : garments) study_contact(name, garment_methods, quick, checkpoint, study);
+                const std::array groups{std::pair(scenes, methods), std::pair(garments, garment_methods)};
+                checkpoint.each(groups, [&](const auto& group) {
+                  checkpoint.each(group.first,
+                                  [&](const char* name) { study_contact(name, group.second, quick, checkpoint, study); });
+                });
                 return study;
               },
               present_contact),

@@ -80,8 +80,8 @@ Verdict beside_constraint(const ResponseRun& constraint, const ResponseRun& othe
 std::vector<ResponseRun> response_rows(std::span<const char* const> scenes, std::span<const char* const> methods, bool quick,
                                        Checkpoint& checkpoint) {
   std::vector<ResponseRun> rows;
-  for (const std::string scene : scenes)
-    for (const std::string_view method : methods) {
+  checkpoint.each(scenes, [&](const std::string scene) {
+    checkpoint.each(methods, [&](const std::string_view method) {
       const auto constraint = rows.size();
       for (const std::string_view response : contact_responses) {
         const std::string id = fmt::format("{} {} {}", scene, method, response);
@@ -90,7 +90,8 @@ std::vector<ResponseRun> response_rows(std::span<const char* const> scenes, std:
         rows.back().verdict = beside_constraint(rows[constraint], rows.back());
       }
       checkpoint.advance();
-    }
+    });
+  });
   return rows;
 }
 

@@ -11,7 +11,7 @@ Job field_job(std::vector<FieldSheet> list, const Methods& methods) {
   const int parts = static_cast<int>(list.size() * all_or(methods).size());
   const auto compute = [list = std::move(list), methods](Checkpoint& checkpoint) {
     std::vector<SheetResult> sheets;
-    for (const FieldSheet& sheet : list) sheets.push_back(run_sheet(sheet, methods, checkpoint));
+    checkpoint.each(list, [&](const FieldSheet& sheet) { sheets.push_back(run_sheet(sheet, methods, checkpoint)); });
     return sheets;
   };
   return job("field", parts, compute, field_tables);

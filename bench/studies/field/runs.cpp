@@ -128,7 +128,7 @@ void time_field(SheetResult& sheet, const model::Scene& scene, Checkpoint& check
     };
     repeated.push_back({prepare, repetitions_of_all});
   }
-  const auto times = checkpoint.once("times", [&] {
+  const auto times = checkpoint.timed("times", [&] {
     return time_runs(
         repeated, [] {}, TimeOf::process);
   });
@@ -156,14 +156,14 @@ SheetResult run_sheet(const FieldSheet& sheet, const Methods& methods, Checkpoin
   const FieldTruth truth = field_truth(sheet, scene, cloth, checkpoint);
   SheetResult result{sheet, scene.sheet.material.damping.weft, model::stiffness_to_damping(scene, recommended_step),
                      truth.known() ? truth.uncertainty : NAN, truth.missing};
-  for (const Method* method : all_or(methods)) {
+  checkpoint.each(all_or(methods), [&](const Method* method) {
     checkpoint.show(fmt::format("{}: {}", sheet.name(), method->name));
     if (reason_against(*method, scene).empty())
       std::ranges::move(
-          checkpoint.once(std::string(method->name), [&] { return runs_of_method(*method, sheet, scene, truth); }),
+          checkpoint.timed(std::string(method->name), [&] { return runs_of_method(*method, sheet, scene, truth); }),
           std::back_inserter(result.runs));
     checkpoint.advance();
-  }
+  });
   checkpoint.show("timing " + sheet.name());
   time_field(result, scene, checkpoint);
   return result;

@@ -218,7 +218,7 @@ std::vector<Job> peer_study(const Question& question) {
   for (const peers::PeerSheet& sheet : sheets) parts += static_cast<int>(sheet.entrants.size()) * sheet.repetitions;
   const auto compute = [sheets = std::move(sheets)](Checkpoint& checkpoint) {
     std::vector<peers::PeerResult> all;
-    for (const peers::PeerSheet& sheet : sheets) all.push_back(peers::run_peers(sheet, checkpoint));
+    checkpoint.each(sheets, [&](const peers::PeerSheet& sheet) { all.push_back(peers::run_peers(sheet, checkpoint)); });
     return all;
   };
   return {job("peers", parts, compute, peers::peer_tables)};

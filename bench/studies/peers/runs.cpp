@@ -198,7 +198,7 @@ PeerResult run_peers(const PeerSheet& sheet, Checkpoint& checkpoint) {
   std::vector<PeerRun> runs;
   for (const Entrant& who : sheet.entrants) runs.push_back({.who = who});
   for (int round = 0; round < sheet.repetitions; ++round)
-    runs = checkpoint.once(fmt::format("round {}", round), [&] {
+    runs = checkpoint.timed(fmt::format("round {}", round), [&] {
       std::vector<PeerRun> now = runs;
       for (PeerRun& run : now) {
         checkpoint.show(fmt::format("{}: {}", sheet.name, run.who.setting()));

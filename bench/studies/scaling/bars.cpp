@@ -79,15 +79,15 @@ std::vector<Asked> asked(bool quick, Checkpoint& checkpoint) {
   checkpoint.show("bars: a step");
   rows.push_back({fmt::format("BDF(2) step: time per particle, {0} x {0} over {1} x {1}", large, small),
                   {3, false},
-                  checkpoint.once("step", [&] { return growth(large, small); })});
+                  checkpoint.timed("step", [&] { return growth(large, small); })});
   checkpoint.advance();
   checkpoint.show("bars: conjugate gradients");
   rows.push_back({fmt::format("fused CG and stencil: bandwidth over the triad's, {0} x {0}", large),
                   {0.6, true},
-                  checkpoint.once("iteration", [&] { return bandwidth_of_bare_iterations(large, 31); })});
+                  checkpoint.timed("iteration", [&] { return bandwidth_of_bare_iterations(large, 31); })});
   checkpoint.advance();
   checkpoint.show("bars: forces");
-  rows.push_back({fmt::format("forces: ns per particle, {0} x {0}", large), {8, false}, checkpoint.once("forces", [&] {
+  rows.push_back({fmt::format("forces: ns per particle, {0} x {0}", large), {8, false}, checkpoint.timed("forces", [&] {
                     return force_times(large);
                   })});
   checkpoint.advance();

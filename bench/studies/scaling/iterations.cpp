@@ -190,7 +190,7 @@ std::vector<IterationRow> iterations_on(int n, Checkpoint& checkpoint) {
   with_threads(n, [&](int threads) {
     for (const std::string name : {"none", "ic0", "mic0", "multigrid", "cholesky"}) {
       if (name == "cholesky" && n > 316) continue;
-      rows.push_back(checkpoint.once(fmt::format("{} {} {}", n, threads, name), [&] {
+      rows.push_back(checkpoint.timed(fmt::format("{} {} {}", n, threads, name), [&] {
         if (!sheet) sheet.emplace(n);
         return row_of(n, threads, name, sheet->of(name));
       }));
@@ -201,11 +201,11 @@ std::vector<IterationRow> iterations_on(int n, Checkpoint& checkpoint) {
 
 std::vector<IterationRow> all_iterations(bool quick, Checkpoint& checkpoint) {
   std::vector<IterationRow> rows;
-  for (const int n : sizes(quick)) {
+  checkpoint.each(sizes(quick), [&](const int n) {
     checkpoint.show(fmt::format("{} x {}, conjugate gradients", n, n));
     std::ranges::move(iterations_on(n, checkpoint), std::back_inserter(rows));
     checkpoint.advance();
-  }
+  });
   return rows;
 }
 

@@ -153,15 +153,16 @@ StepRow growth_of(const std::vector<StepRow>& rows, const std::string& method) {
 
 std::vector<StepRow> all_steps(bool quick, Checkpoint& checkpoint) {
   std::vector<StepRow> rows;
-  for (const int n : sizes(quick))
-    for (const std::string& method : methods) {
+  checkpoint.each(sizes(quick), [&](const int n) {
+    checkpoint.each(methods, [&](const std::string& method) {
       checkpoint.show(fmt::format("{} x {}, {}", n, n, method));
       with_threads(n, [&](int threads) {
         const std::string id = fmt::format("{} {} {}", n, method, threads);
-        rows.push_back({method, n, threads, checkpoint.once(id, [&] { return time_steps(n, method); })});
+        rows.push_back({method, n, threads, checkpoint.timed(id, [&] { return time_steps(n, method); })});
       });
       checkpoint.advance();
-    }
+    });
+  });
   for (const std::string& method : methods) rows.push_back(growth_of(rows, method));
   return rows;
 }

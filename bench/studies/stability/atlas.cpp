@@ -173,8 +173,8 @@ struct TestedSheet {
 void explore(Atlas& atlas, const Sheet& sheet, double nu, double ratio, Predictions& predictions, Checkpoint& checkpoint) {
   const double l = 0.8 / (sheet.n - 1), h = sheet.step, k = nu * l * l / (h * h);
   std::optional<TestedSheet> tested;  // made for the first run that no process before this one has made
-  for (const Row& row : atlas.rows) {
-    if (!tries(sheet, row)) continue;
+  checkpoint.each(atlas.rows, [&](const Row& row) {
+    if (!tries(sheet, row)) return;
     const Limits limits{.evaluations = static_cast<std::int64_t>(sheet.effort * static_cast<double>(row.evaluations))};
     const ClassifiedRun run = checkpoint.once(fmt::format("{} {} {} {} {}", sheet.n, h, nu, ratio, row.name), [&] {
       if (!tested) tested.emplace(sheet, k, h * k / ratio);
@@ -182,19 +182,21 @@ void explore(Atlas& atlas, const Sheet& sheet, double nu, double ratio, Predicti
       return classified(run_guarded(spec, tested->hung.cloth, limits), tested->reference);
     });
     atlas.cells.push_back({&sheet, &row, nu, ratio, predictions.of(row, sheet, nu, ratio), run});
-  }
+  });
 }
 
 Atlas explored(bool quick, const Methods& methods, Checkpoint& checkpoint) {
   Atlas atlas{sheets(quick), rows(all_or(methods)), {}};
   Predictions predictions;
-  for (const Sheet& sheet : atlas.sheets)
-    for (const double nu : sheet.stiffnesses)
-      for (const double ratio : sheet.ratios) {
+  checkpoint.each(atlas.sheets, [&](const Sheet& sheet) {
+    checkpoint.each(sheet.stiffnesses, [&](const double nu) {
+      checkpoint.each(sheet.ratios, [&](const double ratio) {
         checkpoint.show(fmt::format("{0} x {0}, h = {1}, ν = {2:g}, h k/d = {3:g}", sheet.n, sheet.step, nu, ratio));
         explore(atlas, sheet, nu, ratio, predictions, checkpoint);
         checkpoint.advance();
-      }
+      });
+    });
+  });
   return atlas;
 }
 

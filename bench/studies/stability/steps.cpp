@@ -90,12 +90,13 @@ std::vector<StepLimits> step_limits(int n, const Softness& softness, const Metho
   const CompiledScene sheet = hung_by_corners(n, k, d);
   std::optional<CrossCheckedReference> reference;  // made for the first row that no process before this one has made
   std::vector<StepLimits> rows;
-  for (const solver::Method* method : methods)
+  checkpoint.each(methods, [&, k = k, d = d](const solver::Method* method) {
     rows.push_back(checkpoint.once(fmt::format("{} {} {}", k, d, method->name), [&, k = k, d = d] {
       if (!reference) reference.emplace(sheet);
       return StepLimits{k, d, std::string(method->name), largest_steps(sheet, *reference, *method, {}),
                         reference->uncertainty()};
     }));
+  });
   return rows;
 }
 
@@ -126,11 +127,11 @@ Job largest_steps(bool quick, const Methods& methods) {
       quick ? std::vector<Softness>{{1e4, 50}} : std::vector<Softness>{{1e4, 50}, {1e4, 5}, {1e4, 0.5}, {1e6, 5}};
   const auto compute = [=](Checkpoint& checkpoint) {
     std::vector<StepLimits> rows;
-    for (const Softness& sheet : sheets) {
+    checkpoint.each(sheets, [&](const Softness& sheet) {
       checkpoint.show(fmt::format("largest steps, k = {}, d = {}", sheet.k, sheet.d));
       std::ranges::move(step_limits(quick ? 6 : particles, sheet, all_or(methods), checkpoint), std::back_inserter(rows));
       checkpoint.advance();
-    }
+    });
     return rows;
   };
   return job("stability-steps", static_cast<int>(sheets.size()), compute, step_limits_table);

@@ -117,13 +117,14 @@ std::vector<Endured> endured(const StressCase& stress, int n, const Methods& met
   std::optional<CompiledScene> sheet;  // made for the first row that no process before this one has made
   std::optional<CrossCheckedReference> reference;
   std::vector<Endured> rows;
-  for (const solver::Method* method : methods)
+  checkpoint.each(methods, [&](const solver::Method* method) {
     rows.push_back(checkpoint.once(fmt::format("{}, {}", stress.name, method->name), [&] {
       if (!sheet) reference.emplace(sheet.emplace(stress.make(n)), run);
       const Limits limits{.evaluations = usual_evaluations(*method)};
       return Endured{stress.name, std::string(method->name),
                      classified(run({sheet->scene, "", method, stress_step, {}}, limits), *reference)};
     }));
+  });
   return rows;
 }
 
@@ -135,11 +136,11 @@ Job stress_cases(bool quick, const Methods& methods) {
   const Methods chosen = few ? Methods{&solver::method("bdf2"), &solver::method("verlet")} : all_or(methods);
   const auto compute = [=](Checkpoint& checkpoint) {
     std::vector<Endured> rows;
-    for (const StressCase& stress : stresses) {
+    checkpoint.each(stresses, [&](const StressCase& stress) {
       checkpoint.show(stress.name);
       std::ranges::move(endured(stress, n, chosen, checkpoint), std::back_inserter(rows));
       checkpoint.advance();
-    }
+    });
     return rows;
   };
   const auto present = [=](const std::vector<Endured>& rows) {

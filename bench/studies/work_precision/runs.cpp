@@ -172,7 +172,7 @@ std::vector<ComparedRun> run_all(const Problem& problem, const std::vector<Confi
   std::vector<ComparedRun> runs;
   for (const Configuration& configuration : configurations) {
     checkpoint.show(fmt::format("{}: {}", problem.name, configuration.name));
-    auto some = checkpoint.once(
+    auto some = checkpoint.timed(
         configuration.name, [&] { return run_configuration(problem, configuration, effort, rivals_of(configuration, runs)); });
     for (ComparedRun& run : some) {
       run.configuration = &configuration;
@@ -265,7 +265,7 @@ void time_fronts(const Problem& problem, const std::vector<Contender>& who, std:
     const bool few = runs[k].measured.times.front() > slow;
     repeated.push_back({prepare, few ? std::min(fewest_repetitions, effort.repetitions) : effort.repetitions});
   }
-  const auto times = checkpoint.once("times", [&] {
+  const auto times = checkpoint.timed("times", [&] {
     return time_runs(
         repeated, [] {}, effort.time_of);
   });

@@ -175,8 +175,13 @@ void run_scene(const StudiedScene& studied, const Methods& methods, All& all, Ch
 
 All run_scenes(const std::vector<StudiedScene>& list, const Methods& methods, Checkpoint& checkpoint) {
   All all;
-  all.reserve(list.size());  // runs point into what is in it
-  for (const StudiedScene& studied : list) run_scene(studied, methods, all, checkpoint);
+  all.reserve(list.size());    // runs point into what is in it
+  std::set<std::string> done;  // a scene needs the whole of what it is trained on
+  checkpoint.each(list, [&](const StudiedScene& studied) {
+    if (find(all, studied.training) != nullptr && !done.contains(studied.training)) throw ComputedElsewhere();
+    run_scene(studied, methods, all, checkpoint);
+    done.insert(studied.name);
+  });
   return all;
 }
 

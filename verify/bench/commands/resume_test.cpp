@@ -14,6 +14,7 @@
 #include "results/file/run_file.hpp"
 #include "results/file/validate.hpp"
 #include "solver/methods.hpp"
+#include "verify/support/all_but_times.hpp"
 #include "verify/support/bench_integrators.hpp"
 #include "verify/support/record_text.hpp"
 #include "verify/support/slow.hpp"
@@ -37,22 +38,6 @@ const Words small_sweep{"run",  "--scene",        "hung-edge",    "--set",     "
 
 /// Three tables, each row a checkpoint.
 const Words small_study{"study", "modes", "--quick"};
-
-/// All that is in a file but times; the columns of these tables hold none.
-std::string all_but_times(const std::filesystem::path& file) {
-  std::string text;
-  for (const auto& [name, value, description] : results::read_provenance(file))
-    if (name != "started" && name != "command_line" && name != "resumed" && name != "finished")
-      text += fmt::format("{} {} {}\n", name, value, description);
-  for (results::RunRecord& run : results::read_runs(file)) {
-    text += fmt::format("{} times\n", run.times_ms.size());
-    run.times_ms.clear();
-    text += as_text(run);
-  }
-  for (const results::Table& table : results::read_tables(file))
-    text += fmt::format("{}\n{}\n{}", table.name, table.description, to_csv(table));
-  return text;
-}
 
 /// Kills a sweep repeatedly at random moments, resuming it in between, starting again whenever it is finished. In the end it
 /// is finished once more.
