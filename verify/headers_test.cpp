@@ -73,7 +73,7 @@ const std::map<std::string, std::vector<std::string>> standard_headers = {
       "remove_reference_t", "type_identity"}},
     {"unordered_map", {"pmr::unordered_map"}},
     {"unordered_set", {"pmr::unordered_set"}},
-    {"utility", {"move", "pair", "swap"}},
+    {"utility", {"exchange", "move", "pair", "swap"}},
     {"variant", {"get_if", "holds_alternative", "monostate", "variant", "visit"}},
     {"vector", {"pmr::vector", "vector"}},
 };
