@@ -179,7 +179,8 @@ void explore(Atlas& atlas, const Sheet& sheet, double nu, double ratio, Predicti
     const ClassifiedRun run = checkpoint.once(fmt::format("{} {} {} {} {}", sheet.n, h, nu, ratio, row.name), [&] {
       if (!tested) tested.emplace(sheet, k, h * k / ratio);
       const RunSpec spec{tested->hung.scene, "", row.method, h, row.options};
-      return classified(run_guarded(spec, tested->hung.cloth, limits), tested->reference);
+      // A cloth of its own: one keeps the stability limit, whose search would count for the first run that needs it.
+      return classified(run_guarded(spec, model::compile(spec.scene), limits), tested->reference);
     });
     atlas.cells.push_back({&sheet, &row, nu, ratio, predictions.of(row, sheet, nu, ratio), run});
   });
