@@ -101,10 +101,10 @@ INSTANTIATE_TEST_SUITE_P(, APeer, testing::ValuesIn([] {
                          });
 
 /// Against CVODE, or where it has a cloth of its own against its own motion, by the error at the end, from a step to half of
-/// it. Many sub-steps in single precision only come near.
+/// it. Many sub-steps in single precision only come near, and shorter ones lose more by round-off than they gain.
 TEST_P(APeer, HasItsOrder) {
   if (!missing().empty()) GTEST_SKIP() << missing();
-  constexpr double step = 1.25e-3;
+  const double step = peer.name == "jolt-100" ? 0.01 : 1.25e-3;
   const model::Scene scene = sheet({{"end.time", "0.5"}});
   const model::Cloth cloth = model::compile(scene);
   const std::vector<double> times = bench::compared_times(scene);
