@@ -26,6 +26,7 @@ namespace {
 using bench::peers::Peer;
 using bench::peers::Problem;
 using testing::AllOf;
+using testing::AnyOf;
 using testing::Each;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -101,10 +102,11 @@ INSTANTIATE_TEST_SUITE_P(, APeer, testing::ValuesIn([] {
                          });
 
 /// Against CVODE, or where it has a cloth of its own against its own motion, by the error at the end, from a step to half of
-/// it. Many sub-steps in single precision only come near, and shorter ones lose more by round-off than they gain.
+/// it. Jolt in single precision only comes near: shorter steps lose more by round-off than they gain.
 TEST_P(APeer, HasItsOrder) {
   if (!missing().empty()) GTEST_SKIP() << missing();
-  const double step = peer.name == "jolt-100" ? 0.01 : 1.25e-3;
+  const bool only_near = peer.name.starts_with("jolt");
+  const double step = only_near ? 0.01 : 1.25e-3;
   const model::Scene scene = sheet({{"end.time", "0.5"}});
   const model::Cloth cloth = model::compile(scene);
   const std::vector<double> times = bench::compared_times(scene);
@@ -120,7 +122,7 @@ TEST_P(APeer, HasItsOrder) {
   };
   const double coarse = error(step), fine = error(step / 2);
   EXPECT_LT(coarse, 0.02);
-  if (peer.name == "jolt-20" || peer.name == "jolt-100") return;
+  if (only_near) return;
   EXPECT_NEAR(std::log2(coarse / fine), peer.order, 0.3) << coarse << " and " << fine;
 }
 
@@ -148,7 +150,8 @@ TEST_P(APeer, RefusesDampingThatItDoesNotHave) {
   EXPECT_EQ(reason("linear").empty(), peer.simulator->drags_across);
   EXPECT_EQ(reason("projected").empty(), peer.simulator->drags_along);
   if (!peer.simulator->drags_across) {
-    EXPECT_THAT(reason("linear"), HasSubstr("has no such damping: expected material.damping = 0"));
+    EXPECT_THAT(reason("linear"), AnyOf(HasSubstr("has no such damping: expected material.damping = 0"),
+                                        HasSubstr("expected an undamped uniform sheet")));
   }
 }
 
