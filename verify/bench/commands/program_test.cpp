@@ -134,6 +134,7 @@ TEST(ProgramPattern, MakesASceneThatRuns) {
 
 /// The scenes that were made from patterns are sewn and let go, and no particle is inside of the body.
 TEST(ProgramPattern, KeptScenesRunALittle) {
+  DRAPE_SLOW();
   const BenchIntegrators program;
   for (const char* scene : {"circle_skirt", "t_shirt"}) {
     const auto rows = parse_csv(program.output({"run", "--scene", scene, "--method", "imex-euler", "--step", "0.01", "--until",

@@ -13,6 +13,7 @@
 #include "model/scene_file/scene_file.hpp"
 #include "solver/dense_output.hpp"
 #include "verify/support/random_scenes.hpp"
+#include "verify/support/slow.hpp"
 
 namespace drape::verify::energy_guard_random_test {
 namespace {
@@ -125,6 +126,7 @@ Verdict watched_run(const Scene& scene, const Truth& truth, std::string_view met
 }
 
 TEST(EnergyGuardOnRandomScenes, EndsNoRightRunAndNoneThatIsFarAboveTheTruthGoesOn) {
+  DRAPE_SLOW();
   static std::mt19937 random(1);
   constexpr const char* methods[] = {"implicit-euler", "bdf2",   "midpoint", "sbdf2",  "imex-midpoint",
                                      "imex-euler",     "verlet", "bdf4",     "tr-bdf2"};

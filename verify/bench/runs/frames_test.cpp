@@ -11,6 +11,7 @@
 #include "model/scene_file/scene_file.hpp"
 #include "verify/support/bench_integrators.hpp"
 #include "verify/support/mesh_files.hpp"
+#include "verify/support/slow.hpp"
 
 namespace drape::verify::frames_test {
 namespace {
@@ -124,6 +125,7 @@ TEST(Frames, ShowWhatTheSheetIsTrimmedTo) {
 
 /// Panels keep their outlines, sewn or not.
 TEST(Frames, OfGarmentsShowWhatTheyAreTrimmedTo) {
+  DRAPE_SLOW();
   const BenchIntegrators program;
   program.output({"run", "--scene", "sewn_dress", "--set", "trim.outline=true", "--until", "0.42", "--no-reference", "--repeat",
                   "1", "--method", "imex-euler", "--step", "0.02", "--frames", "a", "--every", "0.42"});

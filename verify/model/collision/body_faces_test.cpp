@@ -11,6 +11,7 @@
 
 #include "model/collision/face_distance.hpp"
 #include "verify/support/obstacles.hpp"
+#include "verify/support/slow.hpp"
 
 namespace drape::verify::body_faces_test {
 namespace {
@@ -39,6 +40,7 @@ struct FlatSquare {
 };
 
 TEST(BodyFaces, AreAllPairsThatAreNear) {
+  DRAPE_SLOW();
   int pairs = 0;
   std::mt19937 random(3);
   std::normal_distribution<double> moved(0, 0.1);

@@ -135,6 +135,7 @@ INSTANTIATE_TEST_SUITE_P(All, SelfContactBy,
                          });
 
 TEST(SelfContact, IsAcceleratedToTheSameMotion) {
+  DRAPE_SLOW();
   for (const char* method : {"implicit-euler", "bdf2", "midpoint"}) {
     const auto solved = [&](const char* stage) {
       const model::Override longer[] = {{"end.time", "0.1"}};
