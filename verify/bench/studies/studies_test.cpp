@@ -473,6 +473,18 @@ TEST_F(ProgramStudies, RaysFindWhatHalfSpacesFind) {
   }
 }
 
+/// Both seek the stability limit.
+TEST_F(ProgramStudies, RunsOfTheAtlasCostTheSameWhateverRanBefore) {
+  DRAPE_SLOW();
+  const auto evaluations = [&](const std::string& methods) {
+    const std::string file = methods + ".h5";
+    program.output({"study", "stability", "--quick", "--method", methods, "--out", file});
+    const auto all = results::read_tables(program.folder() / file);
+    return numbers(*std::ranges::find(all, "stability-atlas", &Table::name), "evaluations", "method", "rk4-substeps");
+  };
+  EXPECT_THAT(evaluations("rk4-substeps"), AllOf(SizeIs(4), testing::ElementsAreArray(evaluations("verlet,rk4-substeps"))));
+}
+
 TEST_F(ProgramStudies, EveryCellOfTheAtlasEndsInAVerdict) {
   DRAPE_SLOW();
   const auto all = tables("stability");  // in the order of their names
