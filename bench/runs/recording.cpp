@@ -64,14 +64,11 @@ std::string numbers_of(const Shards& shards) {
 }
 
 std::string missing_text(const Shards& shards, const SweepOptions& options, int count) {
-  constexpr std::size_t most_named = 10;
-  std::string named;
-  std::size_t k = 0;
-  for (const auto& [id, number] : shards.missing())
-    if (k++ < most_named) named += fmt::format("{}'{}' of shard {}", named.empty() ? "" : ", ", id, number);
+  std::vector<std::string> missing;
+  for (const auto& [id, number] : shards.missing()) missing.push_back(fmt::format("'{}' of shard {}", id, number));
   return fmt::format(
-      "{}: not yet recorded: shards {} of {} lack {} checkpoints: {}{}; compute them by the same command with --shard i/{}",
-      options.out.string(), numbers_of(shards), count, shards.missing().size(), named, k > most_named ? ", ..." : "", count);
+      "{}: not yet recorded: shards {} of {} lack {} checkpoints: {}; compute them by the same command with --shard i/{}",
+      options.out.string(), numbers_of(shards), count, missing.size(), first_of(missing), count);
 }
 
 bool has_times(const Results& all) {

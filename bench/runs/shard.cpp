@@ -52,15 +52,11 @@ Provenance facts_in(const results::Journal::Bytes& bytes) {
 
 ReadShard read_shard(const fs::path& path) {
   auto [facts, entries] = results::read_journal(path);
-  const auto found = entries.find(origin_id);
-  if (found == entries.end()) throw base::FileError(fmt::format("{}: is not the journal of a shard", path.string()));
-  ReadShard shard{path, facts_in(found->second), {}, {}};
-  const auto share = share_named(value_of(shard.origin, share_fact));
+  Provenance origin = facts_in(entries[origin_id]);
+  const auto share = share_named(value_of(origin, share_fact));
   if (!share) throw base::FileError(fmt::format("{}: is not the journal of a shard", path.string()));
-  shard.share = *share;
-  entries.erase(found);
-  shard.checkpoints = std::move(entries);
-  return shard;
+  entries.erase(origin_id);
+  return {path, std::move(origin), *share, std::move(entries)};
 }
 
 /// Our own command line and the earliest start; of what else may differ all that there is.
@@ -93,12 +89,10 @@ Checkpoints united(const std::vector<ReadShard>& shards) {
         from[id] = &shard;
       else if (known->second != bytes)
         twice.push_back(fmt::format("'{}' in {} and {}", id, from[id]->path.string(), shard.path.string()));
-  constexpr std::size_t most_named = 10;
   if (twice.empty()) return all;
   throw base::FileError(
-      fmt::format("{} checkpoints are there twice with different results, which one is meant is not known: {}{}", twice.size(),
-                  fmt::join(twice.begin(), twice.begin() + std::min(twice.size(), most_named), ", "),
-                  twice.size() > most_named ? ", ..." : ""));
+      fmt::format("{} checkpoints are there twice with different results, which one is meant is not known: {}", twice.size(),
+                  first_of(twice)));
 }
 
 }  // namespace
@@ -121,6 +115,12 @@ int shard_of(std::string_view key, int count) { return 1 + static_cast<int>(base
 
 fs::path shard_file(const fs::path& out, const Share& share) {
   return fmt::format("{}.shard-{}-of-{}", out.string(), share.number, share.count);
+}
+
+std::string first_of(const std::vector<std::string>& names) {
+  constexpr std::size_t most = 10;
+  return fmt::format("{}{}", fmt::join(names.begin(), names.begin() + std::min(names.size(), most), ", "),
+                     names.size() > most ? ", ..." : "");
 }
 
 const results::Journal::Bytes* Shards::find(const std::string& id) const {

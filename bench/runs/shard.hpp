@@ -30,6 +30,9 @@ int shard_of(std::string_view key, int count);
 /// A shard records nothing but its journal, that of this file: OUT.shard-2-of-5. The journal is kept.
 std::filesystem::path shard_file(const std::filesystem::path& out, const Share& share);
 
+/// The first ten, for a message: "a, b, ...".
+std::string first_of(const std::vector<std::string>& names);
+
 /// Checkpoints by their ids.
 using Checkpoints = std::map<std::string, results::Journal::Bytes>;
 
