@@ -1,22 +1,28 @@
 // Costs of the pieces, for what a person asks before choosing a solver: ns per particle of the product with the constant
-// matrix beside the triad of the machine, of every force, and of a whole CG iteration; and of what Eigen and CHOLMOD offer for
-// the same, so that the reason for kernels of our own stays measured. And ns per triangle of finding where cloth meets itself.
+// matrix, of every force, and of a whole CG iteration, each beside what the machine's triad takes to move as many bytes; and of
+// what Eigen and CHOLMOD offer for the same, so that the reason for kernels of our own stays measured; ns per triangle of
+// finding where cloth meets itself; and what threads make of them.
 
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
 #include <Eigen/IterativeLinearSolvers>
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
 #include "model/cloth.hpp"
 #include "model/collision/self_contacts.hpp"
 #include "model/scene_file/scene_file.hpp"
+#include "solver/base/stopwatch.hpp"
+#include "solver/base/threads.hpp"
 #include "solver/linear/cholmod_view.hpp"
 #include "solver/linear/conjugate_gradients.hpp"
 #include "solver/linear/kernels.hpp"
@@ -43,21 +49,51 @@ void per_particle(benchmark::State& state, std::int64_t particles) {
       static_cast<double>(particles), benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
-void bytes(benchmark::State& state, std::int64_t bytes) {
+/// a = b + 3 c on vector fields.
+class Triad {
+ public:
+  explicit Triad(std::int64_t particles) : b_(Vectors::Random(particles, 3)), c_(Vectors::Random(particles, 3)), a_(b_) {}
+
+  void operator()() {
+    a_.noalias() = b_ + 3.0 * c_;
+    benchmark::ClobberMemory();
+  }
+  std::int64_t bytes() const { return solver::vector_bytes(a_.rows(), 3); }
+
+ private:
+  Vectors b_, c_, a_;
+};
+
+/// Bandwidth of the triad on so many particles by one thread, the best of many calls [bytes/s].
+double triad_bandwidth(std::int64_t particles) {
+  Triad triad(particles);
+  const std::int64_t calls = std::max<std::int64_t>(1, 100'000 / particles);  // so that the clock's resolution does not matter
+  double least = std::numeric_limits<double>::infinity();                     // [ms]
+  for (int k = 0; k < 15; ++k) {
+    double time = 0;
+    {
+      const base::Stopwatch clock(&time);
+      for (std::int64_t call = 0; call < calls; ++call) triad();
+    }
+    least = std::min(least, time);
+  }
+  return 1e3 * static_cast<double>(calls * triad.bytes()) / least;
+}
+
+/// Adds the bandwidth, and how long the triad takes to move as many bytes: the roof that memory, or the cache they are in, sets
+/// for one thread.
+void roofline(benchmark::State& state, std::int64_t bytes, std::int64_t particles) {
   state.counters["bytes_per_s"] = benchmark::Counter(static_cast<double>(bytes), benchmark::Counter::kIsIterationInvariantRate,
                                                      benchmark::Counter::kIs1000);
+  state.counters["roof"] = static_cast<double>(bytes) / triad_bandwidth(particles) / static_cast<double>(particles);
 }
 
 void triad(benchmark::State& state) {
   const auto n = state.range(0) * state.range(0);
-  const Vectors b = Vectors::Random(n, 3), c = Vectors::Random(n, 3);
-  Vectors a = b;
-  for (auto _ : state) {
-    a.noalias() = b + 3.0 * c;
-    benchmark::ClobberMemory();
-  }
+  Triad triad(n);
+  for (auto _ : state) triad();
   per_particle(state, n);
-  bytes(state, solver::vector_bytes(n, 3));
+  roofline(state, triad.bytes(), n);
 }
 
 void product(benchmark::State& state) {
@@ -67,7 +103,7 @@ void product(benchmark::State& state) {
   Vectors y = x;
   for (auto _ : state) benchmark::DoNotOptimize(solver::multiply(A, x, y));
   per_particle(state, A.rows());
-  bytes(state, solver::multiply_bytes(A));
+  roofline(state, solver::multiply_bytes(A), A.rows());
 }
 
 void cg_iteration(benchmark::State& state, const solver::LinearSolver& linear_solver) {
@@ -84,7 +120,9 @@ void cg_iteration(benchmark::State& state, const solver::LinearSolver& linear_so
     benchmark::DoNotOptimize(cg.solve(A, {}, r, d, -std::numeric_limits<double>::infinity()));
   }
   // One if the factor is complete.
-  per_particle(state, A.rows() * (cloth.ode.work->count("preconditioner_applications") / state.iterations()));
+  const std::int64_t done = cloth.ode.work->count("preconditioner_applications") / state.iterations();
+  per_particle(state, A.rows() * done);
+  roofline(state, cloth.ode.work->count("linear_bytes") / state.iterations() / done, A.rows());
 }
 
 /// Eigen's own iteration, which takes the three columns one after the other.
@@ -129,12 +167,16 @@ void force(benchmark::State& state, const std::vector<model::Override>& changes)
   const model::Cloth cloth = compile(scene);
   const Vectors x = perturbed(cloth.start.x, 0.2 * scene.sheet.grid.spacing_u());
   const Vectors v = perturbed(cloth.start.v, 1);
-  Vectors f = x;
+  Vectors f = x, by_velocity = x;
+  cloth.ode.force(0, x, v, f);
+  cloth.ode.force(0, x, 2 * v, by_velocity);
+  const bool reads_velocities = f != by_velocity;
   for (auto _ : state) {
     cloth.ode.force(0, x, v, f);
     benchmark::ClobberMemory();
   }
   per_particle(state, cloth.ode.particles());
+  roofline(state, solver::vector_bytes(x.rows(), reads_velocities ? 3 : 2), x.rows());
 }
 
 /// Only this much of the material, and no weight.
@@ -184,10 +226,25 @@ void collision(benchmark::State& state, int layers) {
   state.counters["found"] = static_cast<double>(found.size()) / triangles;
 }
 
+int cores() { return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, base::max_threads); }
+
 void register_all() {
   const std::vector<std::int64_t> sizes{20, 100, 1000};
   const auto add = [&](const std::string& name, auto function, const std::vector<std::int64_t>& some_sizes) {
     for (const std::int64_t n : some_sizes) benchmark::RegisterBenchmark(name.c_str(), function)->Arg(n)->ArgName("n");
+  };
+  // What threads do faster, on all cores, with real time.
+  const auto add_threads = [&](const std::string& name, auto function, std::int64_t n) {
+    const auto with_threads = [function](benchmark::State& state) {
+      base::use_threads(static_cast<int>(state.range(1)));
+      function(state);
+      base::use_threads(1);
+    };
+    for (int threads = 1; threads <= cores(); threads *= 2)
+      benchmark::RegisterBenchmark(("threads/" + name).c_str(), with_threads)
+          ->Args({n, threads})
+          ->ArgNames({"n", "threads"})
+          ->UseRealTime();
   };
   add("triad", triad, sizes);
   add("product", product, sizes);
@@ -199,6 +256,8 @@ void register_all() {
         [&](benchmark::State& state) { cg_iteration(state, linear_solver); },
         complete ? std::vector<std::int64_t>{20, 100} : sizes);
   }
+  add_threads(
+      "cg-iteration/multigrid", [](benchmark::State& state) { cg_iteration(state, solver::linear_solver("multigrid")); }, 1000);
   add("library/eigen-cg-iteration", eigen_cg_iteration<Eigen::IdentityPreconditioner>, sizes);
   add("library/eigen-cg-iteration-ic", eigen_cg_iteration<Eigen::IncompleteCholesky<double>>, sizes);
   add("library/cholmod-solve", cholmod_solve, {20, 100});
@@ -217,11 +276,16 @@ void register_all() {
       {"hung-sheet", {}},
       {"hung-panel", {{"grid.grading", "1.5"}}},
   };
-  for (const auto& [name, changes] : forces)
-    add(
-        "force/" + name, [changes = changes](benchmark::State& state) { force(state, changes); }, sizes);
-  for (const auto& [name, layers] : {std::pair("collision/flat", 1), std::pair("collision/layers", 3)})
-    add(name, [layers = layers](benchmark::State& state) { collision(state, layers); }, {23, 71, 224});
+  for (const auto& [name, changes] : forces) {
+    const auto evaluated = [changes = changes](benchmark::State& state) { force(state, changes); };
+    add("force/" + name, evaluated, sizes);
+    add_threads("force/" + name, evaluated, 1000);
+  }
+  for (const auto& [name, layers] : {std::pair("collision/flat", 1), std::pair("collision/layers", 3)}) {
+    const auto found = [layers = layers](benchmark::State& state) { collision(state, layers); };
+    add(name, found, {23, 71, 224});
+    add_threads(name, found, 224);
+  }
 }
 
 }  // namespace

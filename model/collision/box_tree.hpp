@@ -2,6 +2,8 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cstdint>
+#include <iterator>
 #include <span>
 #include <vector>
 
@@ -23,12 +25,20 @@ class BoxTree {
     if (!nodes_.empty()) descend(0, box, visit);
   }
 
+  std::int64_t nodes() const { return std::ssize(nodes_); }
+
   /// Calls visit(i, j) once for each pair of primitives i < j whose boxes do.
   template <class Visit>
   void overlapping_pairs(const Visit& visit) const {
+    overlapping_pairs(0, nodes(), visit);
+  }
+
+  /// Those between the halves of the nodes [begin, end): the pairs in a part of the tree are those in its halves and those
+  /// between them.
+  template <class Visit>
+  void overlapping_pairs(std::int64_t begin, std::int64_t end, const Visit& visit) const {
     const auto in_order = [&](int i, int j) { visit(std::min(i, j), std::max(i, j)); };
-    // The pairs in a part of the tree are those in its halves and those between them.
-    for (int at = 0; at < static_cast<int>(nodes_.size()); ++at)
+    for (int at = static_cast<int>(begin); at < end; ++at)
       if (nodes_[at].right > 0) descend(at + 1, *this, nodes_[at].right, in_order);
   }
 

@@ -1,10 +1,13 @@
 #include "model/collision/self_contacts.hpp"
 
 #include <algorithm>
+#include <atomic>
+#include <optional>
 #include <utility>
 
 #include "model/collision/exact_intersection.hpp"
 #include "model/collision/face_distance.hpp"
+#include "solver/base/threads.hpp"
 
 namespace drape::model {
 namespace {
@@ -42,21 +45,22 @@ SelfContacts::SelfContacts(ClothSurface surface, solver::Counters& work)
 
 void SelfContacts::fit(const Vectors& x, double reach) {
   const Vector3d margin = Vector3d::Constant(reach / 2);
-  for (std::size_t k = 0; k < boxes_.size(); ++k) {
-    Eigen::AlignedBox3d& box = boxes_[k];
-    box.setEmpty();
-    for (const int i : surface_.faces()[k].corners) {
+  const auto box_of = [&](const ClothSurface::Face& face) {
+    Eigen::AlignedBox3d box;
+    for (const int i : face.corners) {
       const Vector3d begin = x.row(i), end = begin + way_.row(i).transpose();
       box.extend(begin).extend(end);
     }
-    box = {box.min() - margin, box.max() + margin};
-  }
+    return Eigen::AlignedBox3d(box.min() - margin, box.max() + margin);
+  };
+  base::in_parts(base::threads_for(x.rows()), std::ssize(boxes_), [&](int, std::int64_t begin, std::int64_t end) {
+    for (std::int64_t k = begin; k < end; ++k) boxes_[k] = box_of(surface_.faces()[k]);
+  });
   tree_.refit(boxes_);
 }
 
 template <class Visit>
-void SelfContacts::each_pair(const Vectors& x, double reach, const Visit& visit) {
-  fit(x, reach);
+void SelfContacts::each_pair(std::int64_t begin, std::int64_t end, const Vectors& x, double reach, const Visit& visit) const {
   const auto meet = [&](PairKind kind, const std::array<int, 4>& particles, bool may_end) {
     if (!stays_apart(kind, particles, x, way_, reach)) visit(kind, particles, may_end);
   };
@@ -69,7 +73,7 @@ void SelfContacts::each_pair(const Vectors& x, double reach, const Visit& visit)
       if (!joined(v, a) && !joined(v, b) && !joined(v, c)) meet(PairKind::vertex_face, {v, a, b, c}, false);
     }
   };
-  tree_.overlapping_pairs([&](int i, int j) {
+  tree_.overlapping_pairs(begin, end, [&](int i, int j) {
     const ClothSurface::Face &one = surface_.faces()[i], &other = surface_.faces()[j];
     vertices_and_face(one, other);
     vertices_and_face(other, one);
@@ -87,24 +91,39 @@ void SelfContacts::each_pair(const Vectors& x, double reach, const Visit& visit)
   });
 }
 
-void SelfContacts::find(const Vectors& x0, const Vectors& x1, double distance, std::vector<Approach>& found) {
+template <class Found, class Compute>
+void SelfContacts::find_pairs(const Vectors& x, double reach, std::vector<Found>& found, const Compute& compute) {
+  constexpr int as_particles = 20;  // a face takes that many times as long as the forces on a particle
   found.clear();
+  fit(x, reach);
+  std::atomic<std::int64_t> pairs = 0;
+  base::collect(base::threads_for(as_particles * std::ssize(boxes_)), tree_.nodes(), found,
+                [&](std::int64_t begin, std::int64_t end, std::vector<Found>& part) {
+                  std::int64_t computed = 0;
+                  each_pair(begin, end, x, reach, [&](PairKind kind, const std::array<int, 4>& particles, bool may_end) {
+                    ++computed;
+                    if (const std::optional<Found> pair = compute(kind, particles, may_end)) part.push_back(*pair);
+                  });
+                  pairs += computed;
+                });
+  pairs_ += pairs;
+}
+
+void SelfContacts::find(const Vectors& x0, const Vectors& x1, double distance, std::vector<Approach>& found) {
   way_ = x1 - x0;
   const Eigen::RowVector3d common = way_.colwise().mean();
   way_.rowwise() -= common;
-  each_pair(x0, reached(distance), [&](PairKind kind, const std::array<int, 4>& particles, bool may_end) {
-    ++pairs_;
-    if (const auto met = approach(kind, particles, x0, x1, distance, may_end)) found.push_back(*met);
+  find_pairs(x0, reached(distance), found, [&](PairKind kind, const std::array<int, 4>& particles, bool may_end) {
+    return approach(kind, particles, x0, x1, distance, may_end);
   });
 }
 
 void SelfContacts::near(const Vectors& x, double distance, std::vector<Proximity>& found) {
-  found.clear();
   way_.setZero(x.rows(), 3);
-  each_pair(x, distance, [&](PairKind kind, const std::array<int, 4>& particles, bool may_end) {
-    ++pairs_;
+  find_pairs(x, distance, found, [&](PairKind kind, const std::array<int, 4>& particles, bool may_end) {
     const Proximity pair = proximity(kind, particles, points_of(particles, x));
-    if (pair.distance < distance && (kind == PairKind::vertex_face || may_end || pair.is_inside())) found.push_back(pair);
+    const bool is_near = pair.distance < distance && (kind == PairKind::vertex_face || may_end || pair.is_inside());
+    return is_near ? std::optional(pair) : std::nullopt;
   });
 }
 

@@ -38,10 +38,14 @@ class SelfContacts {
   /// Fits the tree to the ways of the faces from x on, and half of `reach` around them [m].
   void fit(const Vectors& x, double reach);
 
-  /// Calls visit(kind, particles, may_end) for pairs that may come within `reach` on their ways from x; `may_end`: one edge is
-  /// that of a chain.
+  /// Calls visit(kind, particles, may_end) for pairs between the halves of nodes [begin, end) of the tree that may come within
+  /// `reach` on their ways from x; `may_end`: one edge is that of a chain.
   template <class Visit>
-  void each_pair(const Vectors& x, double reach, const Visit& visit);
+  void each_pair(std::int64_t begin, std::int64_t end, const Vectors& x, double reach, const Visit& visit) const;
+
+  /// Sets `found` to what compute(kind, particles, may_end) has found for these pairs of the whole tree, and counts them.
+  template <class Found, class Compute>
+  void find_pairs(const Vectors& x, double reach, std::vector<Found>& found, const Compute& compute);
 
   /// Calls visit(i, j, corners, corners) for pairs of triangles i < j without joined nodes that may be within `reach` at x.
   template <class Visit>

@@ -3,14 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
 #include "model/obstacles/mesh_shape.hpp"
 #include "model/obstacles/obstacle_at_time.hpp"
+#include "solver/base/threads.hpp"
 
 namespace drape::model {
 namespace {
@@ -108,22 +111,29 @@ void Contacts::find_half_spaces(int k, double t, const Ride& ride, const solver:
     deformed = deforming->begin.moving().way(t);
     way += deforming->begin.moving().way(t + h) - deformed;
   }
-  for (int i = 0; i < y.x.rows(); ++i) {
+  std::atomic<std::int64_t> queries = 0;
+  const auto find = [&](int i) -> std::optional<solver::Contact> {
     const Eigen::Vector3d x = y.x.row(i), p = begin.to_body(x);
     const double reach = 2 * (way + (end.to_world(p) - x).norm()) + distance_;
     Answer& last = answers_[k][i];
     const double changed = std::abs(deformed - last.way);
-    if (last.known && last.nearest.distance - (p - last.p).norm() - changed > distance_ + reach) continue;
+    if (last.known && last.nearest.distance - (p - last.p).norm() - changed > distance_ + reach) return {};
     std::optional<PosedMesh::Touch> touch;
     if (deforming) touch = deforming->begin.touch(p);
     last = {p, touch ? touch->nearest : obstacles_[k].nearest(p), deformed, true};
-    ++queries_;
+    ++queries;
     const double gap = last.nearest.distance - distance_;
-    if (!(gap <= reach) || (alters_ && gap >= 0)) continue;
+    if (!(gap <= reach) || (alters_ && gap >= 0)) return {};
     const Eigen::Vector3d rigid = p - gap * last.nearest.normal;
-    found.push_back(contact(i, k, gap, ride,
-                            touch ? deforming->border(p, touch->at, distance_) : Border{rigid, rigid, last.nearest.normal}));
-  }
+    return contact(i, k, gap, ride,
+                   touch ? deforming->border(p, touch->at, distance_) : Border{rigid, rigid, last.nearest.normal});
+  };
+  base::collect(base::threads_for(y.x.rows()), y.x.rows(), found,
+                [&](std::int64_t first, std::int64_t last, std::vector<solver::Contact>& part) {
+                  for (std::int64_t i = first; i < last; ++i)
+                    if (const auto met = find(static_cast<int>(i))) part.push_back(*met);
+                });
+  queries_ += queries;
 }
 
 void Contacts::find_by_rays(int k, const Ride& ride, const solver::State& y, std::vector<solver::Contact>& found) {

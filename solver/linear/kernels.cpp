@@ -1,5 +1,9 @@
 #include "solver/linear/kernels.hpp"
 
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
 #include "solver/base/threads.hpp"
 
 namespace drape::solver {
@@ -59,12 +63,15 @@ double multiply(const SparseMatrix& A, const Vectors& x, Vectors& y) {
 }
 
 double advance(double a, const Vectors& p, const Vectors& q, Vectors& x, Vectors& r) {
-  const int threads = base::threads_for(x.rows());
-  if (threads == 1) return advance(a, p, q, x, r, 0, x.size());
-  double rr = 0;
-#pragma omp parallel for num_threads(threads) reduction(+ : rr) schedule(static)
-  for (int k = 0; k < threads; ++k) rr += advance(a, p, q, x, r, x.size() * k / threads, x.size() * (k + 1) / threads);
-  return rr;
+  constexpr Eigen::Index block = 32768;  // coordinates whose squares are added up apart, so that threads do not change the sum
+  const Eigen::Index blocks = (x.size() + block - 1) / block;
+  if (blocks <= 1) return advance(a, p, q, x, r, 0, x.size());
+  std::vector<double> squares(blocks);
+  base::in_parts(base::threads_for(x.rows()), blocks, [&](int, Eigen::Index begin, Eigen::Index end) {
+    for (Eigen::Index k = begin; k < end; ++k)
+      squares[k] = advance(a, p, q, x, r, block * k, std::min(block * (k + 1), x.size()));
+  });
+  return std::accumulate(squares.begin(), squares.end(), 0.0);
 }
 
 std::int64_t multiply_bytes(const SparseMatrix& A) {

@@ -31,6 +31,54 @@ void each_red(const Level& level, int b, const F& f) {
   level.u.halved&& b % 2 == 1 ? along_v(std::true_type()) : along_v(std::false_type());
 }
 
+/// Adds the residual on the red nodes of line b to the coarse grid.
+void restrict_line(Level& level, int b, const Vectors& z) {
+  const Eigen::Index next = 3 * static_cast<Eigen::Index>(level.u.coarse());
+  with_line(level.A, b, [&](const auto& line) {
+    Lanes carried = Lanes::Zero();  // kept in a register for the next coarse particle: storing and loading it would stall
+    double* pending = nullptr;
+    const auto add = [&](auto in_v, double* to, const Lanes& part) {
+      store(to, load(to) + part);
+      if (in_v) store(to + next, load(to + next) + part);
+    };
+    each_red(level, b, [&](int a, Eigen::Index coarse, auto in_u, auto in_v) {
+      double* const to = level.r.data() + coarse;
+      const Lanes part = (in_u ? 0.5 : 1) * (in_v ? 0.5 : 1) * line.around(z.data(), a);
+      add(in_v, to, in_u ? Lanes(part + carried) : part);
+      if (!in_u) return;
+      carried = part;
+      pending = to + 3;
+    });
+    if (pending != nullptr) add(level.v.between(b), pending, carried);
+  });
+}
+
+/// Adds the residual on the red nodes of lines b − 1 and b to the coarse lines below and above b, which lies halfway between
+/// them; rows of both lines that a coarse particle gets from below are added up first. A coarse line then gets two summands,
+/// in whichever order, so that bands do not change its sums.
+void restrict_pair(Level& level, int b, const Vectors& z) {
+  const FivePoint& A = level.A;
+  double* const below = level.r.data() + 3 * static_cast<Eigen::Index>(level.u.coarse()) * level.v.parent(b);
+  double* const above = below + 3 * static_cast<Eigen::Index>(level.u.coarse());
+  with_line(A, b - 1, [&](const auto& even) {
+    with_line(A, b, [&](const auto& odd) {
+      const auto add = [&](int coarse, const Lanes& at_even, const Lanes& at_odd) {
+        store(below + 3 * coarse, load(below + 3 * coarse) + (at_even + at_odd));
+        store(above + 3 * coarse, load(above + 3 * coarse) + at_odd);
+      };
+      const int last = A.nu - 1;
+      Lanes left = Lanes::Zero();
+      for (int k = 0; 2 * k + 1 < last; ++k) {
+        const Lanes right = 0.25 * odd.around(z.data(), 2 * k + 1);
+        add(k, even.around(z.data(), 2 * k), left + right);
+        left = right;
+      }
+      add(last / 2, even.around(z.data(), last / 2 * 2), left);
+      if (last % 2 == 1) add(last / 2 + 1, Lanes::Zero(), 0.5 * odd.around(z.data(), last));
+    });
+  });
+}
+
 /// z = r / D on red nodes (a + b even), then (r + couplings × neighbours) / D on black ones. The residual is then couplings ×
 /// neighbours on red nodes and 0 on black ones; it is restricted to the coarse grid. A line's black ends are set to 0 first,
 /// since the next lines may read them before they are computed and z may hold anything.
@@ -52,25 +100,12 @@ void smooth_down(Level& level, const Vectors& r, Vectors& z) {
     });
     return Lanes(Lanes::Zero());
   };
-  const Eigen::Index next = 3 * static_cast<Eigen::Index>(level.u.coarse());
+  const auto in_pair = [&](int b) { return level.u.halved && level.v.between(b); };
   const auto restricted = [&](int b) {
-    with_line(A, b, [&](const auto& line) {
-      Lanes carried = Lanes::Zero();  // kept in a register for the next coarse particle: storing and loading it would stall
-      double* pending = nullptr;
-      const auto add = [&](auto in_v, double* to, const Lanes& part) {
-        store(to, load(to) + part);
-        if (in_v) store(to + next, load(to + next) + part);
-      };
-      each_red(level, b, [&](int a, Eigen::Index coarse, auto in_u, auto in_v) {
-        double* const to = level.r.data() + coarse;
-        const Lanes part = (in_u ? 0.5 : 1) * (in_v ? 0.5 : 1) * line.around(z.data(), a);
-        add(in_v, to, in_u ? Lanes(part + carried) : part);
-        if (!in_u) return;
-        carried = part;
-        pending = to + 3;
-      });
-      if (pending != nullptr) add(level.v.between(b), pending, carried);
-    });
+    if (in_pair(b))
+      restrict_pair(level, b, z);
+    else if (!in_pair(b + 1))
+      restrict_line(level, b, z);
     return Lanes(Lanes::Zero());
   };
   wavefront(A, red, black, restricted);

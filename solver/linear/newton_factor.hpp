@@ -8,6 +8,8 @@
 
 namespace drape::solver {
 
+class BlockCholesky;
+
 /// The complete factor of a Newton matrix.
 class NewtonFactor {
  public:
@@ -22,9 +24,7 @@ class NewtonFactor {
   void solve(const Vectors& r, Vectors& d);
 
  private:
-  class Factor;
-
-  std::unique_ptr<Factor> factor_;
+  std::unique_ptr<BlockCholesky> factor_;
   std::int64_t& factorisations_;
 };
 

@@ -1,9 +1,11 @@
 #include "model/forces/fused/fused_forces.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <utility>
 
 #include "model/sheet/metric.hpp"
+#include "solver/base/threads.hpp"
 
 namespace drape::model {
 namespace {
@@ -97,16 +99,19 @@ FusedForces::FusedForces(const Grid& grid, const GridLaw& law)
   }
   weft_width_.head(grid.nu - 1) = 1;
   for (int a = 0; a < grid.nu; ++a) warp_width_[a] = grid.cell_width_u(a);
-  const std::ptrdiff_t stride = row_stride(length_);
-  memory_.setZero(50 * stride);
-  Allocator allocate(memory_.data(), stride);
+}
+
+FusedForces::TwoLines::TwoLines(int length) {
+  const std::ptrdiff_t stride = row_stride(length);
+  memory.setZero(50 * stride);
+  Allocator allocate(memory.data(), stride);
   double distance = 0;
-  for (Line& line : lines_) {
-    line.x = allocate.field();
-    line.v = allocate.field();
-    for (Edges* edges : {&line.weft, &line.warp}) *edges = {allocate.field(), allocate.field(), allocate.row(), allocate.row()};
-    line.pull_right = allocate.field();
-    for (int k = -column_block; k < length_ + column_block; ++k) line.x.set(k, {distance += far, 0, 0});
+  for (Line& part : line) {
+    part.x = allocate.field();
+    part.v = allocate.field();
+    for (Edges* edges : {&part.weft, &part.warp}) *edges = {allocate.field(), allocate.field(), allocate.row(), allocate.row()};
+    part.pull_right = allocate.field();
+    for (int k = -column_block; k < length + column_block; ++k) part.x.set(k, {distance += far, 0, 0});
   }
 }
 
@@ -178,29 +183,39 @@ void FusedForces::clear_warp(const Line& line) const {
 }
 
 void FusedForces::operator()(const Vectors& x, const Vectors& v, Vectors& f) {
+  const int threads = std::clamp(grid_.nv / 16, 1, base::threads_for(grid_.particles()));
+  while (std::ssize(lines_) < threads) lines_.emplace_back(length_);
+  base::in_parts(threads, grid_.nv, [&](int k, std::int64_t begin, std::int64_t end) {
+    evaluate(static_cast<int>(begin), static_cast<int>(end), lines_[k].line, x, v, f);
+  });
+}
+
+void FusedForces::evaluate(int begin, int end, const std::array<Line, 2>& lines, const Vectors& x, const Vectors& v,
+                           Vectors& f) const {
   const bool velocities = law_.needs_velocities();
-  clear_warp(lines_[0]);
+  const int first = std::max(begin - 1, 0), read_end = std::min(end + 1, grid_.nv);  // with one line on either side
+  clear_warp(lines[first % 2]);
   // Forces of a line are written when the second line after it has been read: then its pulls have arrived in the cache, and
   // they have not been overwritten yet.
-  for (int b = 0; b < grid_.nv + 2; ++b) {
-    const Line &line = lines_[b % 2], &before = lines_[1 - b % 2];
+  for (int b = first; b < end + 2; ++b) {
+    const Line &line = lines[b % 2], &before = lines[1 - b % 2];
     if (b == grid_.nv + 1) clear_warp(before);
     for (Columns columns{0, 0}; columns.end < length_; columns.begin = columns.end) {
       columns.end = std::min(columns.begin + (fetches_ ? short_block : long_block), length_);
       const std::ptrdiff_t next =
           3 * (grid_.index(0, b) + static_cast<std::ptrdiff_t>(columns.end) + column_block + fetch_lead);
-      if (b < grid_.nv) read(b, columns, x, line.x);
-      if (b < grid_.nv && velocities) read(b, columns, v, line.v);
-      if (b > 1) write(b - 2, columns, line, before, f);
-      if (b >= grid_.nv) continue;
+      if (b < read_end) read(b, columns, x, line.x);
+      if (b < read_end && velocities) read(b, columns, v, line.v);
+      if (b >= begin + 2) write(b - 2, columns, line, before, f);
+      if (b >= read_end) continue;
       if (fetches_) fetch(x.data() + next, 3 * short_block);
       if (fetches_ && shape_)
         for (int row = 0; row < shape_rows; ++row) fetch(shape_->line(b)[ShapeRow(row)] + columns.end, short_block);
       pull_weft(b, columns, line);
-      if (b == 0) continue;
+      if (b == first) continue;
       if (fetches_ && velocities) fetch(v.data() + next, 3 * short_block);
       pull_warp(b, columns, before, line);
-      if (fetches_ && b > 1) fetch(f.data() + next - 6 * static_cast<std::ptrdiff_t>(grid_.nu), 3 * short_block);
+      if (fetches_ && b >= begin + 2) fetch(f.data() + next - 6 * static_cast<std::ptrdiff_t>(grid_.nu), 3 * short_block);
       if (law_.cell.acts()) pull_cells(b, columns, before, line);
     }
   }

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <memory>
+#include <vector>
 
 #include "model/forces/fused/kernels.hpp"
 #include "model/sheet/grid.hpp"
@@ -29,10 +30,9 @@ class GridShape {
 class FusedForces {
  public:
   FusedForces(const Grid& grid, const GridLaw& law);
-  FusedForces(const FusedForces&) = delete;
-  FusedForces& operator=(const FusedForces&) = delete;
 
-  /// Sets f to the law's forces [N]; x, v, f: N × 3. Velocities are not read unless the law asks for them.
+  /// Sets f to the law's forces [N]; x, v, f: N × 3. Velocities are not read unless the law asks for them. Threads take a band
+  /// of lines each; they compute the edges and cells between their bands twice, so that none waits for another.
   void operator()(const solver::Vectors& x, const solver::Vectors& v, solver::Vectors& f);
 
  private:
@@ -43,6 +43,18 @@ class FusedForces {
     Edges weft, warp;
     Field pull_right;
   };
+
+  /// The line with even b and the one with odd b, of one thread.
+  struct TwoLines {
+    explicit TwoLines(int length);
+
+    Eigen::ArrayXd memory;
+    std::array<Line, 2> line;
+  };
+
+  /// Sets the forces on the lines [begin, end).
+  void evaluate(int begin, int end, const std::array<Line, 2>& lines, const solver::Vectors& x, const solver::Vectors& v,
+                solver::Vectors& f) const;
 
   Edges weft_of(int b, const Line& line) const;
   Edges warp_of(int b, const Line& line) const;
@@ -61,8 +73,7 @@ class FusedForces {
   Eigen::ArrayXd weft_width_;               ///< 1 where the edge and the cell towards the next column exist, else 0
   Eigen::ArrayXd warp_width_;               ///< width of the edges along v [m], 0 where there is no column
   std::unique_ptr<const GridShape> shape_;  ///< null if the grid is uniform
-  Eigen::ArrayXd memory_;                   ///< holds the lines
-  std::array<Line, 2> lines_;               ///< the one with even b and the one with odd b
+  std::vector<TwoLines> lines_;             ///< of each thread so far
 };
 
 }  // namespace drape::model

@@ -16,6 +16,7 @@
 #include "model/collision/approach.hpp"
 #include "model/collision/exact_intersection.hpp"
 #include "model/collision/face_distance.hpp"
+#include "verify/support/threads.hpp"
 
 namespace drape::verify::self_contacts_test {
 namespace {
@@ -305,6 +306,40 @@ TEST(SelfContacts, IntersectWhereAVertexTouches) {
   SelfContacts contacts(ClothSurface(faces, AboveAFace::at(1)), work);
   EXPECT_THAT(contacts.intersections(AboveAFace::at(0)), testing::ElementsAre(std::array{0, 1}));
   EXPECT_THAT(contacts.intersections(AboveAFace::at(1e-200)), testing::IsEmpty());
+}
+
+// --- Threads
+// ---------------------------------------------------------------------------------------------------------------------
+
+/// A sheet of 61 × 61 particles, 2 cm apart, folded so that its halves lie 3 mm above each other and pass through each other.
+TEST(SelfContacts, AreTheSameForAnyNumberOfThreads) {
+  constexpr int n = 61;
+  Faces faces;
+  Vectors x0(n * n, 3), x1(n * n, 3);
+  for (int b = 0; b < n; ++b)
+    for (int a = 0; a < n; ++a) {
+      const int i = a + n * b, folded = std::min(a, n - 1 - a);
+      const double height = a < n / 2 ? 0.003 : 0;
+      x0.row(i) << 0.02 * folded, 0.02 * b, height;
+      x1.row(i) << 0.02 * folded, 0.021 * b, -height + 1e-4 * std::sin(i);
+      if (a + 1 == n || b + 1 == n) continue;
+      faces.push_back({i, i + 1, i + n});
+      faces.push_back({i + n + 1, i + n, i + 1});
+    }
+  const auto find = [&](int threads) {
+    const Threads allowed(threads);
+    EXPECT_EQ(base::threads_for(20 * std::ssize(faces)), threads) << "or this test tests nothing";
+    solver::Counters work;
+    SelfContacts contacts(ClothSurface(faces, x0), work);
+    std::vector<Approach> found;
+    contacts.find(x0, x1, 2e-3, found);
+    std::vector<Key> pairs;
+    for (const Approach& pair : found) pairs.push_back(key(pair.touch, pair.part));
+    return std::pair(pairs, work.count("self_pairs"));
+  };
+  const auto by_one = find(1);
+  EXPECT_GT(by_one.first.size(), 1000U);
+  for (const int threads : {2, 3, 7}) EXPECT_EQ(find(threads), by_one) << threads << " threads";
 }
 
 // --- Work

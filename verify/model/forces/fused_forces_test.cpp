@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "verify/support/model_fixtures.hpp"
+#include "verify/support/threads.hpp"
 
 namespace drape::verify::fused_forces_test {
 namespace {
@@ -59,6 +60,23 @@ TEST(FusedForces, HasNoForcesInsideAHomogeneousStrainOfALargeGrid) {
   const Vectors f = evaluate(ode_with(everything, grid).force, {x, at_rest(x)});
   for (int b = 1; b < grid.nv - 1; ++b)
     EXPECT_LE(largest(f.middleRows(grid.index(1, b), grid.nu - 2)), 1e-10 * largest(f)) << "line " << b;
+}
+
+/// Bands of lines of a grid with and without spacings of its own.
+TEST(FusedForces, IsTheSameForAnyNumberOfThreads) {
+  for (const double grading : {1.0, 1.5})
+    for (const auto& [nu, nv] : {std::pair{211, 201}, {1200, 35}}) {
+      Grid grid{nu, nv, 2.1, 1};
+      grid.grading_u = grid.grading_v = grading;
+      const SplitOde ode = ode_with(everything, grid, {0.5, -0.3, -2});
+      const State y = deformed(grid, 3);
+      const Vectors by_one = evaluate(ode.force, y);
+      for (const int threads : {2, 3, 7}) {
+        const Threads allowed(threads);
+        ASSERT_EQ(base::threads_for(grid.particles()), threads);
+        EXPECT_EQ(evaluate(ode.force, y), by_one) << threads << " threads, " << nu << " x " << nv << ", grading " << grading;
+      }
+    }
 }
 
 TEST(FusedForces, AddsUpAllCombinationsOfTerms) {
