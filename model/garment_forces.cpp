@@ -42,6 +42,14 @@ bool GarmentForces::needs_normals() const {
   return std::ranges::any_of(parts_, [](const Part& part) { return part.forces.needs_normals(); });
 }
 
+bool GarmentForces::visits_in_threads() const {
+  const Part& first = parts_.front();
+  return also_visit_.empty() && first.panel.nodes.empty() && !needs_normals() &&
+         std::ranges::all_of(first.forces.terms(), [](const PanelForces::NamedTerm& named) {
+           return !named.term.jacobian || named.term.jacobian_in_threads;
+         });
+}
+
 std::vector<std::string> GarmentForces::names() const {
   std::vector<std::string> all;
   for (const Kind& kind : kinds_)
@@ -128,7 +136,7 @@ void GarmentForces::newton_matrix(double t, const Vectors& x, const Vectors& v, 
   ++newton_matrices_;
   normal_evaluations_ += needs_normals();
   const Moment now{t, x, v};
-  matrix.assemble([this, &now](const JacobianEntries& entries) { visit(now, entries); }, gamma, J);
+  matrix.assemble([this, &now](const JacobianEntries& entries) { visit(now, entries); }, visits_in_threads(), gamma, J);
 }
 
 SparseMatrix GarmentForces::sum_of(SparseMatrix (PanelForces::*matrix)() const) const {

@@ -65,6 +65,8 @@ class GarmentForces {
     const Vectors &x, &v;
   };
 
+  /// Whether several threads may visit at the same time: not where normals or a panel's share of nodes are computed.
+  bool visits_in_threads() const;
   bool kinds_with(bool Kind::*property) const;
   void visit(const Moment& now, const JacobianEntries& entries);
   SparseMatrix sum_of(SparseMatrix (PanelForces::*matrix)() const) const;

@@ -1,7 +1,9 @@
 #include <cmath>
+#include <cstdint>
 
 #include "model/forces/term.hpp"
 #include "model/sheet/normals.hpp"
+#include "solver/base/threads.hpp"
 
 namespace drape::model {
 namespace {
@@ -42,10 +44,12 @@ std::optional<Term> make_air(const Sheet& sheet) {
   Term term;
   term.needs_normals = true;
   term.force = [=](const Configuration& c, Vectors& f) {
-    for (int i = 0; i < weight.size(); ++i) {
-      const Wake wake(c, i);
-      f.row(i) += weight[i] * std::abs(wake.p) * wake.direction.transpose();
-    }
+    base::in_parts(base::threads_for(f.rows()), f.rows(), [&](int, std::int64_t begin, std::int64_t end) {
+      for (int i = static_cast<int>(begin); i < end; ++i) {
+        const Wake wake(c, i);
+        f.row(i) += weight[i] * std::abs(wake.p) * wake.direction.transpose();
+      }
+    });
   };
   term.jacobian = [=, normals = Normals(sheet.grid)](const Configuration& c, const JacobianEntries& entries) {
     if (!entries.exact()) return;  // not symmetric

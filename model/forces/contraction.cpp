@@ -138,6 +138,7 @@ std::optional<Term> make_contraction(const Sheet& sheet) {
       add_jacobians(moduli, pairs.v, pairs.u, entries);
     }
   };
+  term.jacobian_in_threads = true;
   return term;
 }
 

@@ -15,10 +15,12 @@ std::optional<Term> make_linear_damping(const Sheet& sheet) {
   term.law.edge.drag = d;
   term.jacobian = [d, all = edges(sheet.grid)](const Configuration&, const JacobianEntries& entries) {
     for (const Edge& edge : all) {
+      if (entries.skips(edge.i, edge.j, 0, 4)) continue;
       const EdgeEnds ends{edge.i, edge.j};
       add_edge_pair(entries.add_dv, ends, ends, along(d, edge) * edge.width / edge.length * Eigen::Matrix3d::Identity());
     }
   };
+  term.jacobian_in_threads = true;
   return term;
 }
 

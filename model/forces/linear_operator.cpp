@@ -2,29 +2,34 @@
 
 #include <tuple>
 
-#include "model/forces/term.hpp"
+#include "model/forces/stencil_matrix.hpp"
 #include "model/sheet/normals.hpp"
-#include "solver/linear/kernels.hpp"
+#include "solver/base/threads.hpp"
 
 namespace drape::model {
 namespace {
 
-/// B x + B_d v with its scratch memory.
+/// B x + B_d v.
 struct Evaluator {
   LinearOperators operators;
-  Vectors q, viscous;
+  StencilMatrix elastic, viscous;
 
-  explicit Evaluator(LinearOperators given) : operators(std::move(given)) {
-    for (Vectors* field : {&q, &viscous}) field->setZero(operators.elastic.rows(), 3);
+  explicit Evaluator(LinearOperators given)
+      : operators(std::move(given)), elastic(operators.elastic), viscous(operators.viscous) {}
+
+  /// Of particle i; the fourth lane means nothing.
+  solver::Lanes lanes_at(int i, const Configuration& c) const {
+    const solver::Lanes q = elastic.times(i, c.x);
+    return viscous.empty() ? q : q + viscous.times(i, c.v);
   }
+  Eigen::Vector3d at(int i, const Configuration& c) const { return lanes_at(i, c).head<3>(); }
 
-  const Vectors& operator()(const Configuration& c) {
-    solver::multiply(operators.elastic, c.x, q);
-    if (operators.viscous.nonZeros() > 0) {
-      solver::multiply(operators.viscous, c.v, viscous);
-      q += viscous;
-    }
-    return q;
+  /// Calls add(i, lanes_at(i)) for each particle; several threads do at the same time.
+  template <class Add>
+  void each(const Configuration& c, const Add& add) const {
+    base::in_parts(base::threads_for(c.x.rows()), c.x.rows(), [&](int, std::int64_t begin, std::int64_t end) {
+      for (int i = static_cast<int>(begin); i < end; ++i) add(i, lanes_at(i, c));
+    });
   }
 };
 
@@ -69,10 +74,13 @@ void add_quadratic(std::vector<Eigen::Triplet<double>>& entries, std::span<const
 Term unprojected(LinearOperators operators) {
   const auto evaluate = std::make_shared<Evaluator>(std::move(operators));
   Term term;
-  term.force = [evaluate](const Configuration& c, Vectors& f) { f += (*evaluate)(c); };
+  term.force = [evaluate](const Configuration& c, Vectors& f) {
+    evaluate->each(c, [&](int i, const solver::Lanes& q) { f.row(i).array() += q.head<3>().transpose(); });
+  };
   term.energy = [evaluate](const Vectors& x) {
-    solver::multiply(evaluate->operators.elastic, x, evaluate->q);
-    return -0.5 * x.cwiseProduct(evaluate->q).sum();
+    Vectors q(x.rows(), 3);
+    evaluate->elastic.multiply(x, q);
+    return -0.5 * x.cwiseProduct(q).sum();
   };
   term.jacobian = [evaluate](const Configuration&, const JacobianEntries& entries) {
     if (entries.curvature == Curvature::tension) return;
@@ -89,8 +97,10 @@ Term projected(const Grid& grid, LinearOperators operators, const Vectors& rest)
   Term term;
   term.needs_normals = true;
   term.force = [evaluate, at_rest](const Configuration& c, Vectors& f) {
-    const Vectors& q = (*evaluate)(c);
-    for (Eigen::Index i = 0; i < q.rows(); ++i) f.row(i) += (c.normals.row(i).dot(q.row(i)) - at_rest[i]) * c.normals.row(i);
+    evaluate->each(c, [&](int i, const solver::Lanes& q) {
+      const Eigen::Array3d N = c.normals.row(i);
+      f.row(i).array() += ((N * q.head<3>()).sum() - at_rest[i]) * N.transpose();
+    });
   };
   term.active = true;
   term.without_energy = evaluate->operators.elastic.nonZeros() > 0;
@@ -106,9 +116,9 @@ Term projected(const Grid& grid, LinearOperators operators, const Vectors& rest)
     const auto NN = [&](int i) -> Eigen::Matrix3d { return c.normals.row(i).transpose() * c.normals.row(i); };
     for_each(evaluate->operators.elastic, [&](int i, int j, double b) { entries.add_dx(i, j, b * NN(i)); });
     for_each(evaluate->operators.viscous, [&](int i, int j, double b) { entries.add_dv(i, j, b * NN(i)); });
-    const Vectors& q = (*evaluate)(c);
-    for (int i = 0; i < q.rows(); ++i) {
-      const Eigen::Matrix3d by_N = projection_by_normal(q.row(i), c.normals.row(i)) - at_rest[i] * Eigen::Matrix3d::Identity();
+    for (int i = 0; i < c.x.rows(); ++i) {
+      const Eigen::Matrix3d by_N =
+          projection_by_normal(evaluate->at(i, c), c.normals.row(i)) - at_rest[i] * Eigen::Matrix3d::Identity();
       for (const auto& [j, dN] : normals.derivative(c.x, i)) entries.add_dx(i, j, by_N * dN);
     }
   };

@@ -13,6 +13,7 @@ std::optional<Term> make_projected_damping(const Sheet& sheet) {
   term.law.edge.dashpot = d;
   term.jacobian = [d, all = edges(sheet.grid)](const Configuration& c, const JacobianEntries& entries) {
     for (const Edge& edge : all) {
+      if (entries.skips(edge.i, edge.j, entries.exact() ? 4 : 0, 4)) continue;
       const Eigen::Vector3d p = c.x.row(edge.j) - c.x.row(edge.i);
       const Eigen::Vector3d q = c.v.row(edge.j) - c.v.row(edge.i);
       const double weight = along(d, edge) * edge.width;
@@ -22,6 +23,7 @@ std::optional<Term> make_projected_damping(const Sheet& sheet) {
       add_edge_pair(entries.add_dx, ends, ends, weight * viscous_turn_block(p, q, edge.length));
     }
   };
+  term.jacobian_in_threads = true;
   return term;
 }
 

@@ -27,6 +27,15 @@ class Quadrants {
       for (const auto& [p, q] : quadrants(cell)) f(quadrant(cell, p, q));
   }
 
+  /// Those whose blocks are taken: 16 of ∂f/∂x each, and as many of ∂f/∂v if they are `viscous`.
+  template <class F>
+  void each_in(const JacobianEntries& entries, bool viscous, const F& f) const {
+    for (const Cell& cell : cells_) {
+      if (entries.skips(cell.corner[0][0], cell.corner[1][1], 64, viscous ? 64 : 0)) continue;
+      for (const auto& [p, q] : quadrants(cell)) f(quadrant(cell, p, q));
+    }
+  }
+
   /// Their angles: each at one corner of its cell, between the edges that end there.
   void list_angles(double G, std::vector<solver::CompliantConstraint>& constraints) const {
     for (const Cell& cell : cells_)
@@ -109,10 +118,11 @@ std::optional<Term> make_shear(const Sheet& sheet) {
   term.unconstrained_law.cell.shear_rate = m.shear_damping / 4;
   term.jacobian = [=, rate = m.shear_damping](const Configuration& c, const JacobianEntries& entries) {
     if (entries.curvature == Curvature::tension) return;
-    all->each([&](const Quadrant& quadrant) {
+    all->each_in(entries, rate != 0, [&](const Quadrant& quadrant) {
       quadrant_jacobian(c, quadrant, quadrant.stiffness(G), quadrant.stiffness(rate), entries);
     });
   };
+  term.jacobian_in_threads = true;
   return term;
 }
 

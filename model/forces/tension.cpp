@@ -43,11 +43,13 @@ std::optional<Term> make_tension(const Sheet& sheet) {
   };
   term.jacobian = [=](const Configuration& c, const JacobianEntries& entries) {
     for (const Edge& edge : *all) {
+      if (entries.skips(edge.i, edge.j, 4, 0)) continue;
       const Eigen::Vector3d d = c.x.row(edge.j) - c.x.row(edge.i);
       const EdgeEnds ends{edge.i, edge.j};
       add_edge_pair(entries.add_dx, ends, ends, along(k, edge) * edge.width * tension_block(d, edge.length, entries.exact()));
     }
   };
+  term.jacobian_in_threads = true;
   return term;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -36,7 +37,18 @@ struct JacobianEntries {
   Curvature curvature;
   Add add_dx, add_dv;
 
+  /// Rows [begin, end) are taken, others are not: another thread takes them.
+  int begin = 0, end = std::numeric_limits<int>::max();
+  std::function<void(int dx, int dv)> skip = {};  ///< leaves out as many blocks
+
   bool exact() const { return curvature == Curvature::exact; }
+
+  /// Leaves out the blocks of an element with particles from `lowest` to `highest`, if no row of theirs is taken.
+  bool skips(int lowest, int highest, int dx, int dv) const {
+    if (lowest < end && highest >= begin) return false;
+    skip(dx, dv);
+    return true;
+  }
 };
 
 /// One force of a compiled sheet [N]: coefficients of the law of the grid, which is evaluated for all terms together and gives
@@ -46,6 +58,7 @@ struct Term {
   std::function<void(const Configuration&, Vectors& f)> force;                 ///< all of it explicit; absent: none
   std::function<double(const Vectors& x)> energy;                              ///< [J]; absent: none
   std::function<void(const Configuration&, const JacobianEntries&)> jacobian;  ///< of law and force; absent: zero
+  bool jacobian_in_threads = false;  ///< whether it may be called by several threads at the same time
 
   /// Adds to the force in the middle of x0 and x1 what the mean force between them has more (SplitOde::mean_excess); absent:
   /// nothing, as where the energy is at most quadratic.

@@ -1,8 +1,11 @@
 #include "model/jacobian/newton.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <functional>
 #include <utility>
+
+#include "solver/base/threads.hpp"
 
 namespace drape::model {
 namespace {
@@ -43,18 +46,31 @@ void NewtonMatrix::analyse(const VisitBlocks& visit) {
   dv_.find(dv, pattern_, is_kept);
 }
 
-void NewtonMatrix::assemble(const VisitBlocks& visit, double gamma, SparseMatrix& J) {
+void NewtonMatrix::assemble(const VisitBlocks& visit, bool in_threads, double gamma, SparseMatrix& J) {
+  constexpr int as_particles = 20;  // blocks of a particle take that many times as long as its forces
   if (pattern_.size() == 0) analyse(visit);
   if (J.nonZeros() != pattern_.nonZeros()) J = pattern_;
   double* const values = J.valuePtr();
   std::fill_n(values, J.nonZeros(), 0.0);
   for (int i = 0; i < mass_.size(); ++i) values[diagonal_[i]] = mass_[i];
-  BlockSlots::Adder add_dx(dx_, values, -gamma * gamma), add_dv(dv_, values, -gamma);
-  if (oblique_.empty()) return visit({curvature_, std::ref(add_dx), std::ref(add_dv)});
+  const std::int64_t particles = mass_.size() / 3;
+  base::in_parts(in_threads ? base::threads_for(as_particles * particles) : 1, particles,
+                 [&](int, std::int64_t begin, std::int64_t end) {
+                   add_rows(visit, gamma, static_cast<int>(begin), static_cast<int>(end), values);
+                 });
+}
+
+void NewtonMatrix::add_rows(const VisitBlocks& visit, double gamma, int begin, int end, double* values) const {
+  BlockSlots::Adder add_dx(dx_, values, -gamma * gamma, begin, end), add_dv(dv_, values, -gamma, begin, end);
+  const auto skip = [&](int dx, int dv) {
+    add_dx.skip(dx);
+    add_dv.skip(dv);
+  };
+  if (oblique_.empty()) return visit({curvature_, std::ref(add_dx), std::ref(add_dv), begin, end, std::ref(skip)});
   const auto add_filtered = [this](BlockSlots::Adder& add) {
     return [this, &add](int i, int j, const Eigen::Matrix3d& block) { add(i, j, oblique_.filtered(i, j, block)); };
   };
-  visit({curvature_, add_filtered(add_dx), add_filtered(add_dv)});
+  visit({curvature_, add_filtered(add_dx), add_filtered(add_dv), begin, end, std::ref(skip)});
 }
 
 }  // namespace drape::model

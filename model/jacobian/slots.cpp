@@ -19,11 +19,12 @@ void BlockSlots::find(const Blocks& blocks, const SparseMatrix& pattern, const s
     });
 }
 
-void BlockSlots::Adder::operator()(int, int, const Eigen::Matrix3d& block) {
-  for_entries(0, 0, [&](int a, int b, int k) {
-    if (slot_[k] >= 0) values_[slot_[k]] += weight_ * block(a, b);
-  });
-  slot_ += 9;
+void BlockSlots::Adder::operator()(int i, int, const Eigen::Matrix3d& block) {
+  if (i >= begin_ && i < end_)
+    for_entries(0, 0, [&](int a, int b, int k) {
+      if (slot_[k] >= 0) values_[slot_[k]] += weight_ * block(a, b);
+    });
+  skip(1);
 }
 
 }  // namespace drape::model

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <functional>
+#include <limits>
 #include <vector>
 
 #include "model/forces/term.hpp"
@@ -29,15 +31,17 @@ class BlockSlots {
   /// `kept`: whether the matrix has an entry for (row, column).
   void find(const Blocks& blocks, const SparseMatrix& pattern, const std::function<bool(int row, int column)>& kept);
 
-  /// Adds `weight` times each block of one visit to the values of the matrix. Valid as long as the slots. Visits take a
-  /// reference to it: a copy in a std::function would allocate.
+  /// Adds `weight` times each block of one visit to the values of the matrix, if its row particle is in [begin, end). Valid as
+  /// long as the slots. Visits take a reference to it: a copy in a std::function would allocate.
   class Adder {
    public:
-    Adder(const BlockSlots& slots, double* values, double weight)
-        : values_(values), weight_(weight), slot_(slots.slots_.data()) {}
+    Adder(const BlockSlots& slots, double* values, double weight, int begin = 0, int end = std::numeric_limits<int>::max())
+        : begin_(begin), end_(end), values_(values), weight_(weight), slot_(slots.slots_.data()) {}
     void operator()(int i, int j, const Eigen::Matrix3d& block);
+    void skip(int blocks) { slot_ += std::ptrdiff_t{9} * blocks; }
 
    private:
+    int begin_, end_;
     double* values_;
     double weight_;
     const int* slot_;

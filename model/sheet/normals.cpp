@@ -1,9 +1,39 @@
 #include "model/sheet/normals.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <utility>
 
+#include "solver/base/threads.hpp"
+
 namespace drape::model {
+namespace {
+
+/// x y z x y z … of the neighbours of consecutive particles.
+struct AroundLine {
+  const double *left, *right, *lower, *upper;
+};
+
+/// The normals of consecutive particles, by a loop that vectorises; false if one has none.
+bool normals_inside(AroundLine x, int count, double* n) {
+  int missing = 0;
+#pragma GCC ivdep
+  for (int k = 0; k < 3 * count; k += 3) {
+    const double ux = x.right[k] - x.left[k], uy = x.right[k + 1] - x.left[k + 1], uz = x.right[k + 2] - x.left[k + 2];
+    const double vx = x.upper[k] - x.lower[k], vy = x.upper[k + 1] - x.lower[k + 1], vz = x.upper[k + 2] - x.lower[k + 2];
+    const double nx = uy * vz - uz * vy, ny = uz * vx - ux * vz, nz = ux * vy - uy * vx;
+    const double length = std::sqrt(nx * nx + ny * ny + nz * nz);
+    missing |= static_cast<int>(length == 0);
+    n[k] = nx / length;
+    n[k + 1] = ny / length;
+    n[k + 2] = nz / length;
+  }
+  return missing == 0;
+}
+
+}  // namespace
 
 Normals::Normals(const Grid& grid) : grid_(grid) {
   if (!grid.is_cut()) return;
@@ -31,14 +61,30 @@ Neighbours Normals::distinct(const Vectors& x, int i) const {
 }
 
 void Normals::evaluate(const Vectors& x, Vectors& n) const {
+  base::in_parts(base::threads_for(grid_.particles()), grid_.nv, [&](int, std::int64_t begin, std::int64_t end) {
+    for (std::int64_t b = begin; b < end; ++b) evaluate_line(static_cast<int>(b), x, n);
+  });
+}
+
+void Normals::evaluate_line(int b, const Vectors& x, Vectors& n) const {
   const auto cross = [&](const Neighbours& at) -> Eigen::RowVector3d {
     return (x.row(at.right) - x.row(at.left)).cross(x.row(at.upper) - x.row(at.lower));
   };
-  for (int i = 0; i < grid_.particles(); ++i) {
+  const auto evaluate_at = [&](int i) {
     n.row(i) = cross(neighbours(i));
     double length = n.row(i).norm();
     if (length == 0) n.row(i) = cross(distinct(x, i)), length = n.row(i).norm();
     n.row(i) /= length;
+  };
+  const auto at = [&](int a, int line) { return x.data() + 3 * static_cast<std::ptrdiff_t>(grid_.index(a, line)); };
+  const int first = grid_.index(0, b);
+  if (grid_.nu > 2 && along_cut_.empty() &&
+      normals_inside({at(0, b), at(2, b), at(1, std::max(b - 1, 0)), at(1, std::min(b + 1, grid_.nv - 1))}, grid_.nu - 2,
+                     n.data() + 3 * static_cast<std::ptrdiff_t>(first + 1))) {
+    evaluate_at(first);
+    evaluate_at(first + grid_.nu - 1);
+  } else {
+    for (int a = 0; a < grid_.nu; ++a) evaluate_at(first + a);
   }
 }
 

@@ -21,6 +21,7 @@ class Normals {
   std::array<std::pair<int, Eigen::Matrix3d>, 4> derivative(const Vectors& x, int i) const;
 
  private:
+  void evaluate_line(int b, const Vectors& x, Vectors& n) const;
   Neighbours neighbours(int i) const;
 
   /// With the particle itself in the place of a neighbour that is sewn to the one opposite.

@@ -5,6 +5,7 @@
 #include "model/cloth.hpp"
 #include "model/scene_file/scene_file.hpp"
 #include "verify/support/small_problems.hpp"
+#include "verify/support/threads.hpp"
 
 namespace drape::verify::newton_matrix_test {
 namespace {
@@ -15,14 +16,18 @@ using solver::SparseMatrix;
 constexpr double gamma = 0.01;
 
 model::Cloth sheet(std::vector<model::Override> changes) {
-  changes.insert(changes.end(), {{"grid.n", "[5, 4]"}});
+  changes.insert(changes.begin(), {{"grid.n", "[5, 4]"}});
   return model::compile(model::load_scene("hung-corners", changes));
 }
 
-Eigen::MatrixXd newton(const model::Cloth& cloth, const State& y, solver::Jacobian part = solver::Jacobian::whole) {
+SparseMatrix assembled(const model::Cloth& cloth, const State& y, solver::Jacobian part) {
   SparseMatrix J;
   cloth.ode.newton_matrix(0, y.x, y.v, gamma, part, J);
-  return Eigen::MatrixXd(SparseMatrix(J.selfadjointView<Eigen::Upper>()));
+  return J;
+}
+
+Eigen::MatrixXd newton(const model::Cloth& cloth, const State& y, solver::Jacobian part = solver::Jacobian::whole) {
+  return Eigen::MatrixXd(SparseMatrix(assembled(cloth, y, part).selfadjointView<Eigen::Upper>()));
 }
 
 /// M − γ² ∂f/∂x − γ ∂f/∂v with the rows and columns of pinned coordinates reduced to their mass.
@@ -63,6 +68,27 @@ TEST(NewtonMatrix, IsNotExactForACrumpledOne) {
   const model::Cloth cloth = sheet({{"material.damping", "5"}});
   const State y = crumpled(cloth);
   EXPECT_GE(relative(newton(cloth, y) - exact(cloth, y), exact(cloth, y)), 1e-2);
+}
+
+/// Terms that leave out the blocks of other threads, and contraction, which does not.
+TEST(NewtonMatrix, IsTheSameForAnyNumberOfThreads) {
+  for (const char* form : {"linear", "projected"})
+    for (const char* shear_damping : {"0", "1"}) {
+      const model::Cloth cloth = sheet({{"grid.n", "[61, 50]"},
+                                        {"material.damping", "5"},
+                                        {"material.damping_form", form},
+                                        {"material.shear", "100"},
+                                        {"material.shear_damping", shear_damping},
+                                        {"material.contraction", "1e3"}});
+      const State y = crumpled(cloth, 0.01);
+      for (const solver::Jacobian part : {solver::Jacobian::whole, solver::Jacobian::tension}) {
+        const SparseMatrix by_one = assembled(cloth, y, part);
+        for (const int threads : {2, 3, 7}) {
+          const Threads allowed(threads);
+          EXPECT_EQ((assembled(cloth, y, part) - by_one).norm(), 0) << threads << " threads, " << form << " damping";
+        }
+      }
+    }
 }
 
 TEST(NewtonMatrix, LeavesOutShearIfOnlyTensionIsWanted) {
