@@ -23,6 +23,7 @@
 #include "model/scene_file/scene_file.hpp"
 #include "solver/base/stopwatch.hpp"
 #include "solver/base/threads.hpp"
+#include "solver/linear/block_cholesky.hpp"
 #include "solver/linear/cholmod_view.hpp"
 #include "solver/linear/conjugate_gradients.hpp"
 #include "solver/linear/kernels.hpp"
@@ -162,6 +163,56 @@ void cholmod_solve(benchmark::State& state) {
   cholmod_finish(&common);
 }
 
+/// A sheet under way and its Newton matrix.
+struct NewtonProblem {
+  model::Cloth cloth;
+  Vectors x, v;
+  SparseMatrix J;
+
+  explicit NewtonProblem(int n)
+      : cloth(compile(sheet(n, {{"material.damping", "0.5"}}))), x(perturbed(cloth.start.x, 1e-3)), v(cloth.start.v) {
+    assemble();
+  }
+  void assemble() { cloth.ode.newton_matrix(0, x, v, 0.01, solver::Jacobian::whole, J); }
+};
+
+void newton_matrix(benchmark::State& state) {
+  NewtonProblem newton(static_cast<int>(state.range(0)));
+  for (auto _ : state) newton.assemble();
+  per_particle(state, newton.x.rows());
+}
+
+void newton_factor(benchmark::State& state) {
+  const NewtonProblem newton(static_cast<int>(state.range(0)));
+  solver::BlockCholesky factor(newton.J);
+  for (auto _ : state)
+    if (!factor.factor(newton.J)) return state.SkipWithError("the matrix is not positive definite");
+  per_particle(state, newton.x.rows());
+}
+
+void newton_solve(benchmark::State& state) {
+  const NewtonProblem newton(static_cast<int>(state.range(0)));
+  solver::BlockCholesky factor(newton.J);
+  if (!factor.factor(newton.J)) return state.SkipWithError("the matrix is not positive definite");
+  Vectors d = newton.x;
+  for (auto _ : state) factor.solve(newton.x, d);
+  per_particle(state, newton.x.rows());
+}
+
+/// CHOLMOD's own factors of the same matrix, by columns or by supernodes.
+void cholmod_newton_factor(benchmark::State& state, int supernodal) {
+  const NewtonProblem newton(static_cast<int>(state.range(0)));
+  cholmod_common common;
+  cholmod_start(&common);
+  common.supernodal = supernodal;
+  cholmod_sparse view = solver::cholmod_view(newton.J);
+  cholmod_factor* factor = cholmod_analyze(&view, &common);
+  for (auto _ : state) cholmod_factorize(&view, factor, &common);
+  per_particle(state, newton.x.rows());
+  cholmod_free_factor(&factor, &common);
+  cholmod_finish(&common);
+}
+
 void force(benchmark::State& state, const std::vector<model::Override>& changes) {
   const model::Scene scene = sheet(static_cast<int>(state.range(0)), changes);
   const model::Cloth cloth = compile(scene);
@@ -258,6 +309,16 @@ void register_all() {
   }
   add_threads(
       "cg-iteration/multigrid", [](benchmark::State& state) { cg_iteration(state, solver::linear_solver("multigrid")); }, 1000);
+  const std::vector<std::int64_t> factored{20, 50, 100};
+  add("newton/matrix", newton_matrix, factored);
+  add("newton/factor", newton_factor, factored);
+  add("newton/solve", newton_solve, factored);
+  add_threads("newton/matrix", newton_matrix, 100);
+  add_threads("newton/factor", newton_factor, 100);
+  for (const auto& [name, supernodal] : {std::pair("columns", CHOLMOD_SIMPLICIAL), std::pair("supernodes", CHOLMOD_SUPERNODAL)})
+    add(
+        fmt::format("library/cholmod-newton-factor/{}", name),
+        [supernodal = supernodal](benchmark::State& state) { cholmod_newton_factor(state, supernodal); }, factored);
   add("library/eigen-cg-iteration", eigen_cg_iteration<Eigen::IdentityPreconditioner>, sizes);
   add("library/eigen-cg-iteration-ic", eigen_cg_iteration<Eigen::IncompleteCholesky<double>>, sizes);
   add("library/cholmod-solve", cholmod_solve, {20, 100});
