@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "solver/reductions.hpp"
+#include "solver/partition.hpp"
 
 namespace drape::solver {
 
@@ -16,7 +16,7 @@ namespace drape::solver {
 class LimitWatch {
  public:
   /// Adds the next force and returns whether modes alternate and grow; weight: 1/m, 0 for pinned coordinates.
-  bool alarmed(const Vectors& f, const Vectors& weight, const Reductions& all) {
+  bool alarmed(const Vectors& f, const Vectors& weight, const Partition& all) {
     const int place = place_++;
     if (place < 0 || place > 2) {
       if (place >= period) place_ = 0;
@@ -61,7 +61,7 @@ class StretchWatch {
   }
 
   /// Whether any length has grown by a tenth.
-  bool stretched(const SparseMatrix& K, const Vectors& x, const Reductions& all) const {
+  bool stretched(const SparseMatrix& K, const Vectors& x, const Partition& all) const {
     bool any = false;
     std::size_t k = 0;
     visit(K, x, [&](double square) { any |= square > much * much * squares_[k++]; });

@@ -19,7 +19,7 @@ namespace {
 template <class Map>
 double largest_eigenvalue(const SplitOde& ode, const Map& map) {
   constexpr int most = 60, check = 6;
-  const Reductions& all = *ode.reductions;
+  const Partition& all = *ode.partition;
   const Eigen::Index n = 3 * ode.particles();
   const auto [before, particles] = all.place(ode.particles());
   const auto [first, count] = all.own(n);
@@ -113,7 +113,7 @@ Spectrum spectrum(const SplitOde& ode, double t, const State& y) {
   const auto largest = [&](Vectors State::*argument, double size) {
     const double step = difference * (size > 0 ? size : 1);
     const double eigenvalue = largest_eigenvalue(ode, [&](const Vectors& z, Vectors& w) {
-      const double delta = step / ode.reductions->largest_entry(z);
+      const double delta = step / ode.partition->largest_entry(z);
       moved.*argument = y.*argument + delta * z;
       ode.force(t, moved.x, moved.v, w);
       w = ode.mass.cwiseInverse().asDiagonal() * (w - f) / delta;
@@ -122,8 +122,8 @@ Spectrum spectrum(const SplitOde& ode, double t, const State& y) {
     moved.*argument = y.*argument;
     return spectrum_safety * eigenvalue;
   };
-  const double length = ode.reductions->largest_entry(y.x), omega_squared = largest(&State::x, length);
-  const double speed = std::max(ode.reductions->largest_entry(y.v), length * std::sqrt(omega_squared));
+  const double length = ode.partition->largest_entry(y.x), omega_squared = largest(&State::x, length);
+  const double speed = std::max(ode.partition->largest_entry(y.v), length * std::sqrt(omega_squared));
   return {omega_squared, largest(&State::v, speed)};
 }
 

@@ -37,7 +37,7 @@ const std::vector<Room> rooms = {
     {"solver/base", {"solver/base/"}, {}},
     {"solver's vocabulary",
      {"solver/counters.", "solver/filter.", "solver/memory.", "solver/outcome.", "solver/split_ode.", "solver/stage.",
-      "solver/state.", "solver/step_forces.", "solver/reductions."},
+      "solver/state.", "solver/step_forces.", "solver/partition."},
      {"solver/base"}},
     {"solver/linear", {"solver/linear/"}, {"solver's vocabulary"}},
     {"solver/contact", {"solver/contact/"}, {"solver's vocabulary"}},

@@ -21,7 +21,7 @@ AcceleratedStage::AcceleratedStage(const SplitOde& ode, const Options& options, 
       options_(options),
       system_(system),
       estimate_(ode),
-      anderson_(ode.particles(), *ode.reductions),
+      anderson_(ode.particles(), *ode.partition),
       newton_(ode, options, system),
       policy_(options.stage->matrix, ode),
       work_(*ode.work) {

@@ -16,7 +16,7 @@ constexpr double unknown_response = 0.05;
 
 }  // namespace
 
-Anderson::Anderson(Eigen::Index particles, const Reductions& all)
+Anderson::Anderson(Eigen::Index particles, const Partition& all)
     : all_(all), v_(3 * particles), d_(3 * particles), dd_(3 * particles, depth), dg_(3 * particles, depth) {}
 
 void Anderson::begin() {

@@ -16,7 +16,7 @@ constexpr double sudden = 1.2;            ///< growth of the first |d| from stag
 }  // namespace
 
 ErrorEstimate::ErrorEstimate(const SplitOde& ode)
-    : all_(*ode.reductions),
+    : all_(*ode.partition),
       mass_(thrice(ode.mass)),
       drag_(ode.damping.nonZeros() > 0 ? thrice(ode.damping.diagonal()) : Eigen::VectorXd::Zero(mass_.size())),
       inverse_mass_(mass_.inverse()) {}

@@ -124,9 +124,9 @@ Outcome StageSystem::make(double gamma, double springs, double inertia) {
 
 double StageSystem::noise(const State& y, double gamma) const {
   const double underflow = std::sqrt(std::numeric_limits<double>::min());  // squares of smaller numbers vanish
-  const auto [begin, count] = ode_.reductions->own(y.x.size());
+  const auto [begin, count] = ode_.partition->own(y.x.size());
   const double squares = (spring_ * flat(y.x)).segment(begin, count).matrix().squaredNorm();
-  return round_off(gamma * std::sqrt(ode_.reductions->sum(squares))) + underflow;
+  return round_off(gamma * std::sqrt(ode_.partition->sum(squares))) + underflow;
 }
 
 /// At rest both b and r are round-off only, so that a relative test alone would never pass.

@@ -77,10 +77,10 @@ class StageSystem {
   /// Error of v [m/s] that may be left in a stage that began with this guess: a part of the error of the time step, which the
   /// distance between the two indicates, and at least round-off.
   double allowed_error(const Stage& stage, const Vectors& guess, const State& y) const {
-    const auto [begin, count] = ode_.reductions->own(y.x.size());
+    const auto [begin, count] = ode_.partition->own(y.x.size());
     const auto change = (Eigen::VectorXd::Map(y.v.data(), y.v.size()) - Eigen::VectorXd::Map(guess.data(), guess.size()));
-    std::array squares{ode_.reductions->own(y.x).squaredNorm(), change.segment(begin, count).squaredNorm()};
-    ode_.reductions->add_up(squares);
+    std::array squares{ode_.partition->own(y.x).squaredNorm(), change.segment(begin, count).squaredNorm()};
+    ode_.partition->add_up(squares);
     return std::max(round_off(std::sqrt(squares[0])) / stage.gamma, stage.accuracy * std::sqrt(squares[1]));
   }
 
@@ -97,7 +97,7 @@ class StageSystem {
   const Vectors& residual() const { return r_; }
 
   /// |a| over all particles.
-  double size(const Vectors& a) const { return ode_.reductions->norm(a); }
+  double size(const Vectors& a) const { return ode_.partition->norm(a); }
   Vectors& correction() { return d_; }
 
  private:

@@ -145,7 +145,7 @@ double Pfmg::apply(const Vectors& r, Vectors& z) {
   }
   HYPRE_ClearAllErrors();
   strip_.exchange(z);
-  const auto& all = *strip_.ode().reductions;
+  const auto& all = *strip_.ode().partition;
   return solved ? all.sum(all.own(r).dot(all.own(z))) : std::numeric_limits<double>::quiet_NaN();
 }
 

@@ -15,10 +15,11 @@ namespace {
 using solver::State;
 using solver::Vectors;
 
-class StripReductions : public solver::Reductions {
+class StripPartition : public solver::Partition {
  public:
-  explicit StripReductions(const Strip& strip)
-      : own_{3 * strip.first_row(), 3 * strip.rows()},
+  explicit StripPartition(const Strip& strip)
+      : strip_(strip),
+        own_{3 * strip.first_row(), 3 * strip.rows()},
         place_{static_cast<Eigen::Index>(strip.columns()) * strip.share().copied_first(),
                static_cast<Eigen::Index>(strip.columns()) * strip.lines()} {}
 
@@ -26,8 +27,10 @@ class StripReductions : public solver::Reductions {
   Place place(Eigen::Index) const override { return place_; }
   void add_up(std::span<double> sums) const override { Processes::add_up(sums); }
   double largest(double here) const override { return Processes::largest(here); }
+  void set_copies(Vectors& field) const override { strip_.exchange(field); }
 
  private:
+  const Strip& strip_;
   const Range own_;
   const Place place_;
 };
@@ -50,12 +53,7 @@ Strip::Strip(const model::Scene& whole, const Share& share)
   ode_.work = cloth_.ode.work;
   ode_.force = exchanged(cloth_.ode.force);
   ode_.explicit_force = exchanged(cloth_.ode.explicit_force);
-  ode_.reductions = std::make_shared<StripReductions>(*this);
-  ode_.relocate = [this](double, double, const State&, State& y) {
-    exchange(y.x);
-    exchange(y.v);
-    return false;  // own particles stay
-  };
+  ode_.partition = std::make_shared<StripPartition>(*this);
 }
 
 solver::SplitOde::Force Strip::exchanged(solver::SplitOde::Force force) const {

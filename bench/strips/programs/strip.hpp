@@ -5,11 +5,8 @@
 
 namespace drape::bench::strips {
 
-/// The strip of a sheet that this process has, as an ODE that any method steps which takes its sums by SplitOde::reductions.
-///
-/// Its particles are those of its lines, between copies of the neighbours' next lines. A copy moves as its original does since
-/// it receives the force on it; what methods make of forces, masses and pins is the same for both, except products with K and
-/// D, which lack a line beyond. Where these are in a step, and for round-off, copies are set at its end.
+/// The strip of a sheet that this process has, as an ODE whose partition is over all processes. Its particles are those of its
+/// lines, between copies of the neighbours' next lines.
 class Strip {
  public:
   /// Throws std::invalid_argument as shares() and strip_of() do. `lines`: as for shares().

@@ -16,7 +16,6 @@
 #include "model/scene_file/scene_file.hpp"
 #include "reference/sundials/cvode.hpp"
 #include "solver/integrator.hpp"
-#include "verify/support/bench_integrators.hpp"
 
 namespace drape::verify::strips_test {
 namespace {

@@ -9,20 +9,21 @@
 
 namespace drape::solver {
 
-/// Sums over all particles, which all parts of a step must agree on.
+/// How processes share particles out, and what all parts of a step must agree on: sums over all particles.
 ///
-/// Processes may share the particles out. Then the ODE of each has its own, one after the other, between copies of those of
-/// neighbours, whose forces it receives; a sum is that over the own ones of all processes, the same on each. This class is that
-/// of an ODE that has all particles.
-class Reductions {
+/// The ODE of a process has its own particles, one after the other, between copies of those of its neighbours. A copy moves as
+/// its original does, since its forces and the solutions of linear systems are set to those of the original; what methods make
+/// of forces, masses and pins is the same for both. Sums are over the own particles of all processes, the same in each. This
+/// class is that of an ODE that has all particles.
+class Partition {
  public:
-  Reductions() = default;
-  Reductions(const Reductions&) = delete;
-  Reductions& operator=(const Reductions&) = delete;
-  virtual ~Reductions() = default;
+  Partition() = default;
+  Partition(const Partition&) = delete;
+  Partition& operator=(const Partition&) = delete;
+  virtual ~Partition() = default;
 
-  static const std::shared_ptr<const Reductions>& of_one_process() {
-    static const auto whole = std::make_shared<const Reductions>();
+  static const std::shared_ptr<const Partition>& of_one_process() {
+    static const auto whole = std::make_shared<const Partition>();
     return whole;
   }
 
@@ -47,6 +48,9 @@ class Reductions {
 
   /// The largest of what the processes have.
   virtual double largest(double here) const { return here; }
+
+  /// Sets what a field has on copies to what it has on their originals.
+  virtual void set_copies(Vectors&) const {}
 
   double sum(double here) const {
     add_up({&here, 1});
