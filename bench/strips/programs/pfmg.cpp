@@ -23,13 +23,13 @@ constexpr int red_black = 2;  ///< HYPRE_StructPFMGSetRelaxType: symmetric, and 
 
 /// An object of hypre.
 template <class Object, HYPRE_Int (*destroy)(Object)>
-struct Owned {
+struct HypreObject {
   Object object = nullptr;
 
-  Owned() = default;
-  Owned(const Owned&) = delete;
-  Owned& operator=(const Owned&) = delete;
-  ~Owned() { clear(); }
+  HypreObject() = default;
+  HypreObject(const HypreObject&) = delete;
+  HypreObject& operator=(const HypreObject&) = delete;
+  ~HypreObject() { clear(); }
   void clear() {
     if (object != nullptr) destroy(object);
     object = nullptr;
@@ -57,12 +57,12 @@ class Pfmg : public solver::Preconditioner {
   const Strip& strip_;
   std::array<HYPRE_Int, 2> lower_, upper_;  ///< corners of own particles among all: column, line
   std::vector<double> values_;
-  Owned<HYPRE_StructGrid, HYPRE_StructGridDestroy> grid_;
-  Owned<HYPRE_StructStencil, HYPRE_StructStencilDestroy> stencil_;
-  Owned<HYPRE_StructMatrix, HYPRE_StructMatrixDestroy> matrix_;
-  Owned<HYPRE_StructVector, HYPRE_StructVectorDestroy> right_, solution_;
-  Owned<HYPRE_StructSolver, HYPRE_StructPFMGDestroy> cycle_;
-  Owned<HYPRE_StructSolver, HYPRE_StructPCGDestroy> solver_;
+  HypreObject<HYPRE_StructGrid, HYPRE_StructGridDestroy> grid_;
+  HypreObject<HYPRE_StructStencil, HYPRE_StructStencilDestroy> stencil_;
+  HypreObject<HYPRE_StructMatrix, HYPRE_StructMatrixDestroy> matrix_;
+  HypreObject<HYPRE_StructVector, HYPRE_StructVectorDestroy> right_, solution_;
+  HypreObject<HYPRE_StructSolver, HYPRE_StructPFMGDestroy> cycle_;
+  HypreObject<HYPRE_StructSolver, HYPRE_StructPCGDestroy> solver_;
   std::int64_t& iterations_;
 };
 
