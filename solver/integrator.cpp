@@ -31,7 +31,7 @@ constexpr double hard_impact = 1e-2;
 constexpr double least_part = 0.1;
 
 /// Tests the sum, which is finite only if all its terms are: unlike a test of each term, it is vectorised.
-bool finite(const State& y) { return std::isfinite(y.x.sum() + y.v.sum()); }
+bool finite(const State& y, const Partition& all) { return !all.any(!std::isfinite(y.x.sum() + y.v.sum())); }
 
 double controlled(const StepControl& control, double h, int updates) {
   if (updates > control.max_updates) return h / control.factor;
@@ -145,10 +145,11 @@ bool Integrator::attempt(double h) {
   follow_step_forces();
   begin_contacts(h);
   method_.step(step_);
+  for (Vectors* field : {&next_.y.x, &next_.y.v}) step_.ode.partition->set_copies(*field);
   bool hard = hit_hard();
   if (hard) step_without_history();
   StageResult& result = step_.result;
-  if (result.outcome == Outcome::success && !finite(next_.y)) result.outcome = Outcome::not_finite;
+  if (result.outcome == Outcome::success && !finite(next_.y, *step_.ode.partition)) result.outcome = Outcome::not_finite;
   if (result.outcome == Outcome::success && step_.ode.relocate) hard = relocate() || hard;
   if (result.outcome == Outcome::success && separation_) separate();
   if (result.outcome == Outcome::success && !hard) {

@@ -1,9 +1,10 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
-#include "solver/state.hpp"
+#include "solver/partition.hpp"
 
 namespace drape::solver {
 
@@ -15,13 +16,13 @@ namespace drape::solver {
 class LimitWatch {
  public:
   /// Adds the next force and returns whether modes alternate and grow; weight: 1/m, 0 for pinned coordinates.
-  bool alarmed(const Vectors& f, const Vectors& weight) {
+  bool alarmed(const Vectors& f, const Vectors& weight, const Partition& all) {
     const int place = place_++;
     if (place < 0 || place > 2) {
       if (place >= period) place_ = 0;
       return false;
     }
-    const auto squared = [&](const Vectors& a) { return (weight.array() * a.array().square()).sum(); };
+    const auto squared = [&](const Vectors& a) { return (all.own(weight).array() * all.own(a).array().square()).sum(); };
     if (place == 0) {
       differences_ = f;
       first_ = squared(f);
@@ -30,7 +31,10 @@ class LimitWatch {
       second_ = squared(f);
     } else {
       differences_ += f;
-      return squared(f) > first_ && squared(differences_) > nearly * nearly * 16 * second_;
+      std::array sums{first_, second_, squared(f), squared(differences_)};  // in one reduction
+      all.add_up(sums);
+      const auto [first, second, third, differences] = sums;
+      return third > first && differences > nearly * nearly * 16 * second;
     }
     return false;
   }
@@ -57,11 +61,11 @@ class StretchWatch {
   }
 
   /// Whether any length has grown by a tenth.
-  bool stretched(const SparseMatrix& K, const Vectors& x) const {
+  bool stretched(const SparseMatrix& K, const Vectors& x, const Partition& all) const {
     bool any = false;
     std::size_t k = 0;
     visit(K, x, [&](double square) { any |= square > much * much * squares_[k++]; });
-    return any;
+    return all.any(any);
   }
 
  private:

@@ -8,6 +8,7 @@
 
 #include "solver/counters.hpp"
 #include "solver/memory.hpp"
+#include "solver/partition.hpp"
 #include "solver/state.hpp"
 #include "solver/step_forces.hpp"
 
@@ -120,6 +121,9 @@ struct SplitOde {
 
   /// Whether obstacles or the cloth itself stop its motion, which is not smooth then.
   bool has_contacts() const { return contacts || pairs; }
+
+  /// Where processes share the particles out: how. Then products with K and D are not those of the whole on copies.
+  std::shared_ptr<const Partition> partition = Partition::of_one_process();
 
   std::shared_ptr<Counters> work = std::make_shared<Counters>();
 

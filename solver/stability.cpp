@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <cstddef>
 #include <limits>
 #include <random>
 
@@ -13,19 +14,28 @@ namespace {
 
 /// Largest |eigenvalue| of a linear map of N × 3 vectors by Arnoldi's iteration, whose eigenvalues approach the outermost
 /// from within: it takes tens of products, power iteration would take hundreds, and a restarted space, as in Spectra's
-/// GenEigsSolver, two to three times as many. Memory is allocated as the basis grows.
+/// GenEigsSolver, two to three times as many. Memory is allocated as the basis grows. The first vector is the same for all
+/// processes that share the particles out.
 template <class Map>
 double largest_eigenvalue(const SplitOde& ode, const Map& map) {
   constexpr int most = 60, check = 6;
+  const Partition& all = *ode.partition;
   const Eigen::Index n = 3 * ode.particles();
+  const auto [before, particles] = all.place(ode.particles());
+  const auto [first, count] = all.own(n);
   Eigen::MatrixXd V(n, check), H = Eigen::MatrixXd::Zero(most + 1, most);
   Vectors z(ode.particles(), 3), w = z;
   std::mt19937 random(1);
   std::normal_distribution<double> normal;
-  for (double& component : z.reshaped()) component = normal(random);
+  for (int c = 0; c < 3; ++c)
+    for (Eigen::Index i = -before; i < particles - before; ++i) {
+      const double component = normal(random);
+      if (i >= 0 && i < z.rows()) z(i, c) = component;
+    }
   filter(ode.pins, z);
-  if (z.isZero(0)) return 0;
-  V.col(0) = Eigen::VectorXd::Map(z.data(), n).normalized();
+  const double length = all.norm(z);
+  if (length == 0) return 0;
+  V.col(0) = Eigen::VectorXd::Map(z.data(), n) / length;
   double eigenvalue = 0;
   for (int k = 0; k < most; ++k) {
     if (k + 1 == V.cols()) V.conservativeResize(Eigen::NoChange, V.cols() + check);
@@ -33,13 +43,15 @@ double largest_eigenvalue(const SplitOde& ode, const Map& map) {
     map(z, w);
     auto next = V.col(k + 1);
     next = Eigen::VectorXd::Map(w.data(), n);
-    const double size = next.norm();
+    const double size = all.norm(w);
     if (!std::isfinite(size)) return size;
     const auto basis = V.leftCols(k + 1);
-    H.col(k).head(k + 1).noalias() = basis.transpose() * next;
-    next.noalias() -= basis * H.col(k).head(k + 1);
-    H(k + 1, k) = next.norm();
-    const bool complete = H(k + 1, k) <= 1e-6 * size || k + 1 == n;
+    auto column = H.col(k).head(k + 1);
+    column.noalias() = basis.middleRows(first, count).transpose() * next.segment(first, count);
+    all.add_up({column.data(), static_cast<std::size_t>(column.size())});
+    next.noalias() -= basis * column;
+    H(k + 1, k) = std::sqrt(all.sum(next.segment(first, count).squaredNorm()));
+    const bool complete = H(k + 1, k) <= 1e-6 * size || k + 1 == 3 * particles;
     if (complete || (k + 1) % check == 0) {
       const double estimate = base::eigenvalues(H.topLeftCorner(k + 1, k + 1)).cwiseAbs().maxCoeff();
       if (complete || estimate - eigenvalue <= 1e-3 * estimate) return estimate;
@@ -101,7 +113,7 @@ Spectrum spectrum(const SplitOde& ode, double t, const State& y) {
   const auto largest = [&](Vectors State::*argument, double size) {
     const double step = difference * (size > 0 ? size : 1);
     const double eigenvalue = largest_eigenvalue(ode, [&](const Vectors& z, Vectors& w) {
-      const double delta = step / z.cwiseAbs().maxCoeff();
+      const double delta = step / ode.partition->largest_entry(z);
       moved.*argument = y.*argument + delta * z;
       ode.force(t, moved.x, moved.v, w);
       w = ode.mass.cwiseInverse().asDiagonal() * (w - f) / delta;
@@ -110,8 +122,8 @@ Spectrum spectrum(const SplitOde& ode, double t, const State& y) {
     moved.*argument = y.*argument;
     return spectrum_safety * eigenvalue;
   };
-  const double length = y.x.cwiseAbs().maxCoeff(), omega_squared = largest(&State::x, length);
-  const double speed = std::max(y.v.cwiseAbs().maxCoeff(), length * std::sqrt(omega_squared));
+  const double length = ode.partition->largest_entry(y.x), omega_squared = largest(&State::x, length);
+  const double speed = std::max(ode.partition->largest_entry(y.v), length * std::sqrt(omega_squared));
   return {omega_squared, largest(&State::v, speed)};
 }
 

@@ -87,6 +87,10 @@ std::span<const Study> studies() {
        .description =
            "time of a step and of a CG iteration from 20 x 20 to a million particles, beside the machine's bandwidth",
        .answer = scaling},
+      {.name = "strips",
+       .description =
+           "one huge sheet in strips over MPI: the same motion in any number of processes, time, messages, reductions, memory",
+       .answer = strips_study},
       {.name = "stability",
        .description = "what becomes of every method over stiffness and damping, its largest usable step, and stress cases",
        .answer = stability,

@@ -71,6 +71,7 @@ std::vector<Job> fabrics(const Question& question);
 std::vector<Job> drape_study(const Question& question);
 std::vector<Job> garments(const Question& question);
 std::vector<Job> scaling(const Question& question);
+std::vector<Job> strips_study(const Question& question);
 std::vector<Job> stability(const Question& question);
 std::vector<Job> stages(const Question& question);
 std::vector<Job> step_control(const Question& question);

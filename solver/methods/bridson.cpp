@@ -12,9 +12,11 @@ double bridson_step_limit(const SplitOde& ode, double t, const State& y) {
   SplitOde undamped;
   undamped.mass = ode.mass;
   undamped.pins = ode.pins;
+  undamped.partition = ode.partition;
   undamped.force = [&ode](double time, const Vectors& x, const Vectors& v, Vectors& f) {
     ode.force(time, x, v, f);
     f -= ode.damping * v;
+    ode.partition->set_copies(f);
   };
   return verlet_limit(spectrum(undamped, t, y));
 }

@@ -9,7 +9,7 @@ namespace drape::solver {
 // The largest decay is that of the initial state until neighbours have moved apart by a tenth.
 double stages_of(Step& s, double (*fewest)(double h_decay), double most) {
   SubStepping& kept = s.sub_stepping;
-  if (kept.limit == 0 || kept.stretch_watch.stretched(s.ode.stiffness, s.y0().x)) {
+  if (kept.limit == 0 || kept.stretch_watch.stretched(s.ode.stiffness, s.y0().x, *s.ode.partition)) {
     ++kept.limits;
     kept.stretch_watch.begin(s.ode.stiffness, s.y0().x);
     kept.limit = 1 / spectrum(s.ode, s.t, s.y0()).decay;

@@ -40,7 +40,8 @@ bool limit_narrowed(Step& s, SubStepLimit limit, double t, const Vectors& v, boo
   constexpr int stretch_period = 8;
   constexpr double worthwhile = 0.98;
   const bool looks = ++s.sub_stepping.substeps % stretch_period == 0;
-  if (!alarmed && !(looks && s.sub_stepping.stretch_watch.stretched(s.ode.stiffness, s.y1().x))) return false;
+  const auto stretched = [&] { return s.sub_stepping.stretch_watch.stretched(s.ode.stiffness, s.y1().x, *s.ode.partition); };
+  if (!alarmed && !(looks && stretched())) return false;
   const double now = new_limit(s, limit, t, {s.y1().x, v});
   if (now < worthwhile * s.sub_stepping.limit) {
     s.sub_stepping.limit = now;

@@ -18,7 +18,7 @@ bool limit_narrowed(Step& s, SubStepLimit limit, double t, const Vectors& v, boo
 /// An alarm for methods whose fastest modes alternate at the limit: whether the forces f after each sub-step alternate and
 /// grow. weight: 1/m, 0 for pinned coordinates.
 inline bool alternates(Step& s, const Vectors& f, const Vectors& weight) {
-  return s.sub_stepping.limit_watch.alarmed(f, weight);
+  return s.sub_stepping.limit_watch.alarmed(f, weight, *s.ode.partition);
 }
 
 /// 1/m of all coordinates, 0 of those that are pinned. What oblique pins hold has to be filtered as well.

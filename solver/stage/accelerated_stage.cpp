@@ -21,7 +21,7 @@ AcceleratedStage::AcceleratedStage(const SplitOde& ode, const Options& options, 
       options_(options),
       system_(system),
       estimate_(ode),
-      anderson_(ode.particles()),
+      anderson_(ode.particles(), *ode.partition),
       newton_(ode, options, system),
       policy_(options.stage->matrix, ode),
       work_(*ode.work) {
@@ -93,7 +93,7 @@ bool AcceleratedStage::correct() {
     result_.outcome = solved.outcome;
     return false;
   }
-  size_ = system_.correction().norm();
+  size_ = system_.size(system_.correction());
   return true;
 }
 
@@ -152,7 +152,7 @@ void AcceleratedStage::advance(State& y) {
 bool AcceleratedStage::close_enough(const State& y) const {
   if (stage_->residual > 0) return false;
   const double error = estimate_.error(size_, anderson_.smallest_response());
-  return part_ == 1 && error <= StageSystem::allowed_error(*stage_, guess_, y);
+  return part_ == 1 && error <= system_.allowed_error(*stage_, guess_, y);
 }
 
 StageResult AcceleratedStage::solve(const Stage& stage, State& y) {

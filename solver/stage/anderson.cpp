@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 
 namespace drape::solver {
@@ -15,8 +16,8 @@ constexpr double unknown_response = 0.05;
 
 }  // namespace
 
-Anderson::Anderson(Eigen::Index particles)
-    : v_(3 * particles), d_(3 * particles), dd_(3 * particles, depth), dg_(3 * particles, depth) {}
+Anderson::Anderson(Eigen::Index particles, const Partition& all)
+    : all_(all), v_(3 * particles), d_(3 * particles), dd_(3 * particles, depth), dg_(3 * particles, depth) {}
 
 void Anderson::begin() {
   follows_ = false;
@@ -34,26 +35,37 @@ void Anderson::remember(const Vectors& v, const Vectors& d) {
   follows_ = true;
 }
 
-/// The new differences replace the oldest.
+/// The new differences replace the oldest. Own particles are those whose products count.
 void Anderson::add_pair(const double* v, const double* d) {
   const int slot = pairs_++ % depth, count = kept();
   double *const dd = dd_.col(slot).data(), *const dg = dg_.col(slot).data();
   double *const last_v = v_.data(), *const last_d = d_.data();
   const Eigen::Index n = v_.size();
-  double squares = 0;
-#pragma omp simd reduction(+ : squares)
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const double dv = v[i] - last_v[i];
-    dd[i] = d[i] - last_d[i];
-    dg[i] = dd[i] + dv;
-    squares += dv * dv;
-    last_v[i] = v[i];
-    last_d[i] = d[i];
-  }
-  lengths_[slot] = std::sqrt(squares);
+  const auto [begin, own] = all_.own(n);
+  const auto advance = [&](Eigen::Index first, Eigen::Index last) {
+    double sum = 0;
+#pragma omp simd reduction(+ : sum)
+    for (Eigen::Index i = first; i < last; ++i) {
+      const double dv = v[i] - last_v[i];
+      dd[i] = d[i] - last_d[i];
+      dg[i] = dd[i] + dv;
+      sum += dv * dv;
+      last_v[i] = v[i];
+      last_d[i] = d[i];
+    }
+    return sum;
+  };
+  advance(0, begin);
+  Eigen::Matrix<double, depth + 1, 1> sums;
+  sums[depth] = advance(begin, begin + own);
+  advance(begin + own, n);
   serves_[slot] = true;
-  gram_.col(slot).head(count).noalias() = dd_.leftCols(count).transpose() * dd_.col(slot);
-  gram_.row(slot).head(count) = gram_.col(slot).head(count).transpose();
+  sums.head(count).noalias() = dd_.middleRows(begin, own).leftCols(count).transpose() * dd_.col(slot).segment(begin, own);
+  sums.segment(count, depth - count).setZero();
+  all_.add_up({sums.data(), depth + 1});
+  lengths_[slot] = std::sqrt(sums[depth]);
+  gram_.col(slot).head(count) = sums.head(count);
+  gram_.row(slot).head(count) = sums.head(count).transpose();
 }
 
 double Anderson::smallest_response() const {
@@ -81,7 +93,9 @@ void Anderson::advance(Vectors& v, Vectors& d) {
   remember(v, d);
   if (const int count = kept(); count > 0) {
     Eigen::Map<Eigen::VectorXd> flat_d(d.data(), d.size());
-    projections_.head(count).noalias() = dd_.leftCols(count).transpose() * d_;
+    const auto [begin, own] = all_.own(v.size());
+    projections_.head(count).noalias() = dd_.middleRows(begin, own).leftCols(count).transpose() * d_.segment(begin, own);
+    all_.add_up({projections_.data(), static_cast<std::size_t>(count)});
     flat_d.noalias() -= dg_.leftCols(count) * weights();
   }
   v += d;

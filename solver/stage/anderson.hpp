@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "solver/state.hpp"
+#include "solver/partition.hpp"
 
 namespace drape::solver {
 
@@ -15,7 +15,7 @@ class Anderson {
   static constexpr int depth = 8;  ///< past differences that are kept
 
   /// The fields are N × 3.
-  explicit Anderson(Eigen::Index particles);
+  explicit Anderson(Eigen::Index particles, const Partition& all = *Partition::of_one_process());
 
   /// Past differences of a smaller response than this are not used in the next stage: slack directions may be taut then,
   /// while stiff directions hardly turn from step to step.
@@ -49,6 +49,7 @@ class Anderson {
   void add_pair(const double* v, const double* d);
   Small weights() const;
 
+  const Partition& all_;
   int pairs_ = 0;                                          ///< differences taken since the restart
   bool follows_ = false;                                   ///< whether the next iterate follows the last
   Eigen::VectorXd v_, d_;                                  ///< of the last iterate, as they lie in memory

@@ -1,6 +1,7 @@
 #include "solver/stage/error_estimate.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace drape::solver {
@@ -15,7 +16,8 @@ constexpr double sudden = 1.2;            ///< growth of the first |d| from stag
 }  // namespace
 
 ErrorEstimate::ErrorEstimate(const SplitOde& ode)
-    : mass_(thrice(ode.mass)),
+    : all_(*ode.partition),
+      mass_(thrice(ode.mass)),
       drag_(ode.damping.nonZeros() > 0 ? thrice(ode.damping.diagonal()) : Eigen::VectorXd::Zero(mass_.size())),
       inverse_mass_(mass_.inverse()) {}
 
@@ -29,17 +31,19 @@ void ErrorEstimate::measure(const Vectors& residual, double gamma) {
     mass_scaling_ = (mass_ - gamma * drag_).inverse();
   }
   const double *const r = residual.data(), *const m = inverse_mass_.data(), *const u = mass_scaling_.data();
-  const Eigen::Index n = residual.size();
+  const auto [first, count] = all_.own(residual.size());
   double plain = 0, by_mass = 0, scaled = 0;
 #pragma omp simd reduction(+ : plain, by_mass, scaled)
-  for (Eigen::Index i = 0; i < n; ++i) {
+  for (Eigen::Index i = first; i < first + count; ++i) {
     plain += r[i] * r[i];
     by_mass += (m[i] * r[i]) * (m[i] * r[i]);
     scaled += (u[i] * r[i]) * (u[i] * r[i]);
   }
-  residual_ = std::sqrt(plain);
-  bound_ = std::sqrt(by_mass);
-  mass_scaled_ = std::sqrt(scaled);
+  std::array sums{plain, by_mass, scaled};
+  all_.add_up(sums);
+  residual_ = std::sqrt(sums[0]);
+  bound_ = std::sqrt(sums[1]);
+  mass_scaled_ = std::sqrt(sums[2]);
 }
 
 void ErrorEstimate::observe_update(double size) {

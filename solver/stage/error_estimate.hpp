@@ -43,6 +43,7 @@ class ErrorEstimate {
  private:
   static constexpr double unknown = std::numeric_limits<double>::infinity();
 
+  const Partition& all_;
   const Eigen::ArrayXd mass_, drag_;   ///< M and the diagonal of D, each value three times, as coordinates lie in memory
   const Eigen::ArrayXd inverse_mass_;  ///< M⁻¹ in the same way
   Eigen::ArrayXd mass_scaling_;        ///< (M − γD)⁻¹

@@ -46,12 +46,12 @@ StageResult StageSolver::fixed_point(const Stage& stage, const Vectors* f_explic
                                : coarse                           ? Changes::constraints
                                                                   : Changes::all;
     const bool changed = contacts && solved && system_.adapt_contacts(stage, f_explicit, y, size.target(tolerance), may_change);
-    const double whole = contacts ? system_.residual().norm() : 0;
+    const double whole = contacts ? system_.size(system_.residual()) : 0;
     system_.filter_residual(stage.gamma);
     if (!solved) size = system_.scale(stage, y);
     size.round_off = std::max(size.round_off, StageSystem::round_off(whole));
 
-    const double residual = system_.residual().norm();
+    const double residual = system_.size(system_.residual());
     if (!std::isfinite(residual)) return ended(Outcome::not_finite);
     const double solved_to = stage.residual > 0 ? stage.residual / 2 : size.target(cg_tolerance);
     const bool guessed = !linear && !contacts && passes == 0 && residual <= solved_to;

@@ -10,7 +10,7 @@ StageResult StageSolver::one_system(const Stage& stage, const Vectors& f_explici
   prescribe(ode_.pins, y.v);
   system_.evaluate(stage, &f_explicit, y);
   system_.filter_residual(stage.gamma);
-  if (!std::isfinite(system_.residual().norm())) return {Outcome::not_finite, 0, 0};
+  if (!std::isfinite(system_.size(system_.residual()))) return {Outcome::not_finite, 0, 0};
   const LinearResult solved = system_.correct(system_.scale(stage, y).target(options_.cg_tolerance));
   y.v += system_.correction();
   y.x = stage.ax + stage.gamma * y.v;

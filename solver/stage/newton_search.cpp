@@ -68,7 +68,7 @@ void NewtonSearch::solve(const Stage& stage, const Vectors& guess, NewtonSystem&
     ++work_.updates;
     const double size = d_.norm(), rate = before > 0 ? size / before : 1;
     const double error = size / std::max(1 - rate, least_ahead);
-    if (stage.residual == 0 && error <= StageSystem::allowed_error(stage, guess, y)) {
+    if (stage.residual == 0 && error <= system_.allowed_error(stage, guess, y)) {
       y.v += d_;
       return;
     }

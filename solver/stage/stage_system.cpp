@@ -124,19 +124,21 @@ Outcome StageSystem::make(double gamma, double springs, double inertia) {
 
 double StageSystem::noise(const State& y, double gamma) const {
   const double underflow = std::sqrt(std::numeric_limits<double>::min());  // squares of smaller numbers vanish
-  return round_off(gamma * (spring_ * flat(y.x)).matrix().norm()) + underflow;
+  const auto [begin, count] = ode_.partition->own(y.x.size());
+  const double squares = (spring_ * flat(y.x)).segment(begin, count).matrix().squaredNorm();
+  return round_off(gamma * std::sqrt(ode_.partition->sum(squares))) + underflow;
 }
 
 /// At rest both b and r are round-off only, so that a relative test alone would never pass.
 StageSystem::Scale StageSystem::scale(const Stage& stage, const State& y) {
-  if (!stage.springs) return {r_.norm(), noise(y, stage.gamma)};
+  if (!stage.springs) return {size(r_), noise(y, stage.gamma)};
   multiply(A_, y.v, q_);
   ++work_.products;
   work_.bytes += multiply_bytes(A_) + vector_bytes(A_.rows(), 3);
   q_ += r_;
   filter(ode_.pins, q_);
   filtered()(q_);
-  return {q_.norm(), noise(y, stage.gamma)};
+  return {size(q_), noise(y, stage.gamma)};
 }
 
 void StageSystem::evaluate(const Stage& stage, const Vectors* f_explicit, State& y) {
@@ -180,7 +182,7 @@ LinearResult StageSystem::respond(const Vectors& r, double tolerance, double noi
   r_ = r;
   filter(ode_.pins, r_);
   filtered()(r_);
-  return correct(std::max(tolerance * r_.norm(), noise));
+  return correct(std::max(tolerance * size(r_), noise));
 }
 
 LinearResult StageSystem::respond(const State& r, double tolerance, double noise) {

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
 
 #include "solver/contact/contact_response.hpp"
@@ -74,8 +76,12 @@ class StageSystem {
 
   /// Error of v [m/s] that may be left in a stage that began with this guess: a part of the error of the time step, which the
   /// distance between the two indicates, and at least round-off.
-  static double allowed_error(const Stage& stage, const Vectors& guess, const State& y) {
-    return std::max(round_off(y.x.norm()) / stage.gamma, stage.accuracy * (y.v - guess).norm());
+  double allowed_error(const Stage& stage, const Vectors& guess, const State& y) const {
+    const auto [begin, count] = ode_.partition->own(y.x.size());
+    const auto change = (Eigen::VectorXd::Map(y.v.data(), y.v.size()) - Eigen::VectorXd::Map(guess.data(), guess.size()));
+    std::array squares{ode_.partition->own(y.x).squaredNorm(), change.segment(begin, count).squaredNorm()};
+    ode_.partition->add_up(squares);
+    return std::max(round_off(std::sqrt(squares[0])) / stage.gamma, stage.accuracy * std::sqrt(squares[1]));
   }
 
   /// A d = r for another r, without its components along pins and constraints.
@@ -89,6 +95,9 @@ class StageSystem {
   /// Finds where the cloth meets itself on the way to a solution; true if that adds constraints.
   bool finds_pairs(const Stage& stage, const State& y) { return contacts_ != nullptr && contacts_->find_pairs(stage, y); }
   const Vectors& residual() const { return r_; }
+
+  /// |a| over all particles.
+  double size(const Vectors& a) const { return ode_.partition->norm(a); }
   Vectors& correction() { return d_; }
 
  private:
