@@ -1,0 +1,176 @@
+#include "bench/runs/choice_rule.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+
+namespace drape::bench {
+namespace {
+
+// --- What was measured, by bench/choice-table --------------------------------------------------------------------------------
+
+constexpr std::size_t dampings = 7, steps = 10;
+using Measured = std::array<std::array<double, steps>, dampings>;
+
+/// log10 of errors and numbers of updates over damping, ascending, and step, from 0.2 s on halved.
+struct Table {
+  Measured error, updates;
+};
+
+constexpr double measured_size = 0.8, gravity = 9.81, longest_step = 0.2;                 // [m], [m/s²], [s]
+constexpr double measured_tension = 1e4 / (gravity * measured_size);                      // κ
+constexpr std::array<double, dampings> measured_damping{0.05, 0.5, 1.6, 5, 16, 50, 160};  // [N s/m]; the first stands for none
+constexpr Table tables[] = {
+#include "bench/runs/choice_table.inc"
+};
+
+double measured_fall_time() { return std::sqrt(measured_size / gravity); }
+
+/// Largest number of whole intervals below a place between 0 and count − 1, and the part of the next.
+struct Place {
+  std::size_t below;
+  double part;
+};
+
+Place place(double x, std::size_t count) {
+  const double inside = std::clamp(x, 0.0, static_cast<double>(count - 1));
+  const auto below = std::min(static_cast<std::size_t>(inside), count - 2);
+  return {below, inside - static_cast<double>(below)};
+}
+
+/// Of a damping, as δ has it, on the measured sheet: linear in its logarithm.
+Place damping_place(double damping) {
+  const double d = damping * measured_size * measured_size / measured_fall_time();
+  const double inside = std::clamp(d, measured_damping.front(), measured_damping.back());
+  const auto above = std::max<std::ptrdiff_t>(1, std::ranges::lower_bound(measured_damping, inside) - measured_damping.begin());
+  const double low = measured_damping[above - 1], high = measured_damping[above];
+  return {static_cast<std::size_t>(above - 1), std::log(inside / low) / std::log(high / low)};
+}
+
+double interpolated(const Measured& values, const Place& damping, const Place& step) {
+  const auto along = [&](std::size_t row) {
+    return std::lerp(values[row][step.below], values[row][step.below + 1], step.part);
+  };
+  return std::lerp(along(damping.below), along(damping.below + 1), damping.part);
+}
+
+// --- Ways --------------------------------------------------------------------------------------------------------------------
+
+/// What a way costs on a sheet of N particles: nanoseconds a particle, fitted to the times of results/baselines/choice.h5.
+struct Costs {
+  double set_up, step, update;
+};
+
+struct KnownWay {
+  Way way;
+  const Table* table;
+  Costs costs;
+  bool splits = false;  ///< whether its error goes with κ h²: it treats the springs as stiff in all directions
+};
+
+const KnownWay known_ways[] = {
+    {{"sbdf2"}, &tables[0], {650, 25, 0}, true},
+    {{.method = "midpoint/fixed-point/cholesky", .loop_tolerance = 0.1}, &tables[1], {600, 8, 22}, true},
+    {{"midpoint"}, &tables[2], {600, 3, 20.5}},
+    {{"bdf3"}, &tables[3], {700, 3, 20.5}},
+};
+
+/// Part of the error asked for that is to be predicted: errors scatter about what is interpolated.
+constexpr double aim = 0.8;
+
+constexpr double least_fraction = 0.05;  ///< of the stability limit that is tried
+
+/// Damping δ below which a sheet's motion soon depends on all its details, so that no error is known after that.
+constexpr double chaotic = 0.1;
+
+constexpr double order_beyond = 2;  ///< with which errors fall with steps that are shorter than those of the tables
+
+/// log10 of the error with a step h as on the measured sheet [s]; infinite with longer ones than were measured.
+double log_error(const Table& table, double damping, double h) {
+  const double halvings = std::log2(longest_step / h), last = steps - 1;
+  if (halvings < -1e-9) return INFINITY;
+  const double beyond = std::max(0.0, halvings - last);
+  return interpolated(table.error, damping_place(damping), place(halvings, steps)) - order_beyond * beyond * std::log10(2);
+}
+
+/// The step as it would be on the measured sheet, which falls in another time [s].
+double as_measured(const FallingSheet& sheet, double step) { return step / sheet.fall_time * measured_fall_time(); }
+
+/// Errors of what treats springs implicitly as they are do not depend on k, those of the others go with κ h². How often a stage
+/// is corrected goes by k/d.
+Prediction predicted(const KnownWay& known, const FallingSheet& sheet, int parts) {
+  Prediction one{.way = known.way, .step = sheet.end / parts};
+  const double h = as_measured(sheet, one.step), stiffer = sheet.tension / measured_tension;
+  one.error = std::pow(10, log_error(*known.table, sheet.damping, known.splits ? h * std::sqrt(stiffer) : h));
+  const Place step = place(std::log2(longest_step / h), steps);
+  const double a_second = interpolated(known.table->updates, damping_place(sheet.damping / stiffer), step);
+  one.updates = std::max<double>(parts, a_second * as_measured(sheet, sheet.end));
+  one.ms = 1e-6 * sheet.particles * (known.costs.set_up + known.costs.step * parts + known.costs.update * one.updates);
+  return one;
+}
+
+/// A fifth of the end, and parts of its tenths, each about a tenth shorter than the one before.
+std::vector<int> numbers_of_steps() {
+  std::vector<int> all{5};
+  for (double tenths = 1; tenths < 20'000; tenths *= 1.1)
+    if (const int n = 10 * static_cast<int>(tenths); n > all.back()) all.push_back(n);
+  return all;
+}
+
+/// Sub-steps of velocity Verlet have half the errors of midpoint steps as long, to two thirds. A force costs some hundred nanoseconds
+/// beside those of its particles.
+Prediction verlet(const FallingSheet& sheet, double fraction) {
+  constexpr double a_force = 600, a_particle = 5, estimates = 40;  // [ns], [ns], forces that find the limit
+  constexpr double of_midpoint = 0.7;
+  Prediction one{.way = {"verlet"}, .step = sheet.end / 10, .fraction = fraction};
+  const double h = fraction * sheet.limit;
+  one.error = of_midpoint * std::pow(10, log_error(tables[2], sheet.damping, as_measured(sheet, std::min(h, one.step))));
+  one.updates = std::ceil(sheet.end / h) + estimates;
+  one.ms = 1e-6 * one.updates * (a_force + a_particle * sheet.particles);
+  return one;
+}
+
+void keep_quicker(std::optional<Prediction>& best, const Prediction& one, double accuracy) {
+  if (one.error <= aim * accuracy && (!best || one.ms < best->ms)) best = one;
+}
+
+}  // namespace
+
+std::vector<Prediction> predictions(const FallingSheet& sheet, double accuracy) {
+  std::vector<Prediction> all;
+  const auto add = [&](const std::optional<Prediction>& best) {
+    if (best) all.push_back(*best);
+  };
+  for (const KnownWay& known : known_ways) {
+    std::optional<Prediction> best;
+    for (const int parts : numbers_of_steps()) keep_quicker(best, predicted(known, sheet, parts), accuracy);
+    add(best);
+  }
+  std::optional<Prediction> best;
+  for (double fraction = solver::Options().verlet_fraction; fraction > least_fraction; fraction *= 0.85)
+    keep_quicker(best, verlet(sheet, fraction), accuracy);
+  add(best);
+  std::ranges::sort(all, {}, &Prediction::ms);
+  return all;
+}
+
+std::string reason_out_of_range(const FallingSheet& sheet) {
+  struct Range {
+    const char* name;
+    double value, least, most;
+  };
+  const double falls = sheet.end / sheet.fall_time;
+  const Range ranges[] = {{"particles", static_cast<double>(sheet.particles), 36, 25'000},
+                          {"k/(ρ g L)", sheet.tension, measured_tension / 3, 3 * measured_tension},
+                          {"d T/(ρ L²)", sheet.damping, 0, 75},
+                          {"end / √(L/g)", falls, 0.3, sheet.damping < chaotic ? 1.5 : 4}};
+  for (const auto& [name, value, least, most] : ranges)
+    if (!(least <= value && value <= most)) return fmt::format("{} = {:.3g}, not {:.3g} to {:.3g}", name, value, least, most);
+  return "";
+}
+
+}  // namespace drape::bench
