@@ -7,11 +7,11 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "bench/runs/choice_rule.hpp"
 #include "model/phases.hpp"
-#include "model/scene_file/scene_file.hpp"
 #include "solver/stability.hpp"
 
 namespace drape::bench {
@@ -37,26 +37,65 @@ model::Scene as_known(const model::Scene& scene) {
   return known;
 }
 
-bool same(const model::KeyValue& a, const model::KeyValue& b) {
-  return a.key == b.key && model::to_toml(a.value) == model::to_toml(b.value);
+bool has_curves(const model::Material& m) {
+  return m.weft_curve.given() || m.warp_curve.given() || m.shear_curve.given() || m.weft_bend_curve.given() ||
+         m.warp_bend_curve.given();
 }
 
-/// The keys of a scene that the rule does not know, or what else is in its way; empty if it knows the scene.
+bool rubs(const model::Friction& friction) { return friction.shear != 0 || friction.bend.any(); }
+
+bool relaxes(const model::Relaxation& relaxation) {
+  return !relaxation.maxwell.empty() || !relaxation.series.empty() || relaxation.quality != 0;
+}
+
+bool moves(const model::PinRule& pin) { return !pin.velocity.isZero(0) || !pin.path.empty(); }
+
+bool begins_flat(const model::Start& start) {
+  return start.stretch == model::WeftWarp{1, 1} && start.pleats.count == 0 && start.wrap == 0 && start.rotation.isZero(0) &&
+         start.velocity.isZero(0);
+}
+
+/// What the rule does not know of a scene; empty if it knows all.
 std::string unknown_in(const model::Scene& scene) {
-  std::vector<std::string> keys;
-  if (!scene.panels.empty()) return "panels";
-  const auto has = model::key_values(scene), known = model::key_values(as_known(scene));
-  for (const model::KeyValue& row : has)
-    if (std::ranges::none_of(known, [&](const model::KeyValue& other) { return same(row, other); })) keys.push_back(row.key);
-  if (scene.pins.empty()) keys.emplace_back("no pins");
-  if (scene.sheet.gravity.isZero(0)) keys.emplace_back("no gravity");
-  return fmt::format("{}", fmt::join(keys, ", "));
+  const model::Sheet& sheet = scene.sheet;
+  const model::Material& m = sheet.material;
+  constexpr double most_shear = 0.05;  // of the tension
+  const struct {
+    const char* name;
+    bool there;
+  } all[] = {
+      {"panels", !scene.panels.empty()},
+      {"a grid that is not uniform", scene.panels.empty() && !sheet.grid.uniform()},
+      {"material.tension of two values", m.tension.weft != m.tension.warp},
+      {"material.damping of two values", m.damping.weft != m.damping.warp},
+      {"material.damping_form", m.damping.any() && m.damping_form != model::DampingForm::linear},
+      {"measured curves", has_curves(m)},
+      {"material.law", m.law != model::StretchLaw::linear},
+      {"material.shear",
+       m.shear > most_shear * m.tension.weft || (m.shear > 0 && m.shear_form != model::ShearForm::conservative)},
+      {"material.shear_damping", m.shear_damping != 0},
+      {"material.contraction", m.contraction != 0 || m.contraction_damping != 0},
+      {"material.bend", m.bend.any() || m.bend_damping.any()},
+      {"friction of yarns", rubs(m.friction)},
+      {"relaxation", relaxes(m.relaxation)},
+      {"forces.wind", sheet.wind.blows()},
+      {"forces.air", sheet.air != 0},
+      {"added forces", !sheet.added.empty()},
+      {"a sheet without gravity", sheet.gravity.isZero(0)},
+      {"a sheet without pins", scene.pins.empty()},
+      {"pins that move", std::ranges::any_of(scene.pins, moves)},
+      {"a start that is not flat and at rest", !begins_flat(scene.start)},
+  };
+  std::vector<std::string_view> names;
+  for (const auto& [name, there] : all)
+    if (there) names.emplace_back(name);
+  return fmt::format("{}", fmt::join(names, ", "));
 }
 
 FallingSheet numbers(const model::Scene& scene) {
   const model::Grid& grid = scene.sheet.grid;
   const model::Material& material = scene.sheet.material;
-  const double size = model::size(scene), g = scene.sheet.gravity.norm(), weight = material.density * size;
+  const double size = std::max(grid.size_u, grid.size_v), g = scene.sheet.gravity.norm(), weight = material.density * size;
   const double k = material.tension.weft, d = material.damping.weft;
   FallingSheet sheet{.particles = grid.particles(), .end = scene.end, .fall_time = std::sqrt(size / g)};
   sheet.damping = d * sheet.fall_time / (weight * size);
@@ -74,9 +113,10 @@ std::string in_words(const Prediction& one) {
 
 std::string reason(const FallingSheet& sheet, const model::Scene& scene, const std::vector<Prediction>& all) {
   const Prediction& best = all.front();
-  std::string text =
-      fmt::format("d T/(ρ L²) = {:.3g}, h k/d = {:.3g} with h = {:.3g} s: {} should err by {:.1g} and takes {:.2g} ms",
-                  sheet.damping, model::stiffness_to_damping(scene, best.step), best.step, in_words(best), best.error, best.ms);
+  const model::Material& material = scene.sheet.material;
+  std::string text = fmt::format(
+      "d T/(ρ L²) = {:.3g}, h k/d = {:.3g} with h = {:.3g} s: {} should err by {:.1g} and takes {:.2g} ms", sheet.damping,
+      best.step * material.tension.weft / material.damping.weft, best.step, in_words(best), best.error, best.ms);
   if (all.size() > 1) text += fmt::format("; {} take {:.2g} ms", in_words(all[1]), all[1].ms);
   return text;
 }

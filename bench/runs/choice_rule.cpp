@@ -13,22 +13,23 @@ namespace {
 
 // --- What was measured, by bench/choice-table --------------------------------------------------------------------------------
 
-constexpr std::size_t dampings = 7, steps = 10;
-using Measured = std::array<std::array<double, steps>, dampings>;
+constexpr std::size_t table_rows = 7, table_steps = 10;
+using Measured = std::array<std::array<double, table_steps>, table_rows>;
 
 /// log10 of errors and numbers of updates over damping, ascending, and step, from 0.2 s on halved.
-struct Table {
+struct MeasuredWay {
   Measured error, updates;
 };
 
-constexpr double measured_size = 0.8, gravity = 9.81, longest_step = 0.2;                 // [m], [m/s²], [s]
-constexpr double measured_tension = 1e4 / (gravity * measured_size);                      // κ
-constexpr std::array<double, dampings> measured_damping{0.05, 0.5, 1.6, 5, 16, 50, 160};  // [N s/m]; the first stands for none
-constexpr Table tables[] = {
+constexpr double measured_size = 0.8, measured_gravity = 9.81, longest_step = 0.2;  // [m], [m/s²], [s]
+constexpr double measured_tension = 1e4 / (measured_gravity * measured_size);       // κ
+constexpr std::array<double, table_rows> measured_damping{0.05, 0.5, 1.6, 5,
+                                                          16,   50,  160};  // [N s/m]; the first stands for none
+constexpr MeasuredWay measured_ways[] = {
 #include "bench/runs/choice_table.inc"
 };
 
-double measured_fall_time() { return std::sqrt(measured_size / gravity); }
+double measured_fall_time() { return std::sqrt(measured_size / measured_gravity); }
 
 /// Largest number of whole intervals below a place between 0 and count − 1, and the part of the next.
 struct Place {
@@ -61,22 +62,28 @@ double interpolated(const Measured& values, const Place& damping, const Place& s
 // --- Ways --------------------------------------------------------------------------------------------------------------------
 
 /// What a way costs on a sheet of N particles: nanoseconds a particle, fitted to the times of results/baselines/choice.h5.
-struct Costs {
+struct Nanoseconds {
   double set_up, step, update;
 };
 
 struct KnownWay {
   Way way;
-  const Table* table;
-  Costs costs;
+  const MeasuredWay* table;
+  Nanoseconds costs;
   bool splits = false;  ///< whether its error goes with κ h²: it treats the springs as stiff in all directions
+
+  double ms(int particles, double steps, double updates) const {
+    return 1e-6 * particles * (costs.set_up + costs.step * steps + costs.update * updates);
+  }
 };
 
 const KnownWay known_ways[] = {
-    {{"sbdf2"}, &tables[0], {650, 25, 0}, true},
-    {{.method = "midpoint/fixed-point/cholesky", .loop_tolerance = 0.1}, &tables[1], {600, 8, 22}, true},
-    {{"midpoint"}, &tables[2], {600, 3, 20.5}},
-    {{"bdf3"}, &tables[3], {700, 3, 20.5}},
+    {{"sbdf2"}, &measured_ways[0], {650, 25, 0}, true},
+    {{.method = "midpoint/fixed-point/cholesky", .loop_tolerance = 0.1}, &measured_ways[1], {600, 8, 22}, true},
+    {{.method = "midpoint/fixed-point/cholesky", .loop_tolerance = 0.01}, &measured_ways[2], {600, 8, 22}, true},
+    {{"midpoint"}, &measured_ways[3], {600, 3, 20.5}},
+    {{"bdf3"}, &measured_ways[4], {700, 3, 20.5}},
+    {{"bdf4"}, &measured_ways[5], {700, 3, 20.5}},
 };
 
 /// Part of the error asked for that is to be predicted: errors scatter about what is interpolated.
@@ -89,27 +96,36 @@ constexpr double chaotic = 0.1;
 
 constexpr double order_beyond = 2;  ///< with which errors fall with steps that are shorter than those of the tables
 
-/// log10 of the error with a step h as on the measured sheet [s]; infinite with longer ones than were measured.
-double log_error(const Table& table, double damping, double h) {
-  const double halvings = std::log2(longest_step / h), last = steps - 1;
-  if (halvings < -1e-9) return INFINITY;
-  const double beyond = std::max(0.0, halvings - last);
-  return interpolated(table.error, damping_place(damping), place(halvings, steps)) - order_beyond * beyond * std::log10(2);
-}
+/// A sheet beside the measured one.
+struct Beside {
+  explicit Beside(const FallingSheet& sheet)
+      : scale(measured_fall_time() / sheet.fall_time),
+        stiffer(sheet.tension / measured_tension),
+        damping(damping_place(sheet.damping)),
+        ratio(damping_place(sheet.damping / stiffer)) {}
 
-/// The step as it would be on the measured sheet, which falls in another time [s].
-double as_measured(const FallingSheet& sheet, double step) { return step / sheet.fall_time * measured_fall_time(); }
+  double scale;    ///< of times, which become those of the measured sheet
+  double stiffer;  ///< quotient of κ
+  Place damping;
+  Place ratio;  ///< as d/k has it
+};
+
+/// log10 of the error with a step h [s] as on the measured sheet; infinite with longer ones than were measured.
+double log_error(const MeasuredWay& table, const Place& damping, double h) {
+  const double halvings = std::log2(longest_step / h), beyond = std::max(0.0, halvings - (table_steps - 1));
+  if (halvings < -1e-9) return INFINITY;
+  return interpolated(table.error, damping, place(halvings, table_steps)) - order_beyond * beyond * std::log10(2);
+}
 
 /// Errors of what treats springs implicitly as they are do not depend on k, those of the others go with κ h². How often a stage
 /// is corrected goes by k/d.
-Prediction predicted(const KnownWay& known, const FallingSheet& sheet, int parts) {
+Prediction predicted(const KnownWay& known, const FallingSheet& sheet, const Beside& beside, int parts) {
   Prediction one{.way = known.way, .step = sheet.end / parts};
-  const double h = as_measured(sheet, one.step), stiffer = sheet.tension / measured_tension;
-  one.error = std::pow(10, log_error(*known.table, sheet.damping, known.splits ? h * std::sqrt(stiffer) : h));
-  const Place step = place(std::log2(longest_step / h), steps);
-  const double a_second = interpolated(known.table->updates, damping_place(sheet.damping / stiffer), step);
-  one.updates = std::max<double>(parts, a_second * as_measured(sheet, sheet.end));
-  one.ms = 1e-6 * sheet.particles * (known.costs.set_up + known.costs.step * parts + known.costs.update * one.updates);
+  const double h = one.step * beside.scale;
+  one.error = std::pow(10, log_error(*known.table, beside.damping, known.splits ? h * std::sqrt(beside.stiffer) : h));
+  const double a_second = interpolated(known.table->updates, beside.ratio, place(std::log2(longest_step / h), table_steps));
+  one.updates = std::max<double>(parts, a_second * sheet.end * beside.scale);
+  one.ms = known.ms(sheet.particles, parts, one.updates);
   return one;
 }
 
@@ -121,14 +137,14 @@ std::vector<int> numbers_of_steps() {
   return all;
 }
 
-/// Sub-steps of velocity Verlet have half the errors of midpoint steps as long, to two thirds. A force costs some hundred nanoseconds
-/// beside those of its particles.
-Prediction verlet(const FallingSheet& sheet, double fraction) {
+/// Sub-steps of velocity Verlet have half the errors of midpoint steps as long, to two thirds. A force costs some hundred
+/// nanoseconds beside those of its particles.
+Prediction verlet(const FallingSheet& sheet, const Beside& beside, double fraction) {
   constexpr double a_force = 600, a_particle = 5, estimates = 40;  // [ns], [ns], forces that find the limit
   constexpr double of_midpoint = 0.7;
   Prediction one{.way = {"verlet"}, .step = sheet.end / 10, .fraction = fraction};
   const double h = fraction * sheet.limit;
-  one.error = of_midpoint * std::pow(10, log_error(tables[2], sheet.damping, as_measured(sheet, std::min(h, one.step))));
+  one.error = of_midpoint * std::pow(10, log_error(measured_ways[3], beside.damping, std::min(h, one.step) * beside.scale));
   one.updates = std::ceil(sheet.end / h) + estimates;
   one.ms = 1e-6 * one.updates * (a_force + a_particle * sheet.particles);
   return one;
@@ -145,14 +161,19 @@ std::vector<Prediction> predictions(const FallingSheet& sheet, double accuracy) 
   const auto add = [&](const std::optional<Prediction>& best) {
     if (best) all.push_back(*best);
   };
+  const Beside beside(sheet);
+  const std::vector<int> numbers = numbers_of_steps();
   for (const KnownWay& known : known_ways) {
     std::optional<Prediction> best;
-    for (const int parts : numbers_of_steps()) keep_quicker(best, predicted(known, sheet, parts), accuracy);
+    for (const int parts : numbers) {
+      if (best && known.ms(sheet.particles, parts, parts) > best->ms) break;  // and so are all with more
+      keep_quicker(best, predicted(known, sheet, beside, parts), accuracy);
+    }
     add(best);
   }
   std::optional<Prediction> best;
   for (double fraction = solver::Options().verlet_fraction; fraction > least_fraction; fraction *= 0.85)
-    keep_quicker(best, verlet(sheet, fraction), accuracy);
+    keep_quicker(best, verlet(sheet, beside, fraction), accuracy);
   add(best);
   std::ranges::sort(all, {}, &Prediction::ms);
   return all;
