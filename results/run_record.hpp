@@ -68,6 +68,12 @@ struct TrajectoryRecord {
   std::vector<std::vector<int>> constraint;  ///< F × N: a Constraint
 };
 
+/// Why a method and its step were chosen, where the program chose them.
+struct ChoiceRecord {
+  double accuracy = 0;  ///< the largest error of positions that was asked for, over the size of the scene
+  std::string reason;   ///< in a sentence or two, with the numbers that decided
+};
+
 /// Distance of the final state from a reference. Lengths are divided by the scene's size, energies by the largest sum of
 /// kinetic energy and change of potential energy along the reference, so nothing has a unit. A spread is what a small
 /// perturbation of the start does to the quantity.
@@ -125,6 +131,7 @@ struct RunRecord {
   std::string linear_solver;
   double step = 0;   ///< [s]
   double until = 0;  ///< [s]
+  std::optional<ChoiceRecord> choice;  ///< if the program chose method and step
   std::vector<Parameter> parameters;
   double numerical_stiffness = 0;   ///< ν_h = h² k / (ρ l²), the larger of weft and warp
   double stiffness_to_damping = 0;  ///< h k / d; infinite without damping

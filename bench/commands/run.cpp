@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <functional>
 #include <optional>
 
@@ -9,7 +10,9 @@
 #include "bench/commands/output.hpp"
 #include "bench/commands/report.hpp"
 #include "bench/commands/scene_choice.hpp"
+#include "bench/runs/automatic.hpp"
 #include "bench/runs/frames.hpp"
+#include "bench/runs/verbosity.hpp"
 #include "model/cloth.hpp"
 #include "solver/base/atomic_file.hpp"
 #include "solver/base/threads.hpp"
@@ -28,6 +31,7 @@ struct RunArguments {
   std::vector<int> control;
   solver::Options options;
   double tolerance = 0;
+  double accuracy = 0;  ///< for the method auto
   int threads = 1;
   Frames frames;
   std::string report;  ///< folder of a page about the runs; empty: none
@@ -73,12 +77,32 @@ std::string ending_after_passes() {
   return names_of(solver::stage_kinds(), [](const solver::StageKind& kind) { return !kind.accelerated; });
 }
 
+constexpr const char* automatic = "auto";  ///< in the place of a method
+
+/// Whether the program is to choose the method. The name and what it needs come together.
+bool chooses(const RunArguments& a) {
+  const bool named = std::ranges::find(a.methods, automatic) != a.methods.end();
+  if (named && a.methods.size() > 1) throw std::invalid_argument("--method: expected auto alone, or methods without it");
+  if (named && a.accuracy == 0) throw std::invalid_argument("--method auto: expected --accuracy beside it");
+  if (!named && a.accuracy > 0) throw std::invalid_argument("--accuracy: expected --method auto beside it");
+  if (!named && a.steps.empty()) throw std::invalid_argument("--step is required, except with --method auto");
+  return named;
+}
+
+/// One run, by what is chosen.
+Group chosen_group(RunSpec spec, double accuracy) {
+  choose_automatically(spec, accuracy);
+  say_note(fmt::format("auto: {}", spec.choice->reason));
+  return {spec};
+}
+
 /// All methods with all steps.
 Group run_group(const RunArguments& a) {
   model::Scene scene = a.choice.load();
   scene.end = a.until.value_or(scene.end);
   check_steps(a, scene.end);
   RunSpec spec{scene, fmt::format("{}", fmt::join(a.choice.sets, " ")), nullptr, 0, a.options};
+  if (chooses(a)) return chosen_group(spec, a.accuracy);
   spec.options.control = step_control(a.control);
   spec.options.error_control = {a.tolerance, model::size(scene), scene.end, !model::has_contacts(scene)};
   Group group;
@@ -133,6 +157,19 @@ void run(const RunArguments& a) {
   if (!output.sweep.frames_every) output.sweep.frames_every = frame_spacing;
   base::create_folder(a.report);
   report({sweep_and_print(groups, output, "run")}, a.report);
+}
+
+/// What the method auto takes, instead of steps and of all that decides how accurate a method is.
+void add_accuracy(CLI::App& command, double& accuracy) {
+  CLI::Option* option =
+      command
+          .add_option("--accuracy", accuracy,
+                      "with --method auto: the largest error of positions over the run that is allowed, over the scene's size")
+          ->type_name("X")
+          ->check(between(finest_accuracy, coarsest_accuracy));
+  for (const char* other :
+       {"--step", "--loop-tolerance", "--verlet-fraction", "--tolerance", "--stage-accuracy", "--passes", "--control"})
+    option->excludes(other);
 }
 
 void add_solver_options(CLI::App& command, RunArguments& a) {
@@ -208,13 +245,12 @@ void add_run(CLI::App& app, const SweepOptions& defaults) {
       .add_option(
           "--method", a->methods,
           "methods, with /STAGE_SOLVER and /LINEAR_SOLVER if not the first: bdf2,sbdf2/ic0,bdf2/newton; with sub-steps and "
-          "sweeps: xpbd/4x5,kang/30; or all")
+          "sweeps: xpbd/4x5,kang/30; or all; or auto, which chooses by --accuracy and says why")
       ->required()
       ->type_name("A,B")
       ->delimiter(',')
       ->allow_extra_args(false);
   command.add_option("--step", a->steps, "steps h in seconds")
-      ->required()
       ->type_name("H1,H2")
       ->delimiter(',')
       ->allow_extra_args(false)
@@ -222,6 +258,7 @@ void add_run(CLI::App& app, const SweepOptions& defaults) {
   command.add_option("--until", a->until, "end time in seconds [the scene's]")->type_name("T")->check(positive());
   add_overrides(command, a->choice);
   add_solver_options(command, *a);
+  add_accuracy(command, a->accuracy);
   add_thread_option(command, *a);
   add_frame_options(command, *a);
   add_output_options(command, a->output);

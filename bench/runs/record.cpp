@@ -86,6 +86,7 @@ results::RunRecord describe(const RunSpec& spec) {
   run.linear_solver = spec.method->implicit() ? spec.options.linear_solver->name : "none";
   run.step = spec.step;
   run.until = spec.scene.end;
+  run.choice = spec.choice;
   run.parameters = parameters(spec, model::nodes(spec.scene));
   run.numerical_stiffness = model::numerical_stiffness(spec.scene, spec.step);
   run.stiffness_to_damping = model::stiffness_to_damping(spec.scene, spec.step);

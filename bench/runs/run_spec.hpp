@@ -1,9 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "model/scene.hpp"
+#include "results/run_record.hpp"
 #include "solver/methods.hpp"
 #include "solver/options.hpp"
 
@@ -16,6 +18,7 @@ struct RunSpec {
   const solver::Method* method;
   double step;  ///< [s]
   solver::Options options;
+  std::optional<results::ChoiceRecord> choice = {};  ///< if the program chose method, step and solvers
 
   /// The method with its sub-steps, sweeps, stage and linear solvers where they are not the usual ones: "bdf2",
   /// "bdf2/fixed-point/ic0", "xpbd/1x20".

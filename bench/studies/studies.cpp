@@ -108,6 +108,10 @@ std::span<const Study> studies() {
       {.name = "choice",
        .description = "which method to use: the quickest with automatic solvers, over damping, size and error",
        .answer = choice},
+      {.name = "auto",
+       .description =
+           "what --method auto chooses, against the quickest that a search finds: times, errors, and how often it holds",
+       .answer = automatic_study},
       {.name = "field",
        .description =
            "all methods on sheets of three sizes: error, lag, energy, momentum, work, time; which family wins, by how much",

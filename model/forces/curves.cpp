@@ -14,8 +14,9 @@ std::optional<Term> make_curves(const Sheet& sheet) {
   };
 
   const auto weft = law(m.weft_curve, false, 0), warp = law(m.warp_curve, false, 0);
-  for (const Edge& edge : edges(sheet.grid))
-    if (const auto& along_edge = edge.weft ? weft : warp) stresses->add(Strain::of_edge(edge), along_edge, true);
+  if (weft || warp)
+    for (const Edge& edge : edges(sheet.grid))
+      if (const auto& along_edge = edge.weft ? weft : warp) stresses->add(Strain::of_edge(edge), along_edge, true);
   if (const auto shear = law(m.shear_curve, true, m.shear)) add_shear(sheet.grid, shear, *stresses);
   add_bending(sheet.grid, law(m.weft_bend_curve, true, m.bend.weft), law(m.warp_bend_curve, true, m.bend.warp), *stresses);
   return remembering_term(stresses);

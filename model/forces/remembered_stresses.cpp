@@ -134,6 +134,7 @@ void add_shear(const Grid& grid, const std::shared_ptr<const StressLaw>& law, Re
 
 void add_bending(const Grid& grid, const std::shared_ptr<const StressLaw>& weft, const std::shared_ptr<const StressLaw>& warp,
                  RememberedStresses& stresses) {
+  if (!weft && !warp) return;  // curvatures cost more than all else of a sheet
   for (const LineCurvature& curvature : line_curvatures(grid))
     if (const auto& law = curvature.weft ? weft : warp) stresses.add(curvature.strain, law);
 }

@@ -26,6 +26,8 @@ constexpr auto of_error = part<&RunRecord::error, member>;
 template <auto member>
 constexpr auto of_motion = part<&RunRecord::motion_error, member>;
 template <auto member>
+constexpr auto of_choice = part<&RunRecord::choice, member>;
+template <auto member>
 constexpr auto of_contact = part<&RunRecord::contact, member>;
 
 using Run = const RunRecord&;
@@ -106,6 +108,8 @@ constexpr ColumnOf<RunRecord> run_columns[] = {
     {"numerical_stiffness", "ν_h", "1", "", Role::quantity, field<&RunRecord::numerical_stiffness>},
     {"stiffness_to_damping", "h k/d", "1", "", Role::quantity, field<&RunRecord::stiffness_to_damping>},
     {"last_good_time", "", "s", "", Role::quantity, field<&RunRecord::last_good_time>},
+    {"accuracy", "", "1", "", Role::quantity, of_choice<&ChoiceRecord::accuracy>},
+    {"reason", "", "", "", Role::note, of_choice<&ChoiceRecord::reason>},
     {"set", "set", "", "", Role::key, field<&RunRecord::overrides>},
 };
 

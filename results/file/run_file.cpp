@@ -158,6 +158,8 @@ void write_run(const Handle& runs, const std::string& name, const RunRecord& run
   const Handle work = hdf5::create_group(group, "work", "how often each kind of work was done");
   for (const WorkCount& w : run.work) hdf5::write_numbers(work, w.name, &w.count, {}, "1", w.description);
   write_state(hdf5::create_group(group, "final_state", "where the run ended"), run.final_state);
+  if (run.choice)
+    write_fields(hdf5::create_group(group, "choice", "why the program chose method and step"), choice_fields, *run.choice);
   if (run.error)
     write_fields(hdf5::create_group(group, "error", "distance of the final positions from a reference"), error_fields,
                  *run.error);
@@ -181,6 +183,7 @@ RunRecord read_run(const Handle& group) {
   for (const auto& [name, unit, description] : hdf5::datasets(work))
     run.work.push_back({name, description, hdf5::read_number<std::int64_t>(work, name)});
   run.final_state = read_state(hdf5::open_group(group, "final_state"));
+  if (hdf5::has(group, "choice")) run.choice = read_fields<ChoiceRecord>(hdf5::open_group(group, "choice"), choice_fields);
   if (hdf5::has(group, "error")) run.error = read_fields<ErrorRecord>(hdf5::open_group(group, "error"), error_fields);
   if (hdf5::has(group, "motion_error"))
     run.motion_error = read_fields<MotionErrorRecord>(hdf5::open_group(group, "motion_error"), motion_error_fields);

@@ -47,6 +47,11 @@ inline constexpr std::tuple scene_key_fields{
     Field{"unit", &SceneValue::unit, "", "of the value; 1: a number without dimension, empty: not a number"},
 };
 
+inline constexpr std::tuple choice_fields{
+    Field{"accuracy", &ChoiceRecord::accuracy, "1", "largest error of positions that was asked for, over the size"},
+    Field{"reason", &ChoiceRecord::reason, "", "why this method with this step"},
+};
+
 inline constexpr std::tuple step_fields{
     Field{"t", &StepRecord::t, "s", "time at the end of the step"},
     Field{"h", &StepRecord::h, "s", "size of the step"},

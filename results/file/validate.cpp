@@ -225,6 +225,7 @@ void check_run(Check& check, const std::string& group) {
       check.numbers(fmt::format("{}/parameters/{}", group, name), "float64", 0, std::nullopt);
   if (check.group(group + "/work")) check_work(check, group + "/work");
   check_state(check, group + "/final_state");
+  if (check.find(group + "/choice") != nullptr) fields<ChoiceRecord>(check, group + "/choice", choice_fields);
   if (check.find(group + "/error") != nullptr) fields<ErrorRecord>(check, group + "/error", error_fields);
   if (check.find(group + "/motion_error") != nullptr)
     fields<MotionErrorRecord>(check, group + "/motion_error", motion_error_fields);

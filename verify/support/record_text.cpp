@@ -13,9 +13,9 @@ std::string vectors_as_text(const solver::Vectors& values) {
 }  // namespace
 
 std::string as_text(const results::RunRecord& run) {
-  const auto& [cell, scene, scene_toml, scene_keys, overrides, plan, method, stage, linear, step, until, parameters, stiffness,
-               to_damping, outcome, message, last_good_time, steps, times_ms, work, state, error, motion_error, contact,
-               trajectory] = run;
+  const auto& [cell, scene, scene_toml, scene_keys, overrides, plan, method, stage, linear, step, until, choice, parameters,
+               stiffness, to_damping, outcome, message, last_good_time, steps, times_ms, work, state, error, motion_error,
+               contact, trajectory] = run;
   std::string text = fmt::format("{}\n", fmt::join({cell, scene, scene_toml, overrides, plan, method, stage, linear}, "\n"));
   text +=
       fmt::format("{} {} {} {} {}\n{}\n{}\n", step, until, stiffness, to_damping, last_good_time, to_string(outcome), message);
@@ -27,6 +27,7 @@ std::string as_text(const results::RunRecord& run) {
   for (const auto& [name, description, count] : work) text += fmt::format("{} {} {}\n", name, description, count);
   text +=
       fmt::format("{}\n{}\n{}\n{}\n", times_ms, vectors_as_text(state.x), vectors_as_text(state.v), fmt::join(state.z, " "));
+  if (choice) text += fmt::format("{} {}\n", choice->accuracy, choice->reason);
   if (contact) {
     const auto& [clearance, rise, area, reference_area] = *contact;
     text += fmt::format("{} {} {} {}\n", clearance, rise, area, reference_area);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bench/runs/automatic.hpp"
 #include "bench/runs/energy_guard.hpp"
 #include "bench/runs/run.hpp"
 #include "bench/runs/samples.hpp"
@@ -177,6 +178,21 @@ std::vector<double> divided_steps(double end, int parts) {
 Configuration ladder(const model::Scene& scene, const std::string& method) {
   const RunSpec chosen = spec_of(scene, method);
   return chosen.method->sub_steps ? by_fraction(chosen, 10) : by_steps(chosen, Code::drape, finest_parts(Search::usual));
+}
+
+Configuration automatic(const model::Scene& scene, double accuracy) {
+  const auto chosen = [scene, accuracy] {
+    RunSpec spec{scene, "", nullptr, 0, {}};
+    choose_automatically(spec, accuracy);
+    return spec;
+  };
+  const RunSpec spec = chosen();
+  Configuration one{fmt::format("{} for {:g}", spec.method_name(), accuracy), Code::drape, Control::step, nullptr};
+  one.variants = {ours(spec, spec.step)};
+  one.variants.front().solve = [chosen](const model::Cloth& cloth, std::span<const double> times, const Limits& limits) {
+    return solve_ours(chosen(), cloth, times, limits);
+  };
+  return one;
 }
 
 std::vector<LeftOut> left_out(const model::Scene& scene, Search search, const Methods& methods) {

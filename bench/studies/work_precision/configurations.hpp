@@ -113,6 +113,10 @@ std::vector<LeftOut> left_out(const model::Scene& scene, Search search, const Me
 /// sub-steps follow the stability limit, by fractions of that. Throws std::invalid_argument as choose_method() does.
 Configuration ladder(const model::Scene& scene, const std::string& method);
 
+/// What the program chooses for an error on a scene, its choice included. Throws std::invalid_argument as
+/// choose_automatically() does.
+Configuration automatic(const model::Scene& scene, double accuracy);
+
 /// From 0.1 on, two a decade, to a number of digits.
 std::vector<double> tolerances(int finest);
 

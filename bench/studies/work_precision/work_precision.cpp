@@ -132,8 +132,8 @@ struct ExplicitTruth {
 };
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ExplicitTruth, positions, uncertainty)
 
-ExplicitTruth compute_explicit_truth(const Problem& problem) {
-  constexpr double fraction = 0.1, rtol = 1e-5;
+ExplicitTruth compute_explicit_truth(const Problem& problem, double rtol) {
+  constexpr double fraction = 0.1;
   ExplicitTruth truth{leapfrog(problem, fraction)};
   const model::Cloth cloth = model::compile(problem.scene);
   const reference::SolveOptions options{.rtol = rtol, .size = model::size(problem.scene), .max_order = 4};
@@ -164,7 +164,7 @@ void run_scene(const StudiedScene& studied, const Methods& methods, All& all, Ch
   SceneRuns& scene = all.emplace_back(SceneRuns{problem(studied), {}, {}, find(all, studied.training)});
   Problem& problem = scene.problem;
   if (problem.in_metres)
-    set_explicit_truth(problem, checkpoint.once("truth", [&] { return compute_explicit_truth(problem); }));
+    set_explicit_truth(problem, checkpoint.once("truth", [&] { return compute_explicit_truth(problem, 1e-5); }));
   else
     set_truth(problem, checkpoint);
   scene.configurations = configurations(problem.scene, studied.search, methods);
@@ -233,6 +233,14 @@ std::vector<Job> jobs(const std::vector<StudiedScene>& list, const Methods& meth
 Problem certified_problem(const std::string& name, const model::Scene& scene, Checkpoint& checkpoint) {
   Problem result = problem({name, scene});
   set_truth(result, checkpoint);
+  return result;
+}
+
+Problem explicit_problem(const std::string& name, const model::Scene& scene, Checkpoint& checkpoint) {
+  Problem result = problem({name, scene});
+  const ExplicitTruth truth = checkpoint.once("truth", [&] { return compute_explicit_truth(result, 1e-7); });
+  result.truth = truth.positions;
+  result.uncertainty = truth.uncertainty / result.length;
   return result;
 }
 

@@ -8,4 +8,7 @@ namespace drape::bench {
 /// does.
 Problem certified_problem(const std::string& name, const model::Scene& scene, Checkpoint& checkpoint);
 
+/// The same of a scene without damping, which is not stiff: from velocity Verlet, extrapolated, and ARKODE's explicit method.
+Problem explicit_problem(const std::string& name, const model::Scene& scene, Checkpoint& checkpoint);
+
 }  // namespace drape::bench

@@ -32,6 +32,14 @@ Words run_without(const std::string& option) {
   return words;
 }
 
+/// A good command that leaves the method to the program, except for one option.
+Words auto_with(const std::string& option = "", const std::string& value = "") {
+  Words words{"run"};
+  for (const Words& good : {Words{"--scene", "hung-edge"}, {"--method", "auto"}, {"--accuracy", "1e-3"}})
+    words = words + Words{good.front(), good.front() == option ? value : good.back()};
+  return words;
+}
+
 struct BadInput {
   std::string name;
   Words arguments;
@@ -118,6 +126,18 @@ const std::vector<BadInput> bad_inputs = {
     {"VerletFractionZero", run_with("--verlet-fraction", {"0"}), {"--verlet-fraction", "from 0.001 to 1", "'0'"}},
     {"VerletFractionLarge", run_with("--verlet-fraction", {"1.01"}), {"--verlet-fraction", "from 0.001 to 1", "'1.01'"}},
     {"VerletFractionNaN", run_with("--verlet-fraction", {"nan"}), {"--verlet-fraction", "from 0.001 to 1", "'nan'"}},
+
+    // The choice of a method.
+    {"AutoAlone", run_with("--method", {"auto"}), {"--method auto", "expected --accuracy"}},
+    {"AutoWithStep", run_with("--method", {"auto"}) + Words{"--accuracy", "1e-3"}, {"--accuracy", "--step"}},
+    {"AutoAmongOthers", auto_with("--method", "auto,bdf2"), {"--method", "auto alone"}},
+    {"AccuracyWithoutAuto", auto_with("--method", "bdf2"), {"--accuracy", "expected --method auto"}},
+    {"AccuracyTooFine", auto_with("--accuracy", "1e-8"), {"--accuracy", "from 1e-07 to 0.1", "'1e-8'"}},
+    {"AccuracyTooCoarse", auto_with("--accuracy", "0.2"), {"--accuracy", "from 1e-07 to 0.1", "'0.2'"}},
+    {"AccuracyNaN", auto_with("--accuracy", "nan"), {"--accuracy", "from 1e-07 to 0.1", "'nan'"}},
+    {"AutoWithTolerance", auto_with() + Words{"--tolerance", "1e-3"}, {"--accuracy", "--tolerance"}},
+    {"AutoWithStageAccuracy", auto_with() + Words{"--stage-accuracy", "0.5"}, {"--accuracy", "--stage-accuracy"}},
+    {"AutoInContact", auto_with("--scene", "tablecloth"), {"--method auto", "without obstacles"}},
 
     // Keys of scenes.
     {"UnknownKey",

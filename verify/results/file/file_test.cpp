@@ -69,6 +69,7 @@ RunRecord full_record() {
   run.final_state.v = solver::Vectors::Constant(2, 3, -0.0);
   run.final_state.v(1, 2) = nan;
   run.final_state.z = Eigen::Vector3d(1e-300, nan, -2);
+  run.choice = results::ChoiceRecord{1e-3, "d T/(ρ L²) = 2.23: midpoint"};
   run.error = ErrorRecord{1e-5, 2e-5, "cvode-bdf + arkode-esdirk", 1e-11, 3e-10, 7, 1e-3, 1e-4, 1e-6, 1e-7};
   run.motion_error = results::MotionErrorRecord{1e-4, 0.5, 2e-4, 3e-3, 1e-9, 2e-2, nan, 1e-5};
   run.contact = results::ContactRecord{4e-3, 1e-9, 0.25, nan};
