@@ -108,6 +108,9 @@ std::span<const Study> studies() {
       {.name = "choice",
        .description = "which method to use: the quickest with automatic solvers, over damping, size and error",
        .answer = choice},
+      {.name = "size",
+       .description = "20 x 20 to 320 x 320 particles and two garments: who is the quickest, and whether small sheets mislead",
+       .answer = sizes},
       {.name = "auto",
        .description =
            "what --method auto chooses, against the quickest that a search finds: times, errors, and how often it holds",

@@ -79,6 +79,7 @@ std::vector<Job> tolerance(const Question& question);
 std::vector<Job> work_precision(const Question& question);
 std::vector<Job> bars(const Question& question);
 std::vector<Job> choice(const Question& question);
+std::vector<Job> sizes(const Question& question);
 std::vector<Job> automatic_study(const Question& question);
 std::vector<Job> field_study(const Question& question);
 std::vector<Job> claims(const Question& question);
