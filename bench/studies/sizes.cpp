@@ -17,6 +17,7 @@
 /// Does a sheet of 20 × 20 particles mislead? The quickest of ours and of SUNDIALS at every error on sheets of all sizes and on
 /// two garments, and what it costs to take the method that is the quickest on the small sheet.
 namespace drape::bench {
+namespace size_study {
 namespace {
 
 using results::Datum;
@@ -197,8 +198,10 @@ std::vector<results::Table> tables_of(const std::vector<ClothRuns>& all) {
 }
 
 }  // namespace
+}  // namespace size_study
 
 std::vector<Job> sizes(const Question& question) {
+  using namespace size_study;
   const std::vector<SizedCloth> list = sized_cloths(question.quick);
   int parts = 0;
   for (const SizedCloth& cloth : list) parts += static_cast<int>(searched_for(cloth).size());
