@@ -81,7 +81,7 @@ struct KnownWay {
 };
 
 const KnownWay known_ways[] = {
-    {{"sbdf2"}, &measured_ways[0], {650, 25, 0}, 0.8, true},
+    {{"sbdf2"}, &measured_ways[0], {650, 25, 0}, 0.93, true},
     {{.method = "midpoint/fixed-point/cholesky", .loop_tolerance = 0.1}, &measured_ways[1], {600, 8, 22}, 0.8, true},
     {{.method = "midpoint/fixed-point/cholesky", .loop_tolerance = 0.01}, &measured_ways[2], {600, 8, 22}, 0.5, true},
     {{"midpoint"}, &measured_ways[3], {600, 3, 20.5}},
