@@ -48,7 +48,6 @@ std::vector<ChosenSheet> chosen_sheets(bool quick) {
 model::Scene scene_of_sheet(const ChosenSheet& sheet) {
   std::vector<model::Override> overrides{{"material.damping", fmt::format("{}", sheet.damping)},
                                          {"grid.n", fmt::format("{}", sheet.n)}};
-  if (sheet.quick) overrides.push_back({"end.time", "0.1"});
   if (sheet.damping == 0) overrides.push_back({"end.time", "0.4"});
   return model::load_scene(sheet.scene, overrides);
 }
