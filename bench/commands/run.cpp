@@ -102,9 +102,9 @@ Group run_group(const RunArguments& a) {
   scene.end = a.until.value_or(scene.end);
   check_steps(a, scene.end);
   RunSpec spec{scene, fmt::format("{}", fmt::join(a.choice.sets, " ")), nullptr, 0, a.options};
-  if (chooses(a)) return chosen_group(spec, a.accuracy);
   spec.options.control = step_control(a.control);
   spec.options.error_control = {a.tolerance, model::size(scene), scene.end, !model::has_contacts(scene)};
+  if (chooses(a)) return chosen_group(spec, a.accuracy);
   Group group;
   for (const std::string& name : named_methods(a.methods, scene)) {
     spec.options.stage = a.options.stage;

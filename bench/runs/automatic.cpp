@@ -88,8 +88,9 @@ FallingSheet numbers(const model::Scene& scene) {
 
 /// "midpoint with h = 0.02 s (160 updates, 1.6 ms)"
 std::string in_words(const Prediction& one) {
-  const bool loose = one.way.loop_tolerance != solver::Options().loop_tolerance;
-  const std::string name = loose ? fmt::format("{} to {:g}", one.way.method, one.way.loop_tolerance) : one.way.method;
+  std::string name = one.way.method;
+  if (one.way.loop_tolerance != solver::Options().loop_tolerance) name += fmt::format(" to {:g}", one.way.loop_tolerance);
+  if (one.way.stage_accuracy != solver::Options().stage_accuracy) name += fmt::format(" to {:g}", one.way.stage_accuracy);
   if (one.fraction > 0)
     return fmt::format("{} at {:.2g} of its limit ({:.3g} forces, {:.2g} ms)", name, one.fraction, one.updates, one.ms);
   return fmt::format("{} with h = {:.3g} s ({:.3g} updates, {:.2g} ms)", name, one.step, one.updates, one.ms);

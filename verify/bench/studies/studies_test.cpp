@@ -303,6 +303,22 @@ TEST_F(ProgramStudies, TheChoiceIsTheQuickestWithItsError) {
   }
 }
 
+TEST_F(ProgramStudies, WhatAutoChoosesReachesTheErrorAndIsComparedWithTheQuickest) {
+  DRAPE_SLOW();
+  const auto all = tables("auto");
+  const auto table = [&](const std::string& name) { return *std::ranges::find(all, name, &Table::name); };
+  const Table levels = table("auto"), summary = table("auto-summary");
+  ASSERT_EQ(rows(levels), 14u);
+  for (std::size_t row = 0; row < rows(levels); ++row) {
+    const auto number = [&](const char* column) { return number_in(find_column(levels, column), row); };
+    EXPECT_LE(number("error"), number("wanted")) << row;
+    EXPECT_DOUBLE_EQ(number("ratio"), number("ms") / number("best_ms")) << row;
+  }
+  ASSERT_EQ(rows(summary), 2u);
+  for (std::size_t row = 0; row < rows(summary); ++row)
+    for (const char* column : {"levels", "reached"}) EXPECT_EQ(number_in(find_column(summary, column), row), 7) << row;
+}
+
 TEST_F(ProgramStudies, TheFieldHasAllMethodsAndWinnersWithMargins) {
   DRAPE_SLOW();
   const auto all = tables("field");  // in the order of their names
