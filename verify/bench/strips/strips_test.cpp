@@ -36,7 +36,7 @@ model::Scene sheet(std::vector<model::Override> more = {}) {
   std::vector<model::Override> overrides{{"grid.n", fmt::format("[{}, {}]", columns, lines)},
                                          {"material.damping", "5"},
                                          {"material.contraction", "100"},
-                                         {"pins", "[{where = \"left edge\"}, {particles = [[9, 4]], velocity = [0, 0, 3]}]"}};
+                                         {"pins", "[{where = \"left edge\"}, {particles = [[9, 4]], velocity = [0, 0, 10]}]"}};
   overrides.insert(overrides.end(), more.begin(), more.end());
   return model::load_scene("hung-corners", overrides);
 }
