@@ -129,8 +129,8 @@ struct RunRecord {
   std::string method;                  ///< as on the command line, for example "bdf2/cholesky"
   std::string stage_solver;
   std::string linear_solver;
-  double step = 0;   ///< [s]
-  double until = 0;  ///< [s]
+  double step = 0;                     ///< [s]
+  double until = 0;                    ///< [s]
   std::optional<ChoiceRecord> choice;  ///< if the program chose method and step
   std::vector<Parameter> parameters;
   double numerical_stiffness = 0;   ///< ν_h = h² k / (ρ l²), the larger of weft and warp

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -32,6 +33,13 @@ constexpr double least_part = 0.1;
 
 /// Tests the sum, which is finite only if all its terms are: unlike a test of each term, it is vectorised.
 bool finite(const State& y, const Partition& all) { return !all.any(!std::isfinite(y.x.sum() + y.v.sum())); }
+
+/// Whether v is farther from `one` than from `other`.
+bool farther(const Vectors& v, const Vectors& one, const Vectors& other, const Partition& all) {
+  std::array squares{(all.own(v) - all.own(one)).squaredNorm(), (all.own(v) - all.own(other)).squaredNorm()};
+  all.add_up(squares);
+  return squares[0] > squares[1];
+}
 
 double controlled(const StepControl& control, double h, int updates) {
   if (updates > control.max_updates) return h / control.factor;
@@ -349,8 +357,7 @@ double Integrator::first_step() const {
 /// extrapolations begin there.
 void Integrator::remember(double h, bool restart) {
   const Vectors& v1 = next_.y.v;
-  const bool rough =
-      extrapolates_ && history_.smooth() > 1 && (v1 - scratch_.av).squaredNorm() > (v1 - state().v).squaredNorm();
+  const bool rough = extrapolates_ && history_.smooth() > 1 && farther(v1, scratch_.av, state().v, *step_.ode.partition);
   if (step_.ode.memory) step_.ode.memory->carry(step_.t + h, next_.y);
   next_.t = end_of_step(h);
   history_.push(next_, h);

@@ -21,11 +21,13 @@ namespace fs = std::filesystem;
 
 const fs::path program = fs::path(DRAPE_PEERS) / "bench_strips";
 
-/// More processes than cores are let in, and processes of root: this machine is for tests and measurements.
+/// More processes than cores are let in, and processes of root. Those that wait for a message let others compute: on a busy
+/// machine they would else keep the sender from its core.
 std::vector<std::string> command(int processes, const fs::path& folder) {
   return {"env",
           "OMPI_ALLOW_RUN_AS_ROOT=1",
           "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1",
+          "OMPI_MCA_mpi_yield_when_idle=1",
           "OMPI_MCA_btl=self,vader",
           "OMPI_MCA_btl_vader_single_copy_mechanism=none",
           "mpirun",

@@ -16,6 +16,7 @@
 /// How good is the choice of --method auto? At every error its time, choice included, over that of the quickest of our methods
 /// and solvers, which a search finds with hindsight, all interleaved; and whether the error is as small as was asked for.
 namespace drape::bench {
+namespace auto_study {
 namespace {
 
 using results::Datum;
@@ -188,8 +189,10 @@ std::vector<results::Table> automatic_tables(const std::vector<SheetRuns>& all) 
 }
 
 }  // namespace
+}  // namespace auto_study
 
 std::vector<Job> automatic_study(const Question& question) {
+  using namespace auto_study;
   const std::vector<ChosenSheet> list = chosen_sheets(question.quick);
   int parts = 0;
   for (const ChosenSheet& sheet : list) parts += static_cast<int>(searched_for(sheet).size() + usual_errors().size());

@@ -125,8 +125,7 @@ std::vector<Table> in_full(const RunRecord& run) {
       make_table("scene", "the complete scene, key by key", scene_columns, run.scene_keys),
       make_table("parameters", "parameters of the scene and the solvers", parameter_columns, run.parameters),
       make_table("work", "how often each kind of work was done", work_columns, run.work)};
-  if (run.choice)
-    tables.push_back(members("choice", "why the program chose method and step", choice_fields, *run.choice));
+  if (run.choice) tables.push_back(members("choice", "why the program chose method and step", choice_fields, *run.choice));
   if (run.error)
     tables.push_back(members("error", "distance of the final positions from a reference", error_fields, *run.error));
   if (run.motion_error)

@@ -24,7 +24,6 @@ using bench::strips::strip_masses;
 using bench::strips::strip_of;
 using solver::Vectors;
 using testing::HasSubstr;
-using testing::Throws;
 
 constexpr double round_off = 1e-12;
 
