@@ -140,7 +140,7 @@ struct ScalingRow {
 
   double particles() const { return static_cast<double>(nu) * nv; }
   double steps() const { return static_cast<double>(solved.seconds.size()); }
-  /// Of the later steps [s].
+  /// Quantile of the later steps [s].
   double seconds(double part) const { return base::quantile({solved.seconds.begin() + 1, solved.seconds.end()}, part); }
 };
 
