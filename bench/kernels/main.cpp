@@ -65,7 +65,7 @@ class Triad {
   Vectors b_, c_, a_;
 };
 
-/// Bandwidth of the triad on so many particles by one thread, the best of many calls [bytes/s].
+/// Bandwidth of the triad on this number of particles by one thread, the best of many calls [bytes/s].
 double triad_bandwidth(std::int64_t particles) {
   Triad triad(particles);
   const std::int64_t calls = std::max<std::int64_t>(1, 100'000 / particles);  // so that the clock's resolution does not matter

@@ -17,7 +17,7 @@ struct Evaluator {
   explicit Evaluator(LinearOperators given)
       : operators(std::move(given)), elastic(operators.elastic), viscous(operators.viscous) {}
 
-  /// Of particle i; the fourth lane means nothing.
+  /// The part of particle i; the fourth lane means nothing.
   solver::Lanes lanes_at(int i, const Configuration& c) const {
     const solver::Lanes q = elastic.times(i, c.x);
     return viscous.empty() ? q : q + viscous.times(i, c.v);
