@@ -165,7 +165,7 @@ void add_accuracy(CLI::App& command, double& accuracy) {
       command
           .add_option("--accuracy", accuracy,
                       "with --method auto: the largest error of positions over the run that is allowed, over the scene's size")
-          ->type_name("X")
+          ->option_text("X")
           ->check(between(finest_accuracy, coarsest_accuracy));
   for (const char* other :
        {"--step", "--loop-tolerance", "--verlet-fraction", "--tolerance", "--stage-accuracy", "--passes", "--control"})
@@ -217,7 +217,7 @@ void add_solver_options(CLI::App& command, RunArguments& a) {
 }
 
 void add_thread_option(CLI::App& run, RunArguments& a) {
-  run.add_option("--threads", a.threads, "that the linear algebra of large grids may use")
+  run.add_option("--threads", a.threads, "that large sheets may use; results are the same for any number")
       ->type_name("N")
       ->check(between(1, base::max_threads))
       ->capture_default_str();

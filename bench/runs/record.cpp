@@ -24,12 +24,12 @@ namespace {
 
 std::vector<results::Parameter> parameters(const RunSpec& spec, int particles) {
   const solver::Options& o = spec.options;
-  std::vector<results::Parameter> all{{"size", model::size(spec.scene), "m", "length by which errors are divided"}};
+  std::vector<results::Parameter> all{
+      {"size", model::size(spec.scene), "m", "length by which errors are divided"},
+      {"threads", double(base::threads_for(particles)), "1", "that a sheet of this size may use"}};
   if (spec.method->implicit()) {
     all.push_back(
         {"cg_tolerance", o.cg_tolerance, "1", "residual of a linear solve over |b|; in the loop at most half of its"});
-    all.push_back(
-        {"threads", double(base::threads_for(particles)), "1", "that the linear algebra of a sheet of this size may use"});
     all.push_back({"max_cg_iterations", double(o.max_cg_iterations), "1", "iterations a solve before it counts as failed"});
   }
   if (spec.method->sub_steps) all.push_back({"verlet_fraction", o.verlet_fraction, "1", "sub-step over its stability limit"});
