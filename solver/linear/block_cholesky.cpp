@@ -57,7 +57,6 @@ BlockCholesky::BlockCholesky(const SparseMatrix& A) {
   order(A);
   plant();
   find_places(A);
-  updates_.resize(fronts_.size());
   solution_.resize(A.rows());
   below_.resize(A.rows());
 }
@@ -76,16 +75,21 @@ void BlockCholesky::order(const SparseMatrix& A) {
     throw std::bad_alloc();
   }
   const int *const begin = static_cast<int*>(factor->super), *const row_begin = static_cast<int*>(factor->pi);
-  std::int64_t size = 0;
+  std::int64_t size = 0, updates = 0;
   for (int k = 0; k < static_cast<int>(factor->nsuper); ++k) {
     fronts_.push_back({.begin = begin[k],
                        .blocks = begin[k + 1] - begin[k],
                        .rows_begin = row_begin[k],
                        .rows = row_begin[k + 1] - row_begin[k],
-                       .panel = size});
-    size += std::int64_t{9} * fronts_.back().rows * fronts_.back().blocks;
+                       .panel = size,
+                       .update = updates});
+    const Front& front = fronts_.back();
+    const std::int64_t rest = 3 * (front.rows - front.blocks);
+    size += std::int64_t{9} * front.rows * front.blocks;
+    updates += rest * rest;
   }
   values_.resize(size);
+  updates_.resize(updates);
   rows_.assign(static_cast<int*>(factor->s), static_cast<int*>(factor->s) + factor->ssize);
   order_.assign(static_cast<int*>(factor->Perm), static_cast<int*>(factor->Perm) + factor->n);
   cholmod_free_factor(&factor, &common);
@@ -163,9 +167,9 @@ void BlockCholesky::eliminate_branch(int front) {
 void BlockCholesky::eliminate(int k) {
   const Front& front = fronts_[k];
   const int own = 3 * front.blocks, rest = 3 * front.rows - own;
-  Eigen::MatrixXd& update = updates_[k];
-  update.setZero(rest, rest);
-  for (const int child : front.children) add_update(child, front, update);
+  Panel taken = update(front);
+  taken.setZero();
+  for (const int child : front.children) add_update(fronts_[child], front, taken);
   if (!is_definite_) return;
   Panel all = panel(front);
   if (!factor_dense(all.topRows(own))) is_definite_ = false;
@@ -181,26 +185,25 @@ void BlockCholesky::eliminate(int k) {
   for (int j = 0; j < tiles; ++j) {
     const int begin = j * tile, size = std::min(tile, rest - begin), left = rest - begin - size;
     const auto rows = below.middleRows(begin, size);
-    update.block(begin, begin, size, size).selfadjointView<Eigen::Lower>().rankUpdate(rows, -1);
-    update.block(begin + size, begin, left, size).noalias() -= below.bottomRows(left) * rows.transpose();
+    taken.block(begin, begin, size, size).selfadjointView<Eigen::Lower>().rankUpdate(rows, -1);
+    taken.block(begin + size, begin, left, size).noalias() -= below.bottomRows(left) * rows.transpose();
   }
 }
 
 /// Adds what a child takes off the columns of its parent, and off those of the parent's parents.
-void BlockCholesky::add_update(int child, const Front& parent, Eigen::MatrixXd& update) {
-  const std::vector<int>& to = fronts_[child].in_parent;
-  const Eigen::MatrixXd& from = updates_[child];
+void BlockCholesky::add_update(const Front& child, const Front& parent, Panel& to_parents) {
+  const std::vector<int>& to = child.in_parent;
+  const Panel from = update(child);
   Panel own = panel(parent);
   for (int j = 0; j < std::ssize(to); ++j)
     for (int c = 0; c < 3; ++c) {
       const bool is_own = to[j] < parent.blocks;
       double* const column =
-          is_own ? own.col(3 * to[j] + c).data() : update.col(3 * (to[j] - parent.blocks) + c).data() - 3 * parent.blocks;
+          is_own ? own.col(3 * to[j] + c).data() : to_parents.col(3 * (to[j] - parent.blocks) + c).data() - 3 * parent.blocks;
       const double* const values = from.col(3 * j + c).data();
       for (int i = j; i < std::ssize(to); ++i)
         for (int r = 0; r < 3; ++r) column[3 * to[i] + r] += values[3 * i + r];
     }
-  updates_[child].resize(0, 0);
 }
 
 void BlockCholesky::solve(const Vectors& r, Vectors& d) const {

@@ -33,6 +33,7 @@ class BlockCholesky {
     int begin, blocks;                ///< its own
     int rows_begin, rows;             ///< in rows_: those of its panel, its own first
     std::int64_t panel;               ///< in values_: 3 rows × 3 blocks numbers, column by column
+    std::int64_t update;              ///< in updates_: a square of 3 (rows − blocks), for the parent
     std::vector<int> children = {};   ///< ascending
     std::vector<int> in_parent = {};  ///< where the parent has the rows that are not its own
     int first = 0;                    ///< of its descendants, which precede it one after the other
@@ -43,12 +44,16 @@ class BlockCholesky {
   void plant();
   void find_places(const SparseMatrix& A);
 
+  Panel update(const Front& front) {
+    const int rest = 3 * (front.rows - front.blocks);
+    return {updates_.data() + front.update, rest, rest};
+  }
   Panel panel(const Front& front) { return {values_.data() + front.panel, 3 * front.rows, 3 * front.blocks}; }
   ConstPanel panel(const Front& front) const { return {values_.data() + front.panel, 3 * front.rows, 3 * front.blocks}; }
 
   void eliminate_branch(int front);
   void eliminate(int front);
-  void add_update(int child, const Front& parent, Eigen::MatrixXd& update);
+  void add_update(const Front& child, const Front& parent, Panel& to_parents);
 
   std::vector<int> order_;  ///< the k-th block to be eliminated
   std::vector<Front> fronts_;
@@ -56,7 +61,7 @@ class BlockCholesky {
   std::vector<int> rows_;
   std::vector<std::int64_t> places_;  ///< in values_, of A's values
   Eigen::VectorXd values_;
-  std::vector<Eigen::MatrixXd> updates_;  ///< for parents, while these have not taken them
+  Eigen::VectorXd updates_;
   std::atomic<bool> is_definite_ = true;
   mutable Eigen::VectorXd solution_, below_;
 };
