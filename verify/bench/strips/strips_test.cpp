@@ -29,7 +29,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 
 constexpr int columns = 10, lines = 9;
-constexpr double limit = 120;  ///< [s]
+constexpr double limit = 400;  ///< [s]
 
 /// Pins in every strip, one of them moving, which stretches the sheet around it.
 model::Scene sheet(std::vector<model::Override> more = {}) {
@@ -42,7 +42,8 @@ model::Scene sheet(std::vector<model::Override> more = {}) {
 }
 
 Problem problem(const std::string& method, const model::Scene& scene = sheet()) {
-  return {.scene = model::to_toml(scene), .method = method, .step = 1e-3, .steps = 20, .writes_state = true};
+  const int steps = bench::strips::is_of_sundials(method) ? 5 : 20;  // its tight tolerance takes many messages
+  return {.scene = model::to_toml(scene), .method = method, .step = 1e-3, .steps = steps, .writes_state = true};
 }
 
 double distance(const State& a, const State& b) {
