@@ -80,7 +80,7 @@ TEST(Csv, HasTheColumnsThatScriptsRelyOn) {
       "error_rms,"
       "error_run,error_relative,reference,reference_error,error_max,growth,energy_error,centre_error,amplitude,"
       "velocity_error_run,energy_error_run,momentum_error_run,angular_momentum_error_run,clearance,energy_rise,contact_area,"
-      "numerical_stiffness,stiffness_to_damping,last_good_time,set,accuracy,reason\n");
+      "numerical_stiffness,stiffness_to_damping,last_good_time,accuracy,reason,set\n");
 }
 
 TEST(Csv, GivesTotalsQuantilesAndAllDigits) {
@@ -97,7 +97,7 @@ TEST(Csv, QuotesTextAndLeavesCellsWithoutValueEmpty) {
       to_csv(to_table(std::vector{failed_run()})),
       HasSubstr(
           "\nFähnchen,bdf2/cholesky,0.01,not converged,\"said \"\"no\"\", twice\\nand again\",2,0,3,42,,,,,,,,,,,,,,,,,,,,,"
-          "0.3333333333333333,inf,0.02,material.damping=0.5,,\n"));
+          "0.3333333333333333,inf,0.02,,,material.damping=0.5\n"));
 }
 
 TEST(Csv, NumbersReadBackAsTheSameNumbers) {
