@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <tuple>
 #include <vector>
 
 #include "solver/linear/kernels.hpp"
@@ -31,7 +32,7 @@ class StencilMatrix {
   struct Entry {
     int offset;  ///< column less row
     double value;
-    auto operator<=>(const Entry&) const = default;
+    bool operator<(const Entry& other) const { return std::tie(offset, value) < std::tie(other.offset, other.value); }
   };
 
   /// Four lanes of the last particle would read past the end.

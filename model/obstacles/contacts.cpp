@@ -103,7 +103,8 @@ solver::Contact Contacts::contact(int particle, int obstacle, double gap, const 
 
 void Contacts::find_half_spaces(int k, double t, const Ride& ride, const solver::State& y,
                                 std::vector<solver::Contact>& found) {
-  const auto& [begin, end, h] = ride;
+  const Pose &begin = ride.begin, &end = ride.end;
+  const double h = ride.h;
   std::optional<Deforming>& deforming = deforming_[k];
   double deformed = 0, way = h * y.v.rowwise().norm().maxCoeff() + h * h * gravity_.norm();
   if (deforming) {
