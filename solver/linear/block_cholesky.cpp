@@ -175,15 +175,16 @@ void BlockCholesky::eliminate(int k) {
   if (!factor_dense(all.topRows(own))) is_definite_ = false;
   auto below = all.bottomRows(rest);
   const auto pivots = all.topRows(own).transpose().triangularView<Eigen::Upper>();
-  const int tiles = (rest + tile - 1) / tile;
+  const auto tiles = static_cast<unsigned>((rest + tile - 1) / tile);
 #pragma omp taskloop grainsize(1) default(shared) if (tiles > 1)
-  for (int j = 0; j < tiles; ++j) {
-    auto rows = below.middleRows(j * tile, std::min(tile, rest - j * tile));
+  for (unsigned j = 0; j < tiles; ++j) {
+    const int begin = static_cast<int>(j) * tile;
+    auto rows = below.middleRows(begin, std::min(tile, rest - begin));
     pivots.solveInPlace<Eigen::OnTheRight>(rows);
   }
 #pragma omp taskloop grainsize(1) default(shared) if (tiles > 1)
-  for (int j = 0; j < tiles; ++j) {
-    const int begin = j * tile, size = std::min(tile, rest - begin), left = rest - begin - size;
+  for (unsigned j = 0; j < tiles; ++j) {
+    const int begin = static_cast<int>(j) * tile, size = std::min(tile, rest - begin), left = rest - begin - size;
     const auto rows = below.middleRows(begin, size);
     taken.block(begin, begin, size, size).selfadjointView<Eigen::Lower>().rankUpdate(rows, -1);
     taken.block(begin + size, begin, left, size).noalias() -= below.bottomRows(left) * rows.transpose();

@@ -31,10 +31,10 @@ void ErrorEstimate::measure(const Vectors& residual, double gamma) {
     mass_scaling_ = (mass_ - gamma * drag_).inverse();
   }
   const double *const r = residual.data(), *const m = inverse_mass_.data(), *const u = mass_scaling_.data();
-  const auto [first, count] = all_.own(residual.size());
+  const Partition::Range own = all_.own(residual.size());
   double plain = 0, by_mass = 0, scaled = 0;
 #pragma omp simd reduction(+ : plain, by_mass, scaled)
-  for (Eigen::Index i = first; i < first + count; ++i) {
+  for (Eigen::Index i = own.begin; i < own.begin + own.count; ++i) {
     plain += r[i] * r[i];
     by_mass += (m[i] * r[i]) * (m[i] * r[i]);
     scaled += (u[i] * r[i]) * (u[i] * r[i]);
