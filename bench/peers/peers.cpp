@@ -7,13 +7,11 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <system_error>
 
 #include "bench/peers/springs.hpp"
 #include "bench/runs/certified_reference.hpp"
-#include "bench/runs/interruption.hpp"
+#include "bench/runs/child.hpp"
 #include "model/scene_file/scene_file.hpp"
-#include "solver/base/process.hpp"
 #include "solver/base/registry.hpp"
 #include "solver/base/temporary.hpp"
 
@@ -89,17 +87,10 @@ std::string last_line(std::string text) {
 void run_program(const Peer& peer, const fs::path& folder, double limit) {
   std::vector<std::string> words = command(*peer.simulator);
   words.push_back(folder);
-  try {
-    constexpr double longest = 1e6;  // [s]: a number that counts of milliseconds hold
-    const base::ChildSaid said = base::run_child(std::move(words), std::min(limit, longest));
-    if (said.exit_code == 0) return;
-    if (said.exit_code > 128) throw PeerError(fmt::format("ended by signal {}", said.exit_code - 128));
-    throw PeerError(last_line(said.err));
-  } catch (const std::system_error& error) {
-    check_interruption();
-    if (error.code() == std::errc::timed_out) throw PeerError(fmt::format("out of time after {:g} s", limit));
-    throw;
-  }
+  const base::ChildSaid said = run_within<PeerError>(std::move(words), limit);
+  if (said.exit_code == 0) return;
+  if (said.exit_code > 128) throw PeerError(fmt::format("ended by signal {}", said.exit_code - 128));
+  throw PeerError(last_line(said.err));
 }
 
 /// A frame as a field; a number that is not finite is null in JSON.

@@ -1,17 +1,13 @@
 #include "bench/strips/launch.hpp"
 
-#include <fmt/format.h>
-
 #include <cstddef>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string_view>
-#include <system_error>
 
-#include "bench/runs/interruption.hpp"
-#include "solver/base/process.hpp"
+#include "bench/runs/child.hpp"
 #include "solver/base/temporary.hpp"
 
 namespace drape::bench::strips {
@@ -50,14 +46,8 @@ std::string said_by_program(const std::string& text) {
 }
 
 void run_program(int processes, const fs::path& folder, double limit) {
-  try {
-    const base::ChildSaid said = base::run_child(command(processes, folder), limit);
-    if (said.exit_code != 0) throw StripsError(said_by_program(said.err));
-  } catch (const std::system_error& error) {
-    check_interruption();
-    if (error.code() == std::errc::timed_out) throw StripsError(fmt::format("out of time after {:g} s", limit));
-    throw;
-  }
+  const base::ChildSaid said = run_within<StripsError>(command(processes, folder), limit);
+  if (said.exit_code != 0) throw StripsError(said_by_program(said.err));
 }
 
 solver::State read_state(const fs::path& path) {

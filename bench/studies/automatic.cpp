@@ -196,13 +196,9 @@ std::vector<Job> automatic_study(const Question& question) {
   const std::vector<ChosenSheet> list = chosen_sheets(question.quick);
   int parts = 0;
   for (const ChosenSheet& sheet : list) parts += static_cast<int>(searched_for(sheet).size() + usual_errors().size());
-  const auto compute = [=](Checkpoint& checkpoint) {
-    std::vector<SheetRuns> all;
-    all.reserve(list.size());  // runs point into what is in it
-    checkpoint.each(list, [&](const ChosenSheet& sheet) { run_sheet(all.emplace_back(SheetRuns{sheet, {}}), checkpoint); });
-    return all;
-  };
-  return {job("auto", parts, compute, automatic_tables)};
+  return {job(
+      "auto", parts, [=](Checkpoint& checkpoint) { return run_each<SheetRuns>(list, run_sheet, checkpoint); },
+      automatic_tables)};
 }
 
 }  // namespace drape::bench

@@ -130,13 +130,6 @@ results::Table choice_table(const std::vector<SheetRuns>& all) {
                              rows);
 }
 
-std::vector<SheetRuns> run_sheets(const std::vector<HungSheet>& list, Checkpoint& checkpoint) {
-  std::vector<SheetRuns> all;
-  all.reserve(list.size());  // runs point into what is in it
-  checkpoint.each(list, [&](const HungSheet& sheet) { run_defaults(all.emplace_back(SheetRuns{sheet, {}}), checkpoint); });
-  return all;
-}
-
 std::vector<results::Table> choice_tables(const std::vector<SheetRuns>& all) {
   std::vector<results::Table> tables;
   for (const SheetRuns& runs : all) tables.push_back(runs_table(runs.scene));
@@ -151,7 +144,8 @@ std::vector<Job> choice(const Question& question) {
   int parts = 0;
   for (const HungSheet& sheet : list) parts += static_cast<int>(default_configurations(sheet).size());
   return {job(
-      "choice", parts, [=](Checkpoint& checkpoint) { return run_sheets(list, checkpoint); }, choice_tables)};
+      "choice", parts, [=](Checkpoint& checkpoint) { return run_each<SheetRuns>(list, run_defaults, checkpoint); },
+      choice_tables)};
 }
 
 }  // namespace drape::bench

@@ -205,13 +205,8 @@ std::vector<Job> sizes(const Question& question) {
   const std::vector<SizedCloth> list = sized_cloths(question.quick);
   int parts = 0;
   for (const SizedCloth& cloth : list) parts += static_cast<int>(searched_for(cloth).size());
-  const auto compute = [=](Checkpoint& checkpoint) {
-    std::vector<ClothRuns> all;
-    all.reserve(list.size());  // runs point into what is in it
-    checkpoint.each(list, [&](const SizedCloth& cloth) { run_cloth(all.emplace_back(ClothRuns{cloth, {}}), checkpoint); });
-    return all;
-  };
-  return {job("size", parts, compute, tables_of)};
+  return {job(
+      "size", parts, [=](Checkpoint& checkpoint) { return run_each<ClothRuns>(list, run_cloth, checkpoint); }, tables_of)};
 }
 
 }  // namespace drape::bench

@@ -53,9 +53,8 @@ void SelfContacts::fit(const Vectors& x, double reach) {
     }
     return Eigen::AlignedBox3d(box.min() - margin, box.max() + margin);
   };
-  base::in_parts(base::threads_for(x.rows()), std::ssize(boxes_), [&](int, std::int64_t begin, std::int64_t end) {
-    for (std::int64_t k = begin; k < end; ++k) boxes_[k] = box_of(surface_.faces()[k]);
-  });
+  base::each_in_parts(base::threads_for(x.rows()), std::ssize(boxes_),
+                      [&](std::int64_t k) { boxes_[k] = box_of(surface_.faces()[k]); });
   tree_.refit(boxes_);
 }
 

@@ -44,11 +44,9 @@ std::optional<Term> make_air(const Sheet& sheet) {
   Term term;
   term.needs_normals = true;
   term.force = [=](const Configuration& c, Vectors& f) {
-    base::in_parts(base::threads_for(f.rows()), f.rows(), [&](int, std::int64_t begin, std::int64_t end) {
-      for (int i = static_cast<int>(begin); i < end; ++i) {
-        const Wake wake(c, i);
-        f.row(i) += weight[i] * std::abs(wake.p) * wake.direction.transpose();
-      }
+    base::each_in_parts(base::threads_for(f.rows()), f.rows(), [&](std::int64_t i) {
+      const Wake wake(c, static_cast<int>(i));
+      f.row(i) += weight[i] * std::abs(wake.p) * wake.direction.transpose();
     });
   };
   term.jacobian = [=, normals = Normals(sheet.grid)](const Configuration& c, const JacobianEntries& entries) {

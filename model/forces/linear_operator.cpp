@@ -27,8 +27,9 @@ struct Evaluator {
   /// Calls add(i, lanes_at(i)) for each particle; several threads do at the same time.
   template <class Add>
   void each(const Configuration& c, const Add& add) const {
-    base::in_parts(base::threads_for(c.x.rows()), c.x.rows(), [&](int, std::int64_t begin, std::int64_t end) {
-      for (int i = static_cast<int>(begin); i < end; ++i) add(i, lanes_at(i, c));
+    base::each_in_parts(base::threads_for(c.x.rows()), c.x.rows(), [&](std::int64_t k) {
+      const int i = static_cast<int>(k);
+      add(i, lanes_at(i, c));
     });
   }
 };

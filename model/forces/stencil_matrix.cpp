@@ -22,9 +22,8 @@ StencilMatrix::StencilMatrix(const solver::SparseMatrix& matrix) : last_(static_
 }
 
 void StencilMatrix::multiply(const solver::Vectors& x, solver::Vectors& y) const {
-  base::in_parts(base::threads_for(x.rows()), x.rows(), [&](int, std::int64_t begin, std::int64_t end) {
-    for (std::int64_t i = begin; i < end; ++i) solver::store(y.data() + 3 * i, times(static_cast<int>(i), x));
-  });
+  base::each_in_parts(base::threads_for(x.rows()), x.rows(),
+                      [&](std::int64_t i) { solver::store(y.data() + 3 * i, times(static_cast<int>(i), x)); });
 }
 
 }  // namespace drape::model

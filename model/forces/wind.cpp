@@ -21,11 +21,9 @@ std::optional<Term> make_wind(const Sheet& sheet) {
   term.needs_normals = sheet.wind.needs_normals();
   term.force = [=, divides = term.needs_normals](const Configuration& c, Vectors& f) {
     const Eigen::RowVector3d w = wind(c.t).transpose();
-    base::in_parts(base::threads_for(f.rows()), f.rows(), [&](int, std::int64_t begin, std::int64_t end) {
-      for (std::int64_t i = begin; i < end; ++i) {
-        f.row(i) += undivided[i] * w;
-        if (divides) f.row(i) += along_normal[i] * c.normals.row(i).dot(w) * c.normals.row(i);
-      }
+    base::each_in_parts(base::threads_for(f.rows()), f.rows(), [&](std::int64_t i) {
+      f.row(i) += undivided[i] * w;
+      if (divides) f.row(i) += along_normal[i] * c.normals.row(i).dot(w) * c.normals.row(i);
     });
   };
   term.active = true;

@@ -61,9 +61,8 @@ Neighbours Normals::distinct(const Vectors& x, int i) const {
 }
 
 void Normals::evaluate(const Vectors& x, Vectors& n) const {
-  base::in_parts(base::threads_for(grid_.particles()), grid_.nv, [&](int, std::int64_t begin, std::int64_t end) {
-    for (std::int64_t b = begin; b < end; ++b) evaluate_line(static_cast<int>(b), x, n);
-  });
+  base::each_in_parts(base::threads_for(grid_.particles()), grid_.nv,
+                      [&](std::int64_t b) { evaluate_line(static_cast<int>(b), x, n); });
 }
 
 void Normals::evaluate_line(int b, const Vectors& x, Vectors& n) const {

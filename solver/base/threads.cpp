@@ -1,5 +1,6 @@
 #include "solver/base/threads.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 
@@ -17,5 +18,10 @@ void use_threads(int threads) {
 }
 
 int threads_for(std::int64_t particles) { return particles >= 40000 ? allowed : 1; }
+
+int threads_for_lines(int lines, std::int64_t particles) {
+  constexpr int least = 16;  // lines of a thread
+  return std::clamp(lines / least, 1, threads_for(particles));
+}
 
 }  // namespace drape::base

@@ -16,6 +16,9 @@ void use_threads(int threads);
 /// Threads that pay for a field of this number of particles.
 int threads_for(std::int64_t particles);
 
+/// Threads that pay for a grid of this number of lines and particles, each of which takes some lines.
+int threads_for_lines(int lines, std::int64_t particles);
+
 /// Calls f(k, begin, end) for parts [begin, end) of [0, count), part k by a thread of its own. There may be fewer than
 /// `threads`.
 template <class F>
@@ -26,6 +29,14 @@ void in_parts(int threads, std::int64_t count, const F& f) {
     const int k = omp_get_thread_num(), parts = omp_get_num_threads();
     f(k, count * k / parts, count * (k + 1) / parts);
   }
+}
+
+/// Calls f(i) for each i of [0, count), as in_parts() shares them out.
+template <class F>
+void each_in_parts(int threads, std::int64_t count, const F& f) {
+  in_parts(threads, count, [&](int, std::int64_t begin, std::int64_t end) {
+    for (std::int64_t i = begin; i < end; ++i) f(i);
+  });
 }
 
 /// Appends to `all` what f(begin, end, part) appends to its part, for parts of [0, count) in their order. Threads take the next

@@ -2,7 +2,9 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <iterator>
 #include <new>
+#include <utility>
 
 #include "solver/base/threads.hpp"
 #include "solver/linear/cholmod_view.hpp"
@@ -30,19 +32,7 @@ class BlockPattern {
     }
   }
 
-  cholmod_sparse view() {
-    cholmod_sparse view{};
-    view.nrow = view.ncol = start_.size() - 1;
-    view.nzmax = block_.size();
-    view.p = start_.data();
-    view.i = block_.data();
-    view.stype = -1;
-    view.itype = CHOLMOD_INT;
-    view.xtype = CHOLMOD_PATTERN;
-    view.dtype = CHOLMOD_DOUBLE;
-    view.sorted = view.packed = 1;
-    return view;
-  }
+  cholmod_sparse view() const { return cholmod_pattern(start_.size() - 1, start_.data(), block_.data(), block_.size()); }
 
  private:
   std::vector<int> start_, block_;
@@ -96,10 +86,15 @@ void BlockCholesky::order(const SparseMatrix& A) {
   cholmod_finish(&common);
 }
 
-/// The tree: a front's parent eliminates the first of its other rows.
-void BlockCholesky::plant() {
+std::vector<int> BlockCholesky::fronts_of_blocks() const {
   std::vector<int> front_of(order_.size());
   for (int k = 0; k < std::ssize(fronts_); ++k) std::fill_n(front_of.begin() + fronts_[k].begin, fronts_[k].blocks, k);
+  return front_of;
+}
+
+/// The tree: a front's parent eliminates the first of its other rows.
+void BlockCholesky::plant() {
+  const std::vector<int> front_of = fronts_of_blocks();
   for (int k = 0; k < std::ssize(fronts_); ++k) {
     Front& front = fronts_[k];
     const auto own = rows_.begin() + front.rows_begin, end = own + front.rows;
@@ -120,9 +115,9 @@ void BlockCholesky::plant() {
 }
 
 void BlockCholesky::find_places(const SparseMatrix& A) {
-  std::vector<int> place(order_.size()), front_of(order_.size());
+  const std::vector<int> front_of = fronts_of_blocks();
+  std::vector<int> place(order_.size());
   for (int k = 0; k < std::ssize(order_); ++k) place[order_[k]] = k;
-  for (int k = 0; k < std::ssize(fronts_); ++k) std::fill_n(front_of.begin() + fronts_[k].begin, fronts_[k].blocks, k);
   places_.reserve(A.nonZeros());
   for (int i = 0; i < A.outerSize(); ++i)
     for (SparseMatrix::InnerIterator a(A, i); a; ++a) {

@@ -41,6 +41,7 @@ class BlockCholesky {
   };
 
   void order(const SparseMatrix& A);
+  std::vector<int> fronts_of_blocks() const;
   void plant();
   void find_places(const SparseMatrix& A);
 

@@ -67,9 +67,8 @@ double advance(double a, const Vectors& p, const Vectors& q, Vectors& x, Vectors
   const Eigen::Index blocks = (x.size() + block - 1) / block;
   if (blocks <= 1) return advance(a, p, q, x, r, 0, x.size());
   std::vector<double> squares(blocks);
-  base::in_parts(base::threads_for(x.rows()), blocks, [&](int, Eigen::Index begin, Eigen::Index end) {
-    for (Eigen::Index k = begin; k < end; ++k)
-      squares[k] = advance(a, p, q, x, r, block * k, std::min(block * (k + 1), x.size()));
+  base::each_in_parts(base::threads_for(x.rows()), blocks, [&](Eigen::Index k) {
+    squares[k] = advance(a, p, q, x, r, block * k, std::min(block * (k + 1), x.size()));
   });
   return std::accumulate(squares.begin(), squares.end(), 0.0);
 }

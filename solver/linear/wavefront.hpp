@@ -2,7 +2,7 @@
 
 #include <omp.h>
 
-#include <algorithm>
+#include <cstdint>
 #include <vector>
 
 #include "solver/base/threads.hpp"
@@ -54,15 +54,14 @@ Lanes wavefront(const FivePoint& A, const Stages&... stages) {
   thread_local std::vector<Lanes> memory;
   memory.assign(A.nv, Lanes::Zero());
   Lanes* const sums = memory.data();  // of this thread, for all of them
-  base::in_parts(std::clamp(A.nv / 16, 1, base::threads_for(A.particles())), A.nv / 2,
-                 [&](int k, std::int64_t begin, std::int64_t end) {
-                   const bool first = k == 0, last = end == A.nv / 2;
-                   const int line = 2 * static_cast<int>(begin);
-                   wavefront_band({line, last ? A.nv : 2 * static_cast<int>(end), first, last}, sums, stages...);
-                   if (first && last) return;
+  base::in_parts(base::threads_for_lines(A.nv, A.particles()), A.nv / 2, [&](int k, std::int64_t begin, std::int64_t end) {
+    const bool first = k == 0, last = end == A.nv / 2;
+    const int line = 2 * static_cast<int>(begin);
+    wavefront_band({line, last ? A.nv : 2 * static_cast<int>(end), first, last}, sums, stages...);
+    if (first && last) return;
 #pragma omp barrier
-                   if (!first) wavefront_seam(line, sums, stages...);
-                 });
+    if (!first) wavefront_seam(line, sums, stages...);
+  });
   Lanes sum = Lanes::Zero();
   for (const Lanes& of_line : memory) sum += of_line;
   return sum;

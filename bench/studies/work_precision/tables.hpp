@@ -13,6 +13,15 @@ struct SceneRuns {
   const SceneRuns* training = nullptr;  ///< another scene, on which configurations were chosen for this one
 };
 
+/// What run(all, checkpoint) makes of All{item} for each item. They do not move, since runs point into what is in them.
+template <class All, class Item, class Run>
+std::vector<All> run_each(const std::vector<Item>& items, const Run& run, Checkpoint& checkpoint) {
+  std::vector<All> every;
+  every.reserve(items.size());
+  checkpoint.each(items, [&](const Item& item) { run(every.emplace_back(All{item, {}}), checkpoint); });
+  return every;
+}
+
 /// How many configurations of ours or of SUNDIALS were tried on a scene.
 int number_of_configurations(const SceneRuns& scene, bool ours);
 

@@ -183,7 +183,7 @@ void FusedForces::clear_warp(const Line& line) const {
 }
 
 void FusedForces::operator()(const Vectors& x, const Vectors& v, Vectors& f) {
-  const int threads = std::clamp(grid_.nv / 16, 1, base::threads_for(grid_.particles()));
+  const int threads = base::threads_for_lines(grid_.nv, grid_.particles());
   while (std::ssize(lines_) < threads) lines_.emplace_back(length_);
   base::in_parts(threads, grid_.nv, [&](int k, std::int64_t begin, std::int64_t end) {
     evaluate(static_cast<int>(begin), static_cast<int>(end), lines_[k].line, x, v, f);
