@@ -66,7 +66,7 @@ const std::map<std::string, std::vector<std::string>> standard_headers = {
     {"stdexcept", {"invalid_argument", "out_of_range", "runtime_error"}},
     {"string", {"string", "to_string"}},
     {"string_view", {"string_view"}},
-    {"system_error", {"generic_category", "system_error"}},
+    {"system_error", {"errc", "generic_category", "system_error"}},
     {"tuple", {"apply", "tie", "tuple"}},
     {"type_traits",
      {"conditional_t", "invoke_result_t", "is_const_v", "is_constructible_v", "is_same_v", "remove_pointer_t",
