@@ -30,7 +30,9 @@ using Read = std::function<std::string(const std::string& header)>;
 
 /// Headers of the standard library, and what is used of them.
 const std::map<std::string, std::vector<std::string>> standard_headers = {
-    {"algorithm", {"clamp", "copy", "max", "min", "ranges::all_of", "ranges::find", "ranges::find_if", "sort"}},
+    {"algorithm",
+     {"clamp", "copy", "equal", "find_if", "max", "min", "ranges::all_of", "ranges::find", "ranges::find_if", "rotate",
+      "sort"}},
     {"any", {"any", "any_cast"}},
     {"array", {"array"}},
     {"atomic", {"atomic"}},
@@ -55,7 +57,7 @@ const std::map<std::string, std::vector<std::string>> standard_headers = {
     {"map", {"map"}},
     {"memory", {"make_shared", "make_unique", "shared_ptr", "unique_ptr"}},
     {"memory_resource", {"pmr::memory_resource", "pmr::unsynchronized_pool_resource"}},
-    {"mutex", {"mutex"}},
+    {"mutex", {"lock_guard", "mutex"}},
     {"new", {"bad_alloc"}},
     {"numeric", {"iota"}},
     {"optional", {"nullopt", "optional"}},
@@ -73,7 +75,7 @@ const std::map<std::string, std::vector<std::string>> standard_headers = {
       "remove_reference_t", "type_identity"}},
     {"unordered_map", {"pmr::unordered_map"}},
     {"unordered_set", {"pmr::unordered_set"}},
-    {"utility", {"exchange", "move", "pair", "swap"}},
+    {"utility", {"cmp_equal", "exchange", "move", "pair", "swap"}},
     {"variant", {"get_if", "holds_alternative", "monostate", "variant", "visit"}},
     {"vector", {"pmr::vector", "vector"}},
 };

@@ -72,12 +72,29 @@ std::string unknown_in(const model::Scene& scene) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
+/// By an edge if one of the four is pinned from end to end.
+Support support_of(const model::Scene& scene) {
+  const model::Grid& grid = scene.sheet.grid;
+  std::vector<bool> pinned(grid.particles());
+  for (const model::PinRule& rule : scene.pins)
+    for (const int i : model::pinned_particles(grid, rule)) pinned[i] = true;
+  const auto is_edge = [&](int first, int apart, int count) {
+    for (int k = 0; k < count; ++k)
+      if (!pinned[first + k * apart]) return false;
+    return true;
+  };
+  const bool along_u = is_edge(0, 1, grid.nu) || is_edge(grid.index(0, grid.nv - 1), 1, grid.nu);
+  const bool along_v = is_edge(0, grid.nu, grid.nv) || is_edge(grid.nu - 1, grid.nu, grid.nv);
+  return along_u || along_v ? Support::edge : Support::points;
+}
+
 FallingSheet numbers(const model::Scene& scene) {
   const model::Grid& grid = scene.sheet.grid;
   const model::Material& material = scene.sheet.material;
   const double size = std::max(grid.size_u, grid.size_v), g = scene.sheet.gravity.norm(), weight = material.density * size;
   const double k = material.tension.weft, d = material.damping.weft;
-  FallingSheet sheet{.particles = grid.particles(), .end = scene.end, .fall_time = std::sqrt(size / g)};
+  FallingSheet sheet{
+      .support = support_of(scene), .particles = grid.particles(), .end = scene.end, .fall_time = std::sqrt(size / g)};
   sheet.damping = d * sheet.fall_time / (weight * size);
   sheet.tension = k / (weight * g);
   const double u = 4 / (grid.spacing_u() * grid.spacing_u()), v = 4 / (grid.spacing_v() * grid.spacing_v());

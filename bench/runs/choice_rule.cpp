@@ -27,11 +27,14 @@ constexpr int measured_side = 24;                                               
 constexpr double measured_limit = measured_size / (measured_side - 1) * 1e-2;  // [s], l √(ρ/k): of velocity Verlet, undamped
 constexpr std::array<double, table_rows> measured_damping{0.05, 0.5, 1.6, 5,
                                                           16,   50,  160};  // [N s/m]; the first stands for none
-constexpr MeasuredWay measured_ways[] = {
+constexpr std::size_t measured_verlet = 7;                                  ///< among the ways
+constexpr std::array<std::array<MeasuredWay, measured_verlet + 1>, 2> measured_ways{{
 #include "bench/runs/choice_table.inc"
-};
+}};
 
-constexpr const MeasuredWay& measured_verlet = measured_ways[7];
+const MeasuredWay& measured(const FallingSheet& sheet, std::size_t way) {
+  return measured_ways[static_cast<std::size_t>(sheet.support)][way];
+}
 
 double measured_fall_time() { return std::sqrt(measured_size / measured_gravity); }
 
@@ -65,14 +68,15 @@ double interpolated(const Measured& values, const Place& damping, const Place& s
 
 // --- Ways --------------------------------------------------------------------------------------------------------------------
 
-/// What a way costs on a sheet of N particles: nanoseconds a particle, fitted to the times of results/baselines/choice.h5.
+/// What a way costs on a sheet of N particles: nanoseconds a particle, fitted to the times of results/baselines/choice.h5;
+/// setting up, to runs of one step.
 struct Nanoseconds {
   double set_up, step, update;
 };
 
 struct KnownWay {
   Way way;
-  const MeasuredWay* table;
+  std::size_t measured;  ///< place in measured_ways
   Nanoseconds costs;
   double aim = 0.8;     ///< part of the error asked for that is to be predicted: errors scatter about what is interpolated
   bool splits = false;  ///< whether its error goes with κ h²: it treats the springs as stiff in all directions
@@ -83,13 +87,13 @@ struct KnownWay {
 };
 
 const KnownWay known_ways[] = {
-    {{"sbdf2"}, &measured_ways[0], {650, 25, 0}, 0.93, true},
-    {{.method = "midpoint/fixed-point/cholesky", .loop_tolerance = 0.1}, &measured_ways[1], {600, 12, 12}, 0.8, true},
-    {{.method = "midpoint/fixed-point/cholesky", .loop_tolerance = 0.01}, &measured_ways[2], {600, 12, 12}, 0.5, true},
-    {{"midpoint"}, &measured_ways[3], {600, 3, 20.5}},
-    {{"bdf3"}, &measured_ways[4], {700, 3, 20.5}},
-    {{"bdf4"}, &measured_ways[5], {700, 3, 20.5}},
-    {{.method = "bdf2", .stage_accuracy = 1}, &measured_ways[6], {650, 3, 20.5}},
+    {{"sbdf2"}, 0, {350, 25, 0}, 0.93, true},
+    {{.method = "midpoint/fixed-point/cholesky", .loop_tolerance = 0.1}, 1, {350, 12, 12}, 0.8, true},
+    {{.method = "midpoint/fixed-point/cholesky", .loop_tolerance = 0.01}, 2, {350, 12, 12}, 0.5, true},
+    {{"midpoint"}, 3, {350, 3, 20.5}},
+    {{"bdf3"}, 4, {400, 3, 20.5}},
+    {{"bdf4"}, 5, {400, 3, 20.5}},
+    {{.method = "bdf2", .stage_accuracy = 1}, 6, {350, 3, 20.5}},
 };
 
 constexpr double aim_of_verlet = 0.9, least_fraction = 0.05;  ///< of the stability limit that is tried
@@ -130,10 +134,11 @@ double of_finer_grid(const FallingSheet& sheet) {
 /// is corrected goes by k/d.
 Prediction predicted(const KnownWay& known, const FallingSheet& sheet, const Beside& beside, int parts) {
   Prediction one{.way = known.way, .step = sheet.end / parts};
+  const MeasuredWay& table = measured(sheet, known.measured);
   const double h = one.step * beside.scale;
-  one.error = std::pow(10, log_error(*known.table, beside.damping, known.splits ? h * std::sqrt(beside.stiffer) : h));
+  one.error = std::pow(10, log_error(table, beside.damping, known.splits ? h * std::sqrt(beside.stiffer) : h));
   if (!known.splits) one.error *= of_finer_grid(sheet);
-  const double a_second = interpolated(known.table->updates, beside.ratio, place(std::log2(longest_step / h), table_steps));
+  const double a_second = interpolated(table.updates, beside.ratio, place(std::log2(longest_step / h), table_steps));
   one.updates = std::max<double>(parts, a_second * sheet.end * beside.scale);
   one.ms = known.ms(sheet.particles, parts, one.updates);
   return one;
@@ -155,7 +160,7 @@ Prediction verlet(const FallingSheet& sheet, const Beside& beside, double fracti
   Prediction one{.way = {"verlet"}, .step = sheet.end / 10, .fraction = fraction};
   const double h = std::min(fraction * sheet.limit, one.step);
   const double measured_h = sheet.damping < chaotic ? h / sheet.limit * measured_limit : h * beside.scale;
-  one.error = std::pow(10, log_error(measured_verlet, beside.damping, measured_h));
+  one.error = std::pow(10, log_error(measured(sheet, measured_verlet), beside.damping, measured_h));
   one.updates = std::ceil(sheet.end / h) + estimates;
   one.ms = 1e-6 * one.updates * (a_force + a_particle * sheet.particles);
   return one;

@@ -7,9 +7,13 @@
 
 namespace drape::bench {
 
+/// What a sheet hangs by.
+enum class Support { points, edge };
+
 /// A uniform sheet that hangs by some of its particles and falls under its weight, in the numbers that decide which method is
 /// the quickest at which error. L: its longer side, ρ: its density, g: gravity, T = √(L/g).
 struct FallingSheet {
+  Support support = Support::points;
   int particles = 0;
   double end = 0;        ///< [s]
   double fall_time = 0;  ///< T [s]

@@ -7,7 +7,6 @@
 
 #include "model/collision/exact_intersection.hpp"
 #include "model/collision/face_distance.hpp"
-#include "solver/base/threads.hpp"
 
 namespace drape::model {
 namespace {
@@ -91,20 +90,21 @@ void SelfContacts::each_pair(std::int64_t begin, std::int64_t end, const Vectors
 }
 
 template <class Found, class Compute>
-void SelfContacts::find_pairs(const Vectors& x, double reach, std::vector<Found>& found, const Compute& compute) {
+void SelfContacts::find_pairs(const Vectors& x, double reach, base::Collector<Found>& collect, std::vector<Found>& found,
+                              const Compute& compute) {
   constexpr int as_particles = 20;  // a face takes that many times as long as the forces on a particle
   found.clear();
   fit(x, reach);
   std::atomic<std::int64_t> pairs = 0;
-  base::collect(base::threads_for(as_particles * std::ssize(boxes_)), tree_.nodes(), found,
-                [&](std::int64_t begin, std::int64_t end, std::vector<Found>& part) {
-                  std::int64_t computed = 0;
-                  each_pair(begin, end, x, reach, [&](PairKind kind, const std::array<int, 4>& particles, bool may_end) {
-                    ++computed;
-                    if (const std::optional<Found> pair = compute(kind, particles, may_end)) part.push_back(*pair);
-                  });
-                  pairs += computed;
-                });
+  collect(base::threads_for(as_particles * std::ssize(boxes_)), tree_.nodes(), found,
+          [&](std::int64_t begin, std::int64_t end, std::vector<Found>& part) {
+            std::int64_t computed = 0;
+            each_pair(begin, end, x, reach, [&](PairKind kind, const std::array<int, 4>& particles, bool may_end) {
+              ++computed;
+              if (const std::optional<Found> pair = compute(kind, particles, may_end)) part.push_back(*pair);
+            });
+            pairs += computed;
+          });
   pairs_ += pairs;
 }
 
@@ -112,14 +112,15 @@ void SelfContacts::find(const Vectors& x0, const Vectors& x1, double distance, s
   way_ = x1 - x0;
   const Eigen::RowVector3d common = way_.colwise().mean();
   way_.rowwise() -= common;
-  find_pairs(x0, reached(distance), found, [&](PairKind kind, const std::array<int, 4>& particles, bool may_end) {
-    return approach(kind, particles, x0, x1, distance, may_end);
-  });
+  find_pairs(x0, reached(distance), collect_approaches_, found,
+             [&](PairKind kind, const std::array<int, 4>& particles, bool may_end) {
+               return approach(kind, particles, x0, x1, distance, may_end);
+             });
 }
 
 void SelfContacts::near(const Vectors& x, double distance, std::vector<Proximity>& found) {
   way_.setZero(x.rows(), 3);
-  find_pairs(x, distance, found, [&](PairKind kind, const std::array<int, 4>& particles, bool may_end) {
+  find_pairs(x, distance, collect_proximities_, found, [&](PairKind kind, const std::array<int, 4>& particles, bool may_end) {
     const Proximity pair = proximity(kind, particles, points_of(particles, x));
     const bool is_near = pair.distance < distance && (kind == PairKind::vertex_face || may_end || pair.is_inside());
     return is_near ? std::optional(pair) : std::nullopt;

@@ -8,6 +8,7 @@
 #include "model/collision/approach.hpp"
 #include "model/collision/box_tree.hpp"
 #include "model/collision/cloth_surface.hpp"
+#include "solver/base/threads.hpp"
 #include "solver/counters.hpp"
 
 namespace drape::model {
@@ -45,7 +46,8 @@ class SelfContacts {
 
   /// Sets `found` to what compute(kind, particles, may_end) has found for these pairs of the whole tree, and counts them.
   template <class Found, class Compute>
-  void find_pairs(const Vectors& x, double reach, std::vector<Found>& found, const Compute& compute);
+  void find_pairs(const Vectors& x, double reach, base::Collector<Found>& collect, std::vector<Found>& found,
+                  const Compute& compute);
 
   /// Calls visit(i, j, corners, corners) for pairs of triangles i < j without joined nodes that may be within `reach` at x.
   template <class Visit>
@@ -55,6 +57,8 @@ class SelfContacts {
   BoxTree tree_;
   std::vector<Eigen::AlignedBox3d> boxes_;  ///< of the faces
   Vectors way_;                             ///< of the nodes in a step, without that of all on average [m]
+  base::Collector<Approach> collect_approaches_;
+  base::Collector<Proximity> collect_proximities_;
   std::int64_t& pairs_;
 };
 

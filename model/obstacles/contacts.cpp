@@ -13,7 +13,6 @@
 
 #include "model/obstacles/mesh_shape.hpp"
 #include "model/obstacles/obstacle_at_time.hpp"
-#include "solver/base/threads.hpp"
 
 namespace drape::model {
 namespace {
@@ -129,11 +128,11 @@ void Contacts::find_half_spaces(int k, double t, const Ride& ride, const solver:
     return contact(i, k, gap, ride,
                    touch ? deforming->border(p, touch->at, distance_) : Border{rigid, rigid, last.nearest.normal});
   };
-  base::collect(base::threads_for(y.x.rows()), y.x.rows(), found,
-                [&](std::int64_t first, std::int64_t last, std::vector<solver::Contact>& part) {
-                  for (std::int64_t i = first; i < last; ++i)
-                    if (const auto met = find(static_cast<int>(i))) part.push_back(*met);
-                });
+  collect_(base::threads_for(y.x.rows()), y.x.rows(), found,
+           [&](std::int64_t first, std::int64_t last, std::vector<solver::Contact>& part) {
+             for (std::int64_t i = first; i < last; ++i)
+               if (const auto met = find(static_cast<int>(i))) part.push_back(*met);
+           });
   queries_ += queries;
 }
 

@@ -7,6 +7,7 @@
 #include "model/obstacles/obstacle.hpp"
 #include "model/obstacles/posed_mesh.hpp"
 #include "model/sheet/grid.hpp"
+#include "solver/base/threads.hpp"
 #include "solver/split_ode.hpp"
 
 namespace drape::model {
@@ -157,6 +158,7 @@ class Contacts {
   double moment_;  ///< [s]: obstacles move uniformly between key frames
   Eigen::Vector3d gravity_;
   std::vector<std::vector<Answer>> answers_;  ///< for each obstacle and particle
+  base::Collector<solver::Contact> collect_;
   std::int64_t& queries_;
   std::int64_t *rays_ = nullptr, *boxes_ = nullptr;  ///< counters, if rays are cast
 };

@@ -39,16 +39,28 @@ void each_in_parts(int threads, std::int64_t count, const F& f) {
   });
 }
 
-/// Appends to `all` what f(begin, end, part) appends to its part, for parts of [0, count) in their order. Threads take the next
-/// part when they are done with one.
-template <class T, class F>
-void collect(int threads, std::int64_t count, std::vector<T>& all, const F& f) {
-  if (threads == 1) return f(std::int64_t{0}, count, all);
-  const std::int64_t parts = std::int64_t{16} * threads;
-  std::vector<std::vector<T>> found(parts);
+/// Collects what parts of a loop find, in their order. Memory is kept from loop to loop: that of new pages takes longer than
+/// what threads save.
+template <class T>
+class Collector {
+ public:
+  /// Appends to `all` what f(begin, end, part) appends to its part, for parts of [0, count). Threads take the next part when
+  /// they are done with one.
+  template <class F>
+  void operator()(int threads, std::int64_t count, std::vector<T>& all, const F& f) {
+    if (threads == 1) return f(std::int64_t{0}, count, all);
+    const std::int64_t parts = std::int64_t{16} * threads;
+    found_.resize(parts);
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
-  for (std::int64_t k = 0; k < parts; ++k) f(count * k / parts, count * (k + 1) / parts, found[k]);
-  for (const std::vector<T>& part : found) all.insert(all.end(), part.begin(), part.end());
-}
+    for (std::int64_t k = 0; k < parts; ++k) {
+      found_[k].clear();
+      f(count * k / parts, count * (k + 1) / parts, found_[k]);
+    }
+    for (const std::vector<T>& part : found_) all.insert(all.end(), part.begin(), part.end());
+  }
+
+ private:
+  std::vector<std::vector<T>> found_;
+};
 
 }  // namespace drape::base

@@ -1,23 +1,23 @@
+#include <memory>
 #include <new>
 #include <numeric>
 #include <vector>
 
 #include "solver/linear/cholmod_view.hpp"
+#include "solver/linear/pattern_cache.hpp"
 #include "solver/linear/preconditioner.hpp"
 #include "solver/linear/triangle.hpp"
 
 namespace drape::solver {
 namespace {
 
-/// The complete factor P A Pᵀ = L D Lᵀ: CHOLMOD orders and factors, the substitutions are our own.
+/// CHOLMOD's settings and memory.
 ///
-/// Simplicial: the matrices of sheets up to some 300 × 300 are too sparse for supernodes to pay. Both substitutions gather from
-/// rows in their own order, so L is stored twice; they process three coordinates at a time. They take a third to half the time
-/// of CHOLMOD's, which copies and permutes. Nested dissection would fill 5 % less at 100 × 100 and takes 10 times as long to
-/// order.
-class Cholesky : public Preconditioner {
+/// Simplicial: the matrices of sheets up to some 300 × 300 are too sparse for supernodes to pay. Nested dissection would fill
+/// 5 % less at 100 × 100 and takes 10 times as long to order.
+class Cholmod {
  public:
-  Cholesky() {
+  Cholmod() {
     cholmod_start(&common_);
     common_.supernodal = CHOLMOD_SIMPLICIAL;
     common_.nmethods = 1;
@@ -25,18 +25,43 @@ class Cholesky : public Preconditioner {
     common_.final_ll = 1;  // so that a matrix that is not positive definite is reported
     common_.print = 0;     // outcomes are returned, not printed
   }
-  ~Cholesky() override {
-    cholmod_free_factor(&factor_, &common_);
+  ~Cholmod() {
+    cholmod_free_factor(&factor, &common_);
     cholmod_finish(&common_);
   }
-  Cholesky(const Cholesky&) = delete;
-  Cholesky& operator=(const Cholesky&) = delete;
+  Cholmod(const Cholmod&) = delete;
+  Cholmod& operator=(const Cholmod&) = delete;
 
+  cholmod_common* common() { return &common_; }
+
+  cholmod_factor* factor = nullptr;
+
+ private:
+  cholmod_common common_{};
+};
+
+/// The ordering, and how many entries columns have.
+std::shared_ptr<const Cholmod> analysis(const SparseMatrix& A) {
+  auto result = std::make_shared<Cholmod>();
+  cholmod_sparse view = cholmod_view(A);
+  result->factor = cholmod_analyze(&view, result->common());
+  if (result->factor == nullptr) throw std::bad_alloc();
+  return result;
+}
+
+PatternCache<Cholmod> analyses;
+
+/// The complete factor P A Pᵀ = L D Lᵀ: CHOLMOD orders and factors, the substitutions are our own.
+///
+/// Both substitutions gather from rows in their own order, so L is stored twice; they process three coordinates at a time. They
+/// take a third to half the time of CHOLMOD's, which copies and permutes.
+class Cholesky : public Preconditioner {
+ public:
   void analyse(const SparseMatrix& A) override {
-    cholmod_free_factor(&factor_, &common_);
-    cholmod_sparse view = cholmod_view(A);
-    factor_ = cholmod_analyze(&view, &common_);
-    if (factor_ == nullptr) throw std::bad_alloc();
+    const std::shared_ptr<const Cholmod> known = analyses.of(A, [&] { return analysis(A); });
+    cholmod_free_factor(&own_.factor, own_.common());
+    own_.factor = cholmod_copy_factor(known->factor, own_.common());
+    if (own_.factor == nullptr) throw std::bad_alloc();
     inverse_.resize(A.rows());
     work_.assign(A.rows(), Lanes::Zero());
     forward_.row.resize(A.rows());
@@ -46,15 +71,15 @@ class Cholesky : public Preconditioner {
 
   Outcome factor(const SparseMatrix& A) override {
     cholmod_sparse view = cholmod_view(A);
-    cholmod_factorize(&view, factor_, &common_);
-    if (common_.status != CHOLMOD_OK) return Outcome::breakdown;
+    cholmod_factorize(&view, own_.factor, own_.common());
+    if (own_.common()->status != CHOLMOD_OK) return Outcome::breakdown;
     take_factor();
     return Outcome::success;
   }
 
   double apply(const Vectors& r, Vectors& z) override {
     const LaneRows residual(r);
-    const int* const permuted = static_cast<int*>(factor_->Perm);
+    const int* const permuted = static_cast<int*>(own_.factor->Perm);
     Lanes rz = Lanes::Zero();  // <r, z> = <w, D⁻¹ w> half way
     eliminate(
         forward_, work_, [&](int i) { return residual[permuted[i]]; },
@@ -76,8 +101,7 @@ class Cholesky : public Preconditioner {
  private:
   void take_factor();
 
-  cholmod_common common_{};
-  cholmod_factor* factor_ = nullptr;
+  Cholmod own_;
   Triangle forward_, backward_;  // L with unit diagonal and its transpose
   std::vector<double> inverse_;  // D⁻¹
   std::vector<Lanes> work_;
@@ -85,10 +109,10 @@ class Cholesky : public Preconditioner {
 
 /// Takes CHOLMOD's columns of G = L √D apart. Within a row the most recently computed unknowns come last, to avoid stalls.
 void Cholesky::take_factor() {
-  const int n = static_cast<int>(factor_->n);
-  const int *const begin = static_cast<int*>(factor_->p), *const count = static_cast<int*>(factor_->nz);
-  const int* const row = static_cast<int*>(factor_->i);
-  const double* const G = static_cast<double*>(factor_->x);  // the diagonal first in each column
+  const int n = static_cast<int>(own_.factor->n);
+  const int *const begin = static_cast<int*>(own_.factor->p), *const count = static_cast<int*>(own_.factor->nz);
+  const int* const row = static_cast<int*>(own_.factor->i);
+  const double* const G = static_cast<double*>(own_.factor->x);  // the diagonal first in each column
 
   forward_.start.assign(n + 1, 0);
   for (int j = 0; j < n; ++j)

@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <new>
 #include <utility>
+
+#include "solver/linear/pattern_cache.hpp"
 
 namespace drape::solver {
 namespace {
@@ -14,20 +17,39 @@ namespace {
 /// Rows with the 64 bit indices of KLU's long interface.
 using LongSparseMatrix = Eigen::SparseMatrix<double, Eigen::RowMajor, std::int64_t>;
 
+/// KLU's ordering.
+class Symbolic {
+ public:
+  explicit Symbolic(const LongSparseMatrix& A) {
+    klu_l_defaults(&common_);
+    // KLU takes pointers to what it only reads.
+    symbolic_ = klu_l_analyze(A.rows(), const_cast<std::int64_t*>(A.outerIndexPtr()),
+                              const_cast<std::int64_t*>(A.innerIndexPtr()), &common_);
+    if (symbolic_ == nullptr) throw std::bad_alloc();
+  }
+  ~Symbolic() { klu_l_free_symbolic(&symbolic_, &common_); }
+  Symbolic(const Symbolic&) = delete;
+  Symbolic& operator=(const Symbolic&) = delete;
+
+  klu_l_symbolic* get() const { return symbolic_; }
+
+ private:
+  klu_l_common common_{};
+  klu_l_symbolic* symbolic_ = nullptr;
+};
+
+PatternCache<Symbolic, std::int64_t> orderings;
+
 }  // namespace
 
 /// KLU is given the transpose: our rows are its columns.
 class KluFactor::Factors {
  public:
-  explicit Factors(const LongSparseMatrix& A) : A_(A) {
+  explicit Factors(const LongSparseMatrix& A)
+      : A_(A), symbolic_(orderings.of(A_, [&] { return std::make_shared<const Symbolic>(A_); })) {
     klu_l_defaults(&common_);
-    symbolic_ = klu_l_analyze(A_.rows(), A_.outerIndexPtr(), A_.innerIndexPtr(), &common_);
-    if (symbolic_ == nullptr) throw std::bad_alloc();
   }
-  ~Factors() {
-    klu_l_free_numeric(&numeric_, &common_);
-    klu_l_free_symbolic(&symbolic_, &common_);
-  }
+  ~Factors() { klu_l_free_numeric(&numeric_, &common_); }
   Factors(const Factors&) = delete;
   Factors& operator=(const Factors&) = delete;
 
@@ -44,24 +66,24 @@ class KluFactor::Factors {
     std::copy_n(values, A_.nonZeros(), A_.valuePtr());
     if (numeric_ != nullptr && refactored()) return true;
     klu_l_free_numeric(&numeric_, &common_);
-    numeric_ = klu_l_factor(A_.outerIndexPtr(), A_.innerIndexPtr(), A_.valuePtr(), symbolic_, &common_);
+    numeric_ = klu_l_factor(A_.outerIndexPtr(), A_.innerIndexPtr(), A_.valuePtr(), symbolic_->get(), &common_);
     return numeric_ != nullptr;
   }
 
-  void solve(double* b, Eigen::Index size) { klu_l_tsolve(symbolic_, numeric_, size, 1, b, &common_); }
+  void solve(double* b, Eigen::Index size) { klu_l_tsolve(symbolic_->get(), numeric_, size, 1, b, &common_); }
 
   std::int64_t bytes() const { return (numeric_->lnz + numeric_->unz) * (sizeof(double) + sizeof(std::int64_t)); }
 
  private:
   bool refactored() {
     const double singular = std::pow(std::numeric_limits<double>::epsilon(), 2.0 / 3);
-    return klu_l_refactor(A_.outerIndexPtr(), A_.innerIndexPtr(), A_.valuePtr(), symbolic_, numeric_, &common_) != 0 &&
-           klu_l_rcond(symbolic_, numeric_, &common_) != 0 && common_.rcond > singular;
+    return klu_l_refactor(A_.outerIndexPtr(), A_.innerIndexPtr(), A_.valuePtr(), symbolic_->get(), numeric_, &common_) != 0 &&
+           klu_l_rcond(symbolic_->get(), numeric_, &common_) != 0 && common_.rcond > singular;
   }
 
   LongSparseMatrix A_;
+  std::shared_ptr<const Symbolic> symbolic_;
   klu_l_common common_{};
-  klu_l_symbolic* symbolic_ = nullptr;
   klu_l_numeric* numeric_ = nullptr;
 };
 

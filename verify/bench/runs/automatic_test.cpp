@@ -63,6 +63,20 @@ TEST(Choice, GoesBySize) {
       << "more and shorter sub-steps";
 }
 
+/// Strong damping lets a sheet creep about its corners: along an edge errors are smaller, so that steps are longer.
+TEST(Choice, KnowsSheetsThatHangByAnEdge) {
+  const auto step_with = [](const std::string& pins) {
+    return chosen("hung-edge", {{"grid.n", "12"}, {"material.damping", "50"}, {"pins", pins}}, 1e-6).step;
+  };
+  const double of_edge = step_with("[{ where = 'upper edge' }]"), of_corners = step_with("[{ where = 'upper corners' }]");
+  EXPECT_GT(of_edge, 1.5 * of_corners);
+  EXPECT_EQ(step_with("[{ where = 'left edge' }]"), of_edge);
+  EXPECT_EQ(step_with("[{ particles = [[1, 11], [2, 11], [3, 11], [4, 11], [5, 11], [6, 11], [7, 11], [8, 11], [9, 11], "
+                      "[10, 11], [11, 11]] }]"),
+            of_corners)
+      << "one is missing";
+}
+
 TEST(Choice, IsTheSameEachTimeAndSaysWhichNumbersDecided) {
   const RunSpec one = chosen("hung-edge", {{"material.damping", "5"}}, 1e-3),
                 other = chosen("hung-edge", {{"material.damping", "5"}}, 1e-3);
