@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -32,15 +33,18 @@ struct SizedCloth {
   model::Scene scene;
   Search search = Search::usual;
   Effort effort = {};
+  std::string smaller = {};  ///< the name of the sheet half as large, if what is far from its fronts is left out here
 };
+
+constexpr int large = 100;  ///< particles a side from which references and searches of smaller sheets would take hours
 
 SizedCloth sheet(double damping, int n, bool small, bool quick) {
   std::vector<model::Override> overrides{{"material.damping", fmt::format("{}", damping)}, {"grid.n", fmt::format("{}", n)}};
   if (quick) overrides.push_back({"end.time", "0.1"});
-  SizedCloth all{fmt::format("hung-corners d={:g} n={}", damping, n), damping, small,
-                 model::load_scene("hung-corners", overrides)};
-  all.effort.limits.seconds = std::max(1.0, n * n / 1600.0);
-  if (n > 100) all.effort.repetitions = 3;
+  const auto name = [&](int side) { return fmt::format("hung-corners d={:g} n={}", damping, side); };
+  SizedCloth all{name(n), damping, small, model::load_scene("hung-corners", overrides)};
+  all.effort.limits.seconds = std::max(1.0, n * n / 3200.0);
+  if (n > (quick ? 8 : large)) all.smaller = name(n / 2), all.effort.repetitions = 3;
   if (quick) all.search = Search::quick, all.effort = {.limits = {.seconds = 0.1}, .repetitions = 3};
   return all;
 }
@@ -53,7 +57,7 @@ SizedCloth garment(const char* name, double damping, std::vector<model::Override
 std::vector<SizedCloth> sized_cloths(bool quick) {
   std::vector<SizedCloth> all;
   for (const double damping : {50.0, 5.0, 0.5}) {
-    const std::vector<int> sizes = quick ? std::vector{5, 8} : std::vector{20, 40, 80, 160, 320};
+    const std::vector<int> sizes = quick ? std::vector{5, 10} : std::vector{20, 40, 80, 160, 320};
     for (const int n : sizes) all.push_back(sheet(damping, n, n == sizes.front(), quick));
     if (quick) return all;
   }
@@ -76,16 +80,47 @@ struct ClothRuns {
   SceneRuns runs;
 };
 
-void run_cloth(ClothRuns& one, Checkpoint& checkpoint) {
+/// Whether on a cloth it takes at most four times as long as the quickest of its side, ours or SUNDIALS, at any error.
+bool is_near_a_front(const SceneRuns& runs, const Configuration& one) {
+  constexpr double near = 4;
+  const Contender side = one.is_ours() ? &Configuration::is_ours : &Configuration::is_sundials;
+  const auto is_near = [&](double error) {
+    const Winner best = winner(runs, side, error);
+    return std::ranges::any_of(runs.runs, [&](const ComparedRun& run) {
+      return run.configuration->name == one.name && run.counts() && run.measured.error <= error &&
+             base::quantile(run.measured.times, 0.5) <= near * best.time;
+    });
+  };
+  return std::ranges::any_of(levels(runs.problem), is_near);
+}
+
+/// `smaller`: the runs of the cloth of this name, if it has one.
+void run_cloth(ClothRuns& one, const SceneRuns* smaller, Checkpoint& checkpoint) {
   const SizedCloth& cloth = one.cloth;
   SceneRuns& runs = one.runs;
   checkpoint.begin(cloth.name);
   checkpoint.show("reference of " + cloth.name);
-  runs.problem = certified_problem(cloth.name, cloth.scene, checkpoint);
+  runs.problem = (smaller != nullptr ? stepped_problem : certified_problem)(cloth.name, cloth.scene, checkpoint);
   runs.configurations = searched_for(cloth);
+  if (smaller != nullptr)
+    std::erase_if(runs.configurations, [&](const Configuration& which) { return !is_near_a_front(*smaller, which); });
   runs.runs = run_all(runs.problem, runs.configurations, cloth.effort, checkpoint);
   checkpoint.show("timing " + cloth.name);
   time_fronts(runs.problem, runs.runs, cloth.effort, {}, checkpoint);
+}
+
+std::vector<ClothRuns> run_cloths(const std::vector<SizedCloth>& list, Checkpoint& checkpoint) {
+  std::vector<ClothRuns> all;
+  all.reserve(list.size());  // runs point into what is in it
+  std::map<std::string, const SceneRuns*> done;
+  checkpoint.each(list, [&](const SizedCloth& cloth) {
+    ClothRuns& one = all.emplace_back(ClothRuns{cloth, {}});
+    const auto smaller = done.find(cloth.smaller);
+    if (smaller == done.end() && !cloth.smaller.empty()) throw ComputedElsewhere();
+    run_cloth(one, smaller == done.end() ? nullptr : smaller->second, checkpoint);
+    done[cloth.name] = &one.runs;
+  });
+  return all;
 }
 
 /// The quickest of ours with automatic solvers, and what controls it.
@@ -206,7 +241,7 @@ std::vector<Job> sizes(const Question& question) {
   int parts = 0;
   for (const SizedCloth& cloth : list) parts += static_cast<int>(searched_for(cloth).size());
   return {job(
-      "size", parts, [=](Checkpoint& checkpoint) { return run_each<ClothRuns>(list, run_cloth, checkpoint); }, tables_of)};
+      "size", parts, [=](Checkpoint& checkpoint) { return run_cloths(list, checkpoint); }, tables_of)};
 }
 
 }  // namespace drape::bench

@@ -15,9 +15,9 @@ struct LinearChoice {
   /// times as long as with the factor.
   static constexpr int most_factored_without_grid = 200'000;
 
-  /// Newton matrices. From 30 × 30 on conjugate gradients take two thirds to a third of the factor's time on lightly damped
-  /// sheets; on undamped ones of numerical stiffness 1e7, where springs are slack, they take twice its time there and about the
-  /// same at 100 × 100.
+  /// Newton matrices. On lightly damped sheets factors take two thirds of the time of conjugate gradients at 50 × 50 and
+  /// nine tenths at 100 × 100; on undamped ones, where nearly every update needs its own, twice their time at 50 × 50 and 70
+  /// × 70.
   static constexpr int most_factored_newton = 2'500;
 
   /// Numerical stiffness below which two or three iterations suffice, however large the sheet is.

@@ -108,42 +108,78 @@ void set_truth(Problem& problem, Checkpoint& checkpoint) {
   }
 }
 
+using Positions = std::vector<solver::Vectors>;
+
+/// What a run comes to at the times of a problem.
+Positions positions_of(const Problem& problem, const RunSpec& spec) {
+  Samples samples(problem.times);
+  Observer* const observers[] = {&samples};
+  const solver::RunResult result = run(spec, model::compile(problem.scene), observers).result;
+  if (result.outcome != solver::Outcome::success) throw std::runtime_error(spec.method_name() + ": " + result.message);
+  return reference::positions_of(std::move(samples).states());
+}
+
 /// Velocity Verlet, at a fraction of its stability limit, and extrapolated from twice that.
-std::vector<solver::Vectors> leapfrog(const Problem& problem, double fraction) {
+Positions leapfrog(const Problem& problem, double fraction) {
   const auto positions = [&](double part) {
     RunSpec spec{problem.scene, "", &solver::method("verlet"), problem.times.front(), {}};
     spec.options.verlet_fraction = part;
-    Samples samples(problem.times);
-    Observer* const observers[] = {&samples};
-    const solver::RunResult result = run(spec, model::compile(problem.scene), observers).result;
-    if (result.outcome != solver::Outcome::success) throw std::runtime_error("verlet: " + result.message);
-    return reference::positions_of(std::move(samples).states());
+    return positions_of(problem, spec);
   };
-  auto fine = positions(fraction);
-  const auto coarse = positions(2 * fraction);
+  Positions fine = positions(fraction);
+  const Positions coarse = positions(2 * fraction);
   for (std::size_t k = 0; k < fine.size(); ++k) fine[k] += (fine[k] - coarse[k]) / 3;
   return fine;
 }
 
-/// Large undamped sheets are beyond those solvers' factorisations, but not stiff: two explicit ones.
-struct ExplicitTruth {
-  std::vector<solver::Vectors> positions;
-  double uncertainty = 0;  ///< [m]
+struct SteppedTruth {
+  Positions positions;
+  double uncertainty = 0;  ///< what the two that it rests on differ by [m]
 };
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ExplicitTruth, positions, uncertainty)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SteppedTruth, positions, uncertainty)
 
-ExplicitTruth compute_explicit_truth(const Problem& problem, double rtol) {
-  constexpr double fraction = 0.1;
-  ExplicitTruth truth{leapfrog(problem, fraction)};
-  const model::Cloth cloth = model::compile(problem.scene);
-  const reference::SolveOptions options{.rtol = rtol, .size = model::size(problem.scene), .max_order = 4};
-  const auto witness = reference::arkode_erk(cloth.ode, cloth.start, 0, problem.times, options).states;
+SteppedTruth truth_beside(Positions positions, const Positions& witness) {
+  SteppedTruth truth{std::move(positions)};
   for (std::size_t k = 0; k < witness.size(); ++k)
-    truth.uncertainty = base::larger(truth.uncertainty, reference::rms_distance(truth.positions[k], witness[k].x));
+    truth.uncertainty = base::larger(truth.uncertainty, reference::rms_distance(truth.positions[k], witness[k]));
   return truth;
 }
 
-void set_explicit_truth(Problem& problem, const ExplicitTruth& truth) {
+/// Large undamped sheets are beyond those solvers' factorisations, but not stiff: two explicit ones.
+SteppedTruth compute_explicit_truth(const Problem& problem, double rtol) {
+  constexpr double fraction = 0.1;
+  const model::Cloth cloth = model::compile(problem.scene);
+  const reference::SolveOptions options{.rtol = rtol, .size = model::size(problem.scene), .max_order = 4};
+  const auto witness = reference::arkode_erk(cloth.ode, cloth.start, 0, problem.times, options).states;
+  return truth_beside(leapfrog(problem, fraction), reference::positions_of(witness));
+}
+
+SteppedTruth compute_stepped_truth(const Problem& problem, Checkpoint& checkpoint) {
+  constexpr double agreement = 1e-8, stages = 0.01;
+  const auto by = [&](const char* method, int parts) {
+    RunSpec spec{problem.scene, "", &solver::method(method), problem.times.back() / parts, {}};
+    spec.options.stage_accuracy = stages;
+    checkpoint.report(fmt::format("reference of {}: {} with {} steps", problem.name, method, parts));
+    return positions_of(problem, spec);
+  };
+  constexpr int fewest = 400, most = 6400;
+  for (int parts = fewest;; parts *= 2) {
+    SteppedTruth truth = truth_beside(by("bdf5", parts), by("esdirk4", parts));
+    if (truth.uncertainty <= agreement * model::size(problem.scene) || parts >= most) return truth;
+  }
+}
+
+/// A problem with a truth that compute() gives, or a checkpoint.
+template <class Compute>
+Problem problem_by(const std::string& name, const model::Scene& scene, Checkpoint& checkpoint, const Compute& compute) {
+  Problem result = problem({name, scene});
+  const SteppedTruth truth = checkpoint.once("truth", [&] { return compute(result); });
+  result.truth = truth.positions;
+  result.uncertainty = truth.uncertainty / result.length;
+  return result;
+}
+
+void set_explicit_truth(Problem& problem, const SteppedTruth& truth) {
   problem.truth = truth.positions;
   problem.uncertainty = truth.uncertainty;
   problem.length = 1;  // errors in metres, as those of the bars
@@ -237,11 +273,11 @@ Problem certified_problem(const std::string& name, const model::Scene& scene, Ch
 }
 
 Problem explicit_problem(const std::string& name, const model::Scene& scene, Checkpoint& checkpoint) {
-  Problem result = problem({name, scene});
-  const ExplicitTruth truth = checkpoint.once("truth", [&] { return compute_explicit_truth(result, 1e-7); });
-  result.truth = truth.positions;
-  result.uncertainty = truth.uncertainty / result.length;
-  return result;
+  return problem_by(name, scene, checkpoint, [](const Problem& one) { return compute_explicit_truth(one, 1e-7); });
+}
+
+Problem stepped_problem(const std::string& name, const model::Scene& scene, Checkpoint& checkpoint) {
+  return problem_by(name, scene, checkpoint, [&](const Problem& one) { return compute_stepped_truth(one, checkpoint); });
 }
 
 std::vector<Job> work_precision(const Question& question) {
