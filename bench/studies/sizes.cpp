@@ -31,7 +31,7 @@ struct SizedCloth {
   double damping = 0;  ///< of the sheets with which it shares the ratio of stiffness and damping [N s/m]
   bool small = false;  ///< whether it is the one that others are compared with
   model::Scene scene;
-  Search search = Search::usual;
+  Search search = Search::full;
   Effort effort = {};
   std::string smaller = {};  ///< the name of the sheet half as large, if what is far from its fronts is left out here
 };
@@ -51,7 +51,7 @@ SizedCloth sheet(double damping, int n, bool small, bool quick) {
 
 SizedCloth garment(const char* name, double damping, std::vector<model::Override> overrides) {
   overrides.insert(overrides.end(), {{"obstacles", "[]"}, {"end.time", "0.5"}});
-  return {.name = name, .damping = damping, .scene = model::load_scene(name, overrides)};
+  return {.name = name, .damping = damping, .scene = model::load_scene(name, overrides), .search = Search::usual};
 }
 
 std::vector<SizedCloth> sized_cloths(bool quick) {
