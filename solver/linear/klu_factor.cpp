@@ -17,8 +17,10 @@ namespace {
 /// Rows with the 64 bit indices of KLU's long interface.
 using LongSparseMatrix = Eigen::SparseMatrix<double, Eigen::RowMajor, std::int64_t>;
 
+}  // namespace
+
 /// KLU's ordering.
-class Symbolic {
+class KluFactor::Symbolic {
  public:
   explicit Symbolic(const LongSparseMatrix& A) {
     klu_l_defaults(&common_);
@@ -38,15 +40,12 @@ class Symbolic {
   klu_l_symbolic* symbolic_ = nullptr;
 };
 
-PatternCache<Symbolic, std::int64_t> orderings;
-
-}  // namespace
-
 /// KLU is given the transpose: our rows are its columns.
 class KluFactor::Factors {
  public:
-  explicit Factors(const LongSparseMatrix& A)
-      : A_(A), symbolic_(orderings.of(A_, [&] { return std::make_shared<const Symbolic>(A_); })) {
+  explicit Factors(const LongSparseMatrix& A) : A_(A) {
+    static PatternCache<Symbolic, std::int64_t> orderings;
+    symbolic_ = orderings.of(A_, [&] { return std::make_shared<const Symbolic>(A_); });
     klu_l_defaults(&common_);
   }
   ~Factors() { klu_l_free_numeric(&numeric_, &common_); }

@@ -29,6 +29,7 @@ class KluFactor {
   std::int64_t bytes() const;
 
  private:
+  class Symbolic;
   class Factors;
 
   std::int64_t& analyses_;
