@@ -16,8 +16,7 @@ struct LinearChoice {
   static constexpr int most_factored_without_grid = 200'000;
 
   /// Newton matrices. On lightly damped sheets factors take two thirds of the time of conjugate gradients at 50 × 50 and
-  /// nine tenths at 100 × 100; on undamped ones, where nearly every update needs its own, twice their time at 50 × 50 and 70
-  /// × 70.
+  /// nine tenths at 100 × 100; on undamped ones 1.6 to 2.1 times as long at 50 × 50 and 70 × 70.
   static constexpr int most_factored_newton = 2'500;
 
   /// Numerical stiffness below which two or three iterations suffice, however large the sheet is.
