@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bench/studies/studies.hpp"
@@ -28,41 +29,41 @@ using results::Role;
 /// A sheet hung by two corners, or a garment that hangs, without a body.
 struct SizedCloth {
   std::string name;
-  double damping = 0;  ///< of the sheets with which it shares the ratio of stiffness and damping [N s/m]
-  bool small = false;  ///< whether it is the one that others are compared with
+  std::string smallest;  ///< the name of the sheet whose choice is tried here, of the same stiffness and damping
   model::Scene scene;
   Search search = Search::full;
   Effort effort = {};
-  std::string smaller = {};  ///< the name of the sheet half as large, if what is far from its fronts is left out here
+  std::string smaller = {};  ///< the name of the sheet half as large: what is far from its fronts is left out here
+  bool stepped = false;      ///< whether its truth is of halved steps: certificates would take hours
 };
 
-constexpr int large = 100;  ///< particles a side from which references and searches of smaller sheets would take hours
+std::string name_of_sheet(double damping, int n) { return fmt::format("hung-corners d={:g} n={}", damping, n); }
 
-SizedCloth sheet(double damping, int n, bool small, bool quick) {
+SizedCloth sheet(double damping, int n, int smallest, bool quick) {
   std::vector<model::Override> overrides{{"material.damping", fmt::format("{}", damping)}, {"grid.n", fmt::format("{}", n)}};
   if (quick) overrides.push_back({"end.time", "0.1"});
-  const auto name = [&](int side) { return fmt::format("hung-corners d={:g} n={}", damping, side); };
-  SizedCloth all{name(n), damping, small, model::load_scene("hung-corners", overrides)};
+  SizedCloth all{name_of_sheet(damping, n), name_of_sheet(damping, smallest), model::load_scene("hung-corners", overrides)};
   all.effort.limits.seconds = std::max(1.0, n * n / 3200.0);
-  if (n > (quick ? 8 : large)) all.smaller = name(n / 2), all.effort.repetitions = 3;
+  all.stepped = n > (quick ? 8 : 100);
+  if (n > smallest) all.smaller = name_of_sheet(damping, n / 2);
+  if (all.stepped) all.effort.repetitions = 3;
   if (quick) all.search = Search::quick, all.effort = {.limits = {.seconds = 0.1}, .repetitions = 3};
   return all;
 }
 
-SizedCloth garment(const char* name, double damping, std::vector<model::Override> overrides) {
+SizedCloth garment(const char* name, std::string smallest, std::vector<model::Override> overrides) {
   overrides.insert(overrides.end(), {{"obstacles", "[]"}, {"end.time", "0.5"}});
-  return {.name = name, .damping = damping, .scene = model::load_scene(name, overrides), .search = Search::usual};
+  return {.name = name, .smallest = std::move(smallest), .scene = model::load_scene(name, overrides), .search = Search::usual};
 }
 
 std::vector<SizedCloth> sized_cloths(bool quick) {
   std::vector<SizedCloth> all;
-  for (const double damping : {50.0, 5.0, 0.5}) {
-    const std::vector<int> sizes = quick ? std::vector{5, 10} : std::vector{20, 40, 80, 160, 320};
-    for (const int n : sizes) all.push_back(sheet(damping, n, n == sizes.front(), quick));
-    if (quick) return all;
-  }
-  all.push_back(garment("skirt", 5, {}));
-  all.push_back(garment("dress", 50,
+  const std::vector<int> sizes = quick ? std::vector{5, 10} : std::vector{20, 40, 80, 160, 320};
+  for (const double damping : quick ? std::vector{50.0} : std::vector{50.0, 5.0, 0.5})
+    for (const int n : sizes) all.push_back(sheet(damping, n, sizes.front(), quick));
+  if (quick) return all;
+  all.push_back(garment("skirt", name_of_sheet(5, sizes.front()), {}));
+  all.push_back(garment("dress", name_of_sheet(50, sizes.front()),
                         {{"pins",
                           "[{ panel = 'right strap', particles = [[5, 1], [6, 1]] }, "
                           "{ panel = 'left strap', particles = [[5, 1], [6, 1]] }]"}}));
@@ -94,16 +95,29 @@ bool is_near_a_front(const SceneRuns& runs, const Configuration& one) {
   return std::ranges::any_of(levels(runs.problem), is_near);
 }
 
-/// `smaller`: the runs of the cloth of this name, if it has one.
-void run_cloth(ClothRuns& one, const SceneRuns* smaller, Checkpoint& checkpoint) {
-  const SizedCloth& cloth = one.cloth;
-  SceneRuns& runs = one.runs;
+/// The quickest of ours with automatic solvers, and what controls it.
+DefaultChoice quickest_choice(const SceneRuns& scene, double error) {
+  const Winner best = winner(scene, &Configuration::is_default, error);
+  return best ? DefaultChoice{best.run->configuration->by_default, best.run->configuration->control} : DefaultChoice{};
+}
+
+/// The runs of cloths that others follow, by name.
+using RunsByName = std::map<std::string, const SceneRuns*>;
+
+/// Whether it is worth its time on a cloth: near a front of the sheet half as large, or the choice of the smallest sheet.
+bool is_worth_trying(const RunsByName& done, const SizedCloth& cloth, const Configuration& one) {
+  const SceneRuns &smaller = *done.at(cloth.smaller), &smallest = *done.at(cloth.smallest);
+  return is_near_a_front(smaller, one) ||
+         std::ranges::any_of(levels(smallest.problem), [&](double error) { return quickest_choice(smallest, error)(one); });
+}
+
+void run_cloth(const SizedCloth& cloth, SceneRuns& runs, const RunsByName& done, Checkpoint& checkpoint) {
   checkpoint.begin(cloth.name);
   checkpoint.show("reference of " + cloth.name);
-  runs.problem = (smaller != nullptr ? stepped_problem : certified_problem)(cloth.name, cloth.scene, checkpoint);
+  runs.problem = (cloth.stepped ? stepped_problem : certified_problem)(cloth.name, cloth.scene, checkpoint);
   runs.configurations = searched_for(cloth);
-  if (smaller != nullptr)
-    std::erase_if(runs.configurations, [&](const Configuration& which) { return !is_near_a_front(*smaller, which); });
+  if (!cloth.smaller.empty())
+    std::erase_if(runs.configurations, [&](const Configuration& one) { return !is_worth_trying(done, cloth, one); });
   runs.runs = run_all(runs.problem, runs.configurations, cloth.effort, checkpoint);
   checkpoint.show("timing " + cloth.name);
   time_fronts(runs.problem, runs.runs, cloth.effort, {}, checkpoint);
@@ -112,21 +126,14 @@ void run_cloth(ClothRuns& one, const SceneRuns* smaller, Checkpoint& checkpoint)
 std::vector<ClothRuns> run_cloths(const std::vector<SizedCloth>& list, Checkpoint& checkpoint) {
   std::vector<ClothRuns> all;
   all.reserve(list.size());  // runs point into what is in it
-  std::map<std::string, const SceneRuns*> done;
+  RunsByName done;
   checkpoint.each(list, [&](const SizedCloth& cloth) {
-    ClothRuns& one = all.emplace_back(ClothRuns{cloth, {}});
-    const auto smaller = done.find(cloth.smaller);
-    if (smaller == done.end() && !cloth.smaller.empty()) throw ComputedElsewhere();
-    run_cloth(one, smaller == done.end() ? nullptr : smaller->second, checkpoint);
-    done[cloth.name] = &one.runs;
+    if (!cloth.smaller.empty() && !done.contains(cloth.smaller)) throw ComputedElsewhere();
+    SceneRuns& runs = all.emplace_back(ClothRuns{cloth, {}}).runs;
+    run_cloth(cloth, runs, done, checkpoint);
+    done[cloth.name] = &runs;
   });
   return all;
-}
-
-/// The quickest of ours with automatic solvers, and what controls it.
-DefaultChoice quickest_choice(const SceneRuns& scene, double error) {
-  const Winner best = winner(scene, &Configuration::is_default, error);
-  return best ? DefaultChoice{best.run->configuration->by_default, best.run->configuration->control} : DefaultChoice{};
 }
 
 /// A cloth at an error.
@@ -147,8 +154,8 @@ struct Level {
 std::vector<Level> levels_of(const std::vector<ClothRuns>& all) {
   std::vector<Level> rows;
   for (const ClothRuns& one : all) {
-    const auto small = std::ranges::find_if(
-        all, [&](const ClothRuns& other) { return other.cloth.small && other.cloth.damping == one.cloth.damping; });
+    const auto small =
+        std::ranges::find_if(all, [&](const ClothRuns& other) { return other.cloth.name == one.cloth.smallest; });
     for (const double error : levels(one.runs.problem)) {
       const DefaultChoice choice = quickest_choice(small->runs, error);
       rows.push_back({&one.cloth, model::nodes(one.cloth.scene), error, winner(one.runs, &Configuration::is_ours, error),
