@@ -33,7 +33,7 @@ int check(const CheckArguments& a) {
     fmt::print("{}", all.summary);
   else
     print_tables(all.tables, a.output.format);
-  say_where(options.out, a.output.format);
+  say_end(options.out, a.output.format);
   return has_declared_order(all.tables) ? 0 : 1;
 }
 

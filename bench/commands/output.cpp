@@ -46,7 +46,7 @@ void print_tables(const std::vector<results::Table>& tables, const std::string& 
   }
 }
 
-void say_where(const std::filesystem::path& out, const std::string& format) {
+void say_end(const std::filesystem::path& out, const std::string& format) {
   if (format == "table") fmt::print("\nrecorded in {}\n", base::printable(out.string()));
   if (verbosity() != Verbosity::verbose) return;
   const auto [computed, shared] = solver::pattern_counts();
@@ -68,7 +68,7 @@ std::filesystem::path sweep_and_print(const std::vector<Group>& groups, Output o
     return {};
   }
   print_table(results::to_table(sweep(groups, output.sweep)), output.format);
-  say_where(output.sweep.out, output.format);
+  say_end(output.sweep.out, output.format);
   if (output.sweep.frames_every && output.format == "table")
     fmt::print("motion for ParaView: {}\n", base::printable(results::xdmf_path(output.sweep.out).string()));
   return output.sweep.out;

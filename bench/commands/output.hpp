@@ -53,7 +53,7 @@ void print_table(const results::Table& table, const std::string& format);
 /// Tables under their descriptions; as CSV under their names; as JSON in one object.
 void print_tables(const std::vector<results::Table>& tables, const std::string& format);
 
-/// Only among tables for users.
-void say_where(const std::filesystem::path& out, const std::string& format);
+/// Where the record is, among tables for users only; with --verbose also how often orderings of matrices were shared.
+void say_end(const std::filesystem::path& out, const std::string& format);
 
 }  // namespace drape::bench

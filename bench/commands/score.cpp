@@ -32,7 +32,7 @@ void score(const ScoreArguments& a) {
   const Results all = record_in_file(sweep, score_identity(scene, external, options), {score_job(scene, external, options)});
   if (a.output.format == "table") fmt::print("{}", base::printable_lines(all.summary));
   print_tables(all.tables, a.output.format);
-  say_where(sweep.out, a.output.format);
+  say_end(sweep.out, a.output.format);
 }
 
 }  // namespace

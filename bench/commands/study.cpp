@@ -96,7 +96,7 @@ std::filesystem::path run_study(const StudyArguments& a) {
     return {};
   }
   print_tables(record_in_file(options, sweep, jobs).tables, a.output.format);
-  say_where(options.out, a.output.format);
+  say_end(options.out, a.output.format);
   return options.out;
 }
 

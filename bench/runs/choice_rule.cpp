@@ -6,10 +6,41 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <optional>
 
 namespace drape::bench {
 namespace {
+
+// --- Ways --------------------------------------------------------------------------------------------------------------------
+
+/// What a way costs on a sheet of N particles: nanoseconds a particle, fitted to the times of results/baselines/choice.h5;
+/// setting up, to runs of one step.
+struct Nanoseconds {
+  double set_up, step, update;
+};
+
+struct KnownWay {
+  Way way;
+  Nanoseconds costs;
+  double aim = 0.8;     ///< part of the error asked for that is to be predicted: errors scatter about what is interpolated
+  bool splits = false;  ///< whether its error goes with κ h²: it treats the springs as stiff in all directions
+
+  double ms(int particles, double steps, double updates) const {
+    return 1e-6 * particles * (costs.set_up + costs.step * steps + costs.update * updates);
+  }
+};
+
+/// In the order of the table that bench/choice-table writes.
+const KnownWay known_ways[] = {
+    {{"sbdf2"}, {350, 25, 0}, 0.93, true},
+    {{.method = "midpoint/fixed-point/cholesky", .loop_tolerance = 0.1}, {350, 12, 12}, 0.8, true},
+    {{.method = "midpoint/fixed-point/cholesky", .loop_tolerance = 0.01}, {350, 12, 12}, 0.5, true},
+    {{"midpoint"}, {350, 3, 20.5}},
+    {{"bdf3"}, {400, 3, 20.5}},
+    {{"bdf4"}, {400, 3, 20.5}},
+    {{.method = "bdf2", .stage_accuracy = 1}, {350, 3, 20.5}},
+};
 
 // --- What was measured, by bench/choice-table --------------------------------------------------------------------------------
 
@@ -27,7 +58,7 @@ constexpr int measured_side = 24;                                               
 constexpr double measured_limit = measured_size / (measured_side - 1) * 1e-2;  // [s], l √(ρ/k): of velocity Verlet, undamped
 constexpr std::array<double, table_rows> measured_damping{0.05, 0.5, 1.6, 5,
                                                           16,   50,  160};  // [N s/m]; the first stands for none
-constexpr std::size_t measured_verlet = 7;                                  ///< among the ways
+constexpr std::size_t measured_verlet = std::size(known_ways);              ///< after the others
 constexpr std::array<std::array<MeasuredWay, measured_verlet + 1>, 2> measured_ways{{
 #include "bench/runs/choice_table.inc"
 }};
@@ -66,36 +97,6 @@ double interpolated(const Measured& values, const Place& damping, const Place& s
   return std::lerp(along(damping.below), along(damping.below + 1), damping.part);
 }
 
-// --- Ways --------------------------------------------------------------------------------------------------------------------
-
-/// What a way costs on a sheet of N particles: nanoseconds a particle, fitted to the times of results/baselines/choice.h5;
-/// setting up, to runs of one step.
-struct Nanoseconds {
-  double set_up, step, update;
-};
-
-struct KnownWay {
-  Way way;
-  std::size_t measured;  ///< place in measured_ways
-  Nanoseconds costs;
-  double aim = 0.8;     ///< part of the error asked for that is to be predicted: errors scatter about what is interpolated
-  bool splits = false;  ///< whether its error goes with κ h²: it treats the springs as stiff in all directions
-
-  double ms(int particles, double steps, double updates) const {
-    return 1e-6 * particles * (costs.set_up + costs.step * steps + costs.update * updates);
-  }
-};
-
-const KnownWay known_ways[] = {
-    {{"sbdf2"}, 0, {350, 25, 0}, 0.93, true},
-    {{.method = "midpoint/fixed-point/cholesky", .loop_tolerance = 0.1}, 1, {350, 12, 12}, 0.8, true},
-    {{.method = "midpoint/fixed-point/cholesky", .loop_tolerance = 0.01}, 2, {350, 12, 12}, 0.5, true},
-    {{"midpoint"}, 3, {350, 3, 20.5}},
-    {{"bdf3"}, 4, {400, 3, 20.5}},
-    {{"bdf4"}, 5, {400, 3, 20.5}},
-    {{.method = "bdf2", .stage_accuracy = 1}, 6, {350, 3, 20.5}},
-};
-
 constexpr double aim_of_verlet = 0.9, least_fraction = 0.05;  ///< of the stability limit that is tried
 
 /// Damping δ below which a sheet's motion soon depends on all its details, so that no error is known after that.
@@ -132,9 +133,10 @@ double of_finer_grid(const FallingSheet& sheet) {
 
 /// Errors of what treats springs implicitly as they are do not depend on k, those of the others go with κ h². How often a stage
 /// is corrected goes by k/d.
-Prediction predicted(const KnownWay& known, const FallingSheet& sheet, const Beside& beside, int parts) {
+Prediction predicted(std::size_t way, const FallingSheet& sheet, const Beside& beside, int parts) {
+  const KnownWay& known = known_ways[way];
   Prediction one{.way = known.way, .step = sheet.end / parts};
-  const MeasuredWay& table = measured(sheet, known.measured);
+  const MeasuredWay& table = measured(sheet, way);
   const double h = one.step * beside.scale;
   one.error = std::pow(10, log_error(table, beside.damping, known.splits ? h * std::sqrt(beside.stiffer) : h));
   if (!known.splits) one.error *= of_finer_grid(sheet);
@@ -179,11 +181,12 @@ std::vector<Prediction> predictions(const FallingSheet& sheet, double accuracy) 
   };
   const Beside beside(sheet);
   const std::vector<int> numbers = numbers_of_steps();
-  for (const KnownWay& known : known_ways) {
+  for (std::size_t way = 0; way < std::size(known_ways); ++way) {
+    const KnownWay& known = known_ways[way];
     std::optional<Prediction> best;
     for (const int parts : numbers) {
       if (best && known.ms(sheet.particles, parts, parts) > best->ms) break;  // and so are all with more
-      keep_quicker(best, predicted(known, sheet, beside, parts), known.aim * accuracy);
+      keep_quicker(best, predicted(way, sheet, beside, parts), known.aim * accuracy);
     }
     add(best);
   }

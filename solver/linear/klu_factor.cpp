@@ -7,6 +7,7 @@
 #include <limits>
 #include <memory>
 #include <new>
+#include <span>
 #include <utility>
 
 #include "solver/linear/pattern_cache.hpp"
@@ -54,10 +55,8 @@ class KluFactor::Factors {
 
   template <class Matrix>
   bool have_pattern_of(const Matrix& A) const {
-    const auto n = A.rows(), entries = A.nonZeros();
-    return A_.rows() == n && A_.nonZeros() == entries &&
-           std::equal(A.outerIndexPtr(), A.outerIndexPtr() + n + 1, A_.outerIndexPtr()) &&
-           std::equal(A.innerIndexPtr(), A.innerIndexPtr() + entries, A_.innerIndexPtr());
+    return has_pattern<std::int64_t>(A, {A_.outerIndexPtr(), A_.outerIndexPtr() + A_.rows() + 1},
+                                     {A_.innerIndexPtr(), A_.innerIndexPtr() + A_.nonZeros()});
   }
 
   /// Factors with the last pivots if these are still good.

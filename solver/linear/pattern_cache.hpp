@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -26,6 +27,14 @@ void count_pattern(bool is_shared);
 
 }  // namespace detail
 
+/// Whether the rows of A, which are compressed, start at these entries and have these columns.
+template <class Index, class Matrix>
+bool has_pattern(const Matrix& A, std::span<const Index> start, std::span<const Index> column) {
+  return std::cmp_equal(start.size(), A.rows() + 1) && std::cmp_equal(column.size(), A.nonZeros()) &&
+         std::equal(start.begin(), start.end(), A.outerIndexPtr()) &&
+         std::equal(column.begin(), column.end(), A.innerIndexPtr());
+}
+
 /// What follows from the pattern of a matrix alone, such as its ordering: runs of a sweep have few patterns, and each of the
 /// last ones is analysed once in a process. An analysis is never changed, so that results do not depend on who asked first.
 template <class Analysis, class Index = int>
@@ -36,7 +45,8 @@ class PatternCache {
   template <class Compute>
   std::shared_ptr<const Analysis> of(const Eigen::SparseMatrix<double, Eigen::RowMajor, Index>& A, const Compute& compute) {
     const std::lock_guard lock(mutex_);
-    const auto known = std::find_if(last_.begin(), last_.end(), [&](const Entry& entry) { return entry.is_of(A); });
+    const auto known = std::find_if(last_.begin(), last_.end(),
+                                    [&](const Entry& entry) { return has_pattern<Index>(A, entry.start, entry.column); });
     detail::count_pattern(known != last_.end());
     if (known != last_.end()) {
       std::rotate(last_.begin(), known, known + 1);
@@ -56,12 +66,6 @@ class PatternCache {
   struct Entry {
     std::vector<Index> start, column;
     std::shared_ptr<const Analysis> analysis;
-
-    bool is_of(const Eigen::SparseMatrix<double, Eigen::RowMajor, Index>& A) const {
-      return std::cmp_equal(start.size(), A.rows() + 1) && std::cmp_equal(column.size(), A.nonZeros()) &&
-             std::equal(start.begin(), start.end(), A.outerIndexPtr()) &&
-             std::equal(column.begin(), column.end(), A.innerIndexPtr());
-    }
   };
 
   std::mutex mutex_;

@@ -132,21 +132,22 @@ Positions leapfrog(const Problem& problem, double fraction) {
   return fine;
 }
 
-struct SteppedTruth {
+/// Positions by one method, and how far they are from those of another family.
+struct WitnessedTruth {
   Positions positions;
-  double uncertainty = 0;  ///< what the two that it rests on differ by [m]
+  double uncertainty = 0;  ///< that distance [m]
 };
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SteppedTruth, positions, uncertainty)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(WitnessedTruth, positions, uncertainty)
 
-SteppedTruth truth_beside(Positions positions, const Positions& witness) {
-  SteppedTruth truth{std::move(positions)};
+WitnessedTruth truth_beside(Positions positions, const Positions& witness) {
+  WitnessedTruth truth{std::move(positions)};
   for (std::size_t k = 0; k < witness.size(); ++k)
     truth.uncertainty = base::larger(truth.uncertainty, reference::rms_distance(truth.positions[k], witness[k]));
   return truth;
 }
 
 /// Large undamped sheets are beyond those solvers' factorisations, but not stiff: two explicit ones.
-SteppedTruth compute_explicit_truth(const Problem& problem, double rtol) {
+WitnessedTruth compute_explicit_truth(const Problem& problem, double rtol) {
   constexpr double fraction = 0.1;
   const model::Cloth cloth = model::compile(problem.scene);
   const reference::SolveOptions options{.rtol = rtol, .size = model::size(problem.scene), .max_order = 4};
@@ -154,7 +155,7 @@ SteppedTruth compute_explicit_truth(const Problem& problem, double rtol) {
   return truth_beside(leapfrog(problem, fraction), reference::positions_of(witness));
 }
 
-SteppedTruth compute_stepped_truth(const Problem& problem, Checkpoint& checkpoint) {
+WitnessedTruth compute_stepped_truth(const Problem& problem, Checkpoint& checkpoint) {
   constexpr double agreement = 1e-8, stages = 0.01;
   const auto by = [&](const char* method, int parts) {
     RunSpec spec{problem.scene, "", &solver::method(method), problem.times.back() / parts, {}};
@@ -164,7 +165,7 @@ SteppedTruth compute_stepped_truth(const Problem& problem, Checkpoint& checkpoin
   };
   constexpr int fewest = 400, most = 6400;
   for (int parts = fewest;; parts *= 2) {
-    SteppedTruth truth = truth_beside(by("bdf5", parts), by("esdirk4", parts));
+    WitnessedTruth truth = truth_beside(by("bdf5", parts), by("esdirk4", parts));
     if (truth.uncertainty <= agreement * model::size(problem.scene) || parts >= most) return truth;
   }
 }
@@ -173,13 +174,13 @@ SteppedTruth compute_stepped_truth(const Problem& problem, Checkpoint& checkpoin
 template <class Compute>
 Problem problem_by(const std::string& name, const model::Scene& scene, Checkpoint& checkpoint, const Compute& compute) {
   Problem result = problem({name, scene});
-  const SteppedTruth truth = checkpoint.once("truth", [&] { return compute(result); });
+  const WitnessedTruth truth = checkpoint.once("truth", [&] { return compute(result); });
   result.truth = truth.positions;
   result.uncertainty = truth.uncertainty / result.length;
   return result;
 }
 
-void set_explicit_truth(Problem& problem, const SteppedTruth& truth) {
+void set_explicit_truth(Problem& problem, const WitnessedTruth& truth) {
   problem.truth = truth.positions;
   problem.uncertainty = truth.uncertainty;
   problem.length = 1;  // errors in metres, as those of the bars
