@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <iterator>
+#include <limits>
 #include <optional>
 
 namespace drape::bench {
@@ -22,6 +23,7 @@ struct Nanoseconds {
 
 struct KnownWay {
   Way way;
+  int order;
   Nanoseconds costs;
   double aim = 0.8;     ///< part of the error asked for that is to be predicted: errors scatter about what is interpolated
   bool splits = false;  ///< whether its error goes with κ h²: it treats the springs as stiff in all directions
@@ -33,13 +35,13 @@ struct KnownWay {
 
 /// In the order of the table that bench/choice-table writes.
 const KnownWay known_ways[] = {
-    {{"sbdf2"}, {350, 25, 0}, 0.93, true},
-    {{.method = "midpoint/fixed-point/cholesky", .loop_tolerance = 0.1}, {350, 12, 12}, 0.8, true},
-    {{.method = "midpoint/fixed-point/cholesky", .loop_tolerance = 0.01}, {350, 12, 12}, 0.5, true},
-    {{"midpoint"}, {350, 3, 20.5}},
-    {{"bdf3"}, {400, 3, 20.5}},
-    {{"bdf4"}, {400, 3, 20.5}},
-    {{.method = "bdf2", .stage_accuracy = 1}, {350, 3, 20.5}},
+    {{"sbdf2"}, 2, {350, 25, 0}, 0.93, true},
+    {{.method = "midpoint/fixed-point/cholesky", .loop_tolerance = 0.1}, 2, {350, 12, 12}, 0.8, true},
+    {{.method = "midpoint/fixed-point/cholesky", .loop_tolerance = 0.01}, 2, {350, 12, 12}, 0.5, true},
+    {{"midpoint"}, 2, {350, 3, 20.5}},
+    {{"bdf3"}, 3, {400, 3, 20.5}},
+    {{"bdf4"}, 4, {400, 3, 20.5}},
+    {{.method = "bdf2", .stage_accuracy = 1}, 2, {350, 3, 20.5}},
 };
 
 // --- What was measured, by bench/choice-table --------------------------------------------------------------------------------
@@ -90,14 +92,17 @@ Place damping_place(double damping) {
   return {static_cast<std::size_t>(above - 1), std::log(inside / low) / std::log(high / low)};
 }
 
-double interpolated(const Measured& values, const Place& damping, const Place& step) {
+/// Between two steps, values fall by no more than `most_fall` would over a whole interval.
+double interpolated(const Measured& values, const Place& damping, const Place& step,
+                    double most_fall = std::numeric_limits<double>::max()) {
   const auto along = [&](std::size_t row) {
-    return std::lerp(values[row][step.below], values[row][step.below + 1], step.part);
+    const double before = values[row][step.below];
+    return std::max(std::lerp(before, values[row][step.below + 1], step.part), before - most_fall * step.part);
   };
   return std::lerp(along(damping.below), along(damping.below + 1), damping.part);
 }
 
-constexpr double aim_of_verlet = 0.9, least_fraction = 0.05;  ///< of the stability limit that is tried
+constexpr double aim_of_verlet = 0.8, least_fraction = 0.05;  ///< of the stability limit that is tried
 
 /// Damping δ below which a sheet's motion soon depends on all its details, so that no error is known after that.
 constexpr double chaotic = 0.1;
@@ -119,10 +124,12 @@ struct Beside {
 };
 
 /// log10 of the error with a step h [s] as on the measured sheet; infinite with longer ones than were measured.
-double log_error(const MeasuredWay& table, const Place& damping, double h) {
+/// Errors that fall faster than with the order of a method do so in jumps, somewhere between two steps.
+double log_error(const MeasuredWay& table, int order, const Place& damping, double h) {
   const double halvings = std::log2(longest_step / h), beyond = std::max(0.0, halvings - (table_steps - 1));
   if (halvings < -1e-9) return INFINITY;
-  return interpolated(table.error, damping, place(halvings, table_steps)) - order_beyond * beyond * std::log10(2);
+  return interpolated(table.error, damping, place(halvings, table_steps), order * std::log10(2)) -
+         order_beyond * beyond * std::log10(2);
 }
 
 /// Where damping is strong a sheet creeps about its pins, the more the finer its grid is: so do the errors of implicit methods.
@@ -138,7 +145,7 @@ Prediction predicted(std::size_t way, const FallingSheet& sheet, const Beside& b
   Prediction one{.way = known.way, .step = sheet.end / parts};
   const MeasuredWay& table = measured(sheet, way);
   const double h = one.step * beside.scale;
-  one.error = std::pow(10, log_error(table, beside.damping, known.splits ? h * std::sqrt(beside.stiffer) : h));
+  one.error = std::pow(10, log_error(table, known.order, beside.damping, known.splits ? h * std::sqrt(beside.stiffer) : h));
   if (!known.splits) one.error *= of_finer_grid(sheet);
   const double a_second = interpolated(table.updates, beside.ratio, place(std::log2(longest_step / h), table_steps));
   one.updates = std::max<double>(parts, a_second * sheet.end * beside.scale);
@@ -162,7 +169,7 @@ Prediction verlet(const FallingSheet& sheet, const Beside& beside, double fracti
   Prediction one{.way = {"verlet"}, .step = sheet.end / 10, .fraction = fraction};
   const double h = std::min(fraction * sheet.limit, one.step);
   const double measured_h = sheet.damping < chaotic ? h / sheet.limit * measured_limit : h * beside.scale;
-  one.error = std::pow(10, log_error(measured(sheet, measured_verlet), beside.damping, measured_h));
+  one.error = std::pow(10, log_error(measured(sheet, measured_verlet), 2, beside.damping, measured_h));
   one.updates = std::ceil(sheet.end / h) + estimates;
   one.ms = 1e-6 * one.updates * (a_force + a_particle * sheet.particles);
   return one;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <ranges>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -33,7 +35,7 @@ struct SizedCloth {
   model::Scene scene;
   Search search = Search::full;
   Effort effort = {};
-  std::string smaller = {};  ///< the name of the sheet half as large: what is far from its fronts is left out here
+  std::string smaller = {};  ///< the name of the sheet half as large: only what is quick there is tried here
   bool stepped = false;      ///< whether its truth is of halved steps: certificates would take hours
 };
 
@@ -43,7 +45,7 @@ SizedCloth sheet(double damping, int n, int smallest, bool quick) {
   std::vector<model::Override> overrides{{"material.damping", fmt::format("{}", damping)}, {"grid.n", fmt::format("{}", n)}};
   if (quick) overrides.push_back({"end.time", "0.1"});
   SizedCloth all{name_of_sheet(damping, n), name_of_sheet(damping, smallest), model::load_scene("hung-corners", overrides)};
-  all.effort.limits.seconds = std::max(1.0, n * n / 3200.0);
+  all.effort.limits.seconds = std::max(1.0, n * n / 6400.0);
   all.stepped = n > (quick ? 8 : 100);
   if (n > smallest) all.smaller = name_of_sheet(damping, n / 2);
   if (all.stepped) all.effort.repetitions = 3;
@@ -56,14 +58,17 @@ SizedCloth garment(const char* name, std::string smallest, std::vector<model::Ov
   return {.name = name, .smallest = std::move(smallest), .scene = model::load_scene(name, overrides), .search = Search::usual};
 }
 
+/// Particles a side of the largest sheet of this damping: the less damping, the longer it takes.
+int largest(double damping) { return damping >= 50 ? 320 : 160; }
+
 std::vector<SizedCloth> sized_cloths(bool quick) {
   std::vector<SizedCloth> all;
-  const std::vector<int> sizes = quick ? std::vector{5, 10} : std::vector{20, 40, 80, 160, 320};
+  const int smallest = quick ? 5 : 20;
   for (const double damping : quick ? std::vector{50.0} : std::vector{50.0, 5.0, 0.5})
-    for (const int n : sizes) all.push_back(sheet(damping, n, sizes.front(), quick));
+    for (int n = smallest; n <= (quick ? 10 : largest(damping)); n *= 2) all.push_back(sheet(damping, n, smallest, quick));
   if (quick) return all;
-  all.push_back(garment("skirt", name_of_sheet(5, sizes.front()), {}));
-  all.push_back(garment("dress", name_of_sheet(50, sizes.front()),
+  all.push_back(garment("skirt", name_of_sheet(5, smallest), {}));
+  all.push_back(garment("dress", name_of_sheet(50, smallest),
                         {{"pins",
                           "[{ panel = 'right strap', particles = [[5, 1], [6, 1]] }, "
                           "{ panel = 'left strap', particles = [[5, 1], [6, 1]] }]"}}));
@@ -81,18 +86,22 @@ struct ClothRuns {
   SceneRuns runs;
 };
 
-/// Whether on a cloth it takes at most four times as long as the quickest of its side, ours or SUNDIALS, at any error.
-bool is_near_a_front(const SceneRuns& runs, const Configuration& one) {
-  constexpr double near = 4;
-  const Contender side = one.is_ours() ? &Configuration::is_ours : &Configuration::is_sundials;
-  const auto is_near = [&](double error) {
-    const Winner best = winner(runs, side, error);
-    return std::ranges::any_of(runs.runs, [&](const ComparedRun& run) {
-      return run.configuration->name == one.name && run.counts() && run.measured.error <= error &&
-             base::quantile(run.measured.times, 0.5) <= near * best.time;
-    });
-  };
-  return std::ranges::any_of(levels(runs.problem), is_near);
+/// The names of the quickest configurations of a side, ours or SUNDIALS, that reach an error: a few.
+std::set<std::string> quickest(const SceneRuns& runs, const Contender& side, double error) {
+  constexpr std::size_t few = 5;
+  std::map<std::string, double> times;
+  for (const ComparedRun& run : runs.runs) {
+    if (!side(*run.configuration) || !run.counts() || !(run.measured.error <= error)) continue;
+    const double time = base::quantile(run.measured.times, 0.5);
+    const auto [known, is_new] = times.try_emplace(run.configuration->name, time);
+    if (!is_new) known->second = std::min(known->second, time);
+  }
+  std::vector<std::pair<double, std::string>> ranked;
+  for (const auto& [name, time] : times) ranked.emplace_back(time, name);
+  std::ranges::sort(ranked);
+  std::set<std::string> names;
+  for (const auto& [time, name] : ranked | std::views::take(few)) names.insert(name);
+  return names;
 }
 
 /// The quickest of ours with automatic solvers, and what controls it.
@@ -104,11 +113,18 @@ DefaultChoice quickest_choice(const SceneRuns& scene, double error) {
 /// The runs of cloths that others follow, by name.
 using RunsByName = std::map<std::string, const SceneRuns*>;
 
-/// Whether it is worth its time on a cloth: near a front of the sheet half as large, or the choice of the smallest sheet.
-bool is_worth_trying(const RunsByName& done, const SizedCloth& cloth, const Configuration& one) {
+/// The names of what is worth its time on a cloth: at any error among the quickest on the sheet half as large, or the choice of
+/// the smallest sheet.
+std::set<std::string> worth_trying(const RunsByName& done, const SizedCloth& cloth) {
   const SceneRuns &smaller = *done.at(cloth.smaller), &smallest = *done.at(cloth.smallest);
-  return is_near_a_front(smaller, one) ||
-         std::ranges::any_of(levels(smallest.problem), [&](double error) { return quickest_choice(smallest, error)(one); });
+  std::set<std::string> names;
+  for (const double error : levels(smaller.problem))
+    for (const Contender& side : {Contender(&Configuration::is_ours), Contender(&Configuration::is_sundials)})
+      names.merge(quickest(smaller, side, error));
+  for (const double error : levels(smallest.problem))
+    if (const Winner choice = winner(smallest, &Configuration::is_default, error))
+      names.insert(choice.run->configuration->name);
+  return names;
 }
 
 void run_cloth(const SizedCloth& cloth, SceneRuns& runs, const RunsByName& done, Checkpoint& checkpoint) {
@@ -116,8 +132,10 @@ void run_cloth(const SizedCloth& cloth, SceneRuns& runs, const RunsByName& done,
   checkpoint.show("reference of " + cloth.name);
   runs.problem = (cloth.stepped ? stepped_problem : certified_problem)(cloth.name, cloth.scene, checkpoint);
   runs.configurations = searched_for(cloth);
-  if (!cloth.smaller.empty())
-    std::erase_if(runs.configurations, [&](const Configuration& one) { return !is_worth_trying(done, cloth, one); });
+  if (!cloth.smaller.empty()) {
+    const std::set<std::string> names = worth_trying(done, cloth);
+    std::erase_if(runs.configurations, [&](const Configuration& one) { return !names.contains(one.name); });
+  }
   runs.runs = run_all(runs.problem, runs.configurations, cloth.effort, checkpoint);
   checkpoint.show("timing " + cloth.name);
   time_fronts(runs.problem, runs.runs, cloth.effort, {}, checkpoint);
