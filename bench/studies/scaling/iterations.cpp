@@ -141,7 +141,7 @@ using results::Role;
 
 constexpr ColumnOf<IterationRow> iteration_columns[] = {
     {"n", "n", "1", "particles a side", Role::key, field<&IterationRow::n>},
-    {"threads", "threads", "1", "that the linear solver may use; forces use one", Role::key, field<&IterationRow::threads>},
+    {"threads", "threads", "1", "that an iteration may use", Role::key, field<&IterationRow::threads>},
     {"linear_solver", "linear solver", "", "with which preconditioner, or a substitution", Role::key,
      field<&IterationRow::linear_solver>},
     {"iteration", "/particle", "ns", "median time of an iteration over the number of particles", Role::time,

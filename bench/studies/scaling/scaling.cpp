@@ -118,7 +118,7 @@ using results::Role;
 
 constexpr ColumnOf<StepRow> run_columns[] = {
     {"n", "n", "1", "particles a side", Role::key, field<&StepRow::n>},
-    {"threads", "threads", "1", "that the linear solver may use; forces use one", Role::key, field<&StepRow::threads>},
+    {"threads", "threads", "1", "that the step may use", Role::key, field<&StepRow::threads>},
     {"method", "method", "", "time integrator", Role::key, field<&StepRow::method>},
 };
 
