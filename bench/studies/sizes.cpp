@@ -224,8 +224,9 @@ constexpr results::ColumnOf<Summary> summary_columns[] = {
     {"median", "median", "1", "ratio of its time to ours", Role::time,
      [](SummaryRow row) { return row.ratios.empty() ? Datum() : Datum(base::quantile(row.ratios, 0.5)); }},
     {"twice", "from 2 on", "1", "errors where SUNDIALS takes at least twice our time", Role::time, field<&Summary::twice>},
-    {"misleads", "misled", "1", "errors where the small sheet's choice takes more than 1.5 times our quickest, or misses",
-     Role::time, field<&Summary::misleads>},
+    {"misleads", "misled", "1",
+     "errors where the small sheet's choice takes more than 1.5 times our quickest, or misses what that reaches", Role::time,
+     field<&Summary::misleads>},
     {"mean", "mean loss", "1", "geometric mean of that choice's time over our quickest", Role::time,
      [](SummaryRow row) { return row.misled.empty() ? Datum() : Datum(base::geometric_mean(row.misled)); }},
 };
@@ -237,7 +238,8 @@ std::vector<Summary> summaries_of(const std::vector<Level>& levels) {
     Summary& of_cloth = all.back();
     ++of_cloth.errors;
     of_cloth.twice += level.ratio().value_or(0) >= 2;
-    if (level.small_choice.method != nullptr) of_cloth.misleads += level.misled().value_or(INFINITY) > default_bar;
+    if (level.small_choice.method != nullptr && level.best)
+      of_cloth.misleads += level.misled().value_or(INFINITY) > default_bar;
     if (level.ratio()) of_cloth.ratios.push_back(*level.ratio());
     if (level.misled()) of_cloth.misled.push_back(*level.misled());
   }

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "solver/linear/choose.hpp"
 #include "solver/linear/kernels.hpp"
 
 namespace drape::reference {
@@ -14,6 +15,14 @@ namespace {
 /// Tolerance of the system with the constant matrix where partial pins make its factor a preconditioner.
 constexpr double accuracy = 1e-8;
 
+/// Options of the constant matrix: a factor up to sizes where `auto` of our own methods iterates. Theirs are loose solves; here
+/// each is to `accuracy`, which takes multigrid several cycles, and a factor one substitution.
+solver::Options constant_options(int particles) {
+  solver::Options options;
+  if (particles <= solver::LinearChoice::most_factored_without_grid) options.linear_solver = &solver::linear_solver("cholesky");
+  return options;
+}
+
 /// Size of the difference quotient relative to the state.
 constexpr double difference = 1e-7;
 
@@ -22,7 +31,7 @@ constexpr double difference = 1e-7;
 ReducedNewton::ReducedNewton(const solver::SplitOde& ode, NewtonSolve::Matrix matrix, double kept)
     : ode_(ode), kept_(kept), dv_(Vectors::Zero(ode.particles(), 3)) {
   if (matrix == NewtonSolve::Matrix::constant)
-    constant_.emplace(ode, solver::Options(), nullptr);
+    constant_.emplace(ode, constant_options(ode.particles()), nullptr);
   else
     factor_.emplace(*ode.work);
 }
