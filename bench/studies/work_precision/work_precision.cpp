@@ -164,7 +164,7 @@ WitnessedTruth compute_stepped_truth(const Problem& problem, Checkpoint& checkpo
     return positions_of(problem, spec);
   };
   constexpr int fewest = 400, most = 6400;
-  for (int parts = fewest;; parts *= 2) {
+  for (int parts = fewest;; parts *= 4) {
     WitnessedTruth truth = truth_beside(by("bdf5", parts), by("esdirk4", parts));
     if (truth.uncertainty <= agreement * model::size(problem.scene) || parts >= most) return truth;
   }
