@@ -26,7 +26,7 @@ struct KnownWay {
   int order;
   Nanoseconds costs;
   double aim = 0.8;     ///< part of the error asked for that is to be predicted: errors scatter about what is interpolated
-  bool splits = false;  ///< whether its error goes with κ h²: it treats the springs as stiff in all directions
+  bool splits = false;  ///< whether its error goes with κ: it treats the springs as stiff in all directions
 
   double ms(int particles, double steps, double updates) const {
     return 1e-6 * particles * (costs.set_up + costs.step * steps + costs.update * updates);
@@ -35,6 +35,7 @@ struct KnownWay {
 
 /// In the order of the table that bench/choice-table writes.
 const KnownWay known_ways[] = {
+    {{"imex-euler"}, 1, {230, 26, 0}, 0.93, true},
     {{"sbdf2"}, 2, {350, 25, 0}, 0.93, true},
     {{.method = "midpoint/fixed-point/cholesky", .loop_tolerance = 0.1}, 2, {350, 12, 12}, 0.8, true},
     {{.method = "midpoint/fixed-point/cholesky", .loop_tolerance = 0.01}, 2, {350, 12, 12}, 0.5, true},
@@ -107,7 +108,7 @@ constexpr double aim_of_verlet = 0.8, least_fraction = 0.05;  ///< of the stabil
 /// Damping δ below which a sheet's motion soon depends on all its details, so that no error is known after that.
 constexpr double chaotic = 0.1;
 
-constexpr double order_beyond = 2;  ///< with which errors fall with steps that are shorter than those of the tables
+constexpr int order_beyond = 2;  ///< with which errors fall at most with steps that are shorter than those of the tables
 
 /// A sheet beside the measured one.
 struct Beside {
@@ -129,7 +130,7 @@ double log_error(const MeasuredWay& table, int order, const Place& damping, doub
   const double halvings = std::log2(longest_step / h), beyond = std::max(0.0, halvings - (table_steps - 1));
   if (halvings < -1e-9) return INFINITY;
   return interpolated(table.error, damping, place(halvings, table_steps), order * std::log10(2)) -
-         order_beyond * beyond * std::log10(2);
+         std::min(order, order_beyond) * beyond * std::log10(2);
 }
 
 /// Where damping is strong a sheet creeps about its pins, the more the finer its grid is: so do the errors of implicit methods.
@@ -138,14 +139,14 @@ double of_finer_grid(const FallingSheet& sheet) {
   return sheet.damping > creeping ? std::max(1.0, std::sqrt(sheet.particles) / measured_side) : 1;
 }
 
-/// Errors of what treats springs implicitly as they are do not depend on k, those of the others go with κ h². How often a stage
-/// is corrected goes by k/d.
+/// Errors of what treats springs implicitly as they are do not depend on k, those of the others go with κ h², of the first
+/// order with κ h. How often a stage is corrected goes by k/d.
 Prediction predicted(std::size_t way, const FallingSheet& sheet, const Beside& beside, int parts) {
   const KnownWay& known = known_ways[way];
   Prediction one{.way = known.way, .step = sheet.end / parts};
   const MeasuredWay& table = measured(sheet, way);
-  const double h = one.step * beside.scale;
-  one.error = std::pow(10, log_error(table, known.order, beside.damping, known.splits ? h * std::sqrt(beside.stiffer) : h));
+  const double h = one.step * beside.scale, stiffer = known.splits ? std::pow(beside.stiffer, 1.0 / known.order) : 1;
+  one.error = std::pow(10, log_error(table, known.order, beside.damping, h * stiffer));
   if (!known.splits) one.error *= of_finer_grid(sheet);
   const double a_second = interpolated(table.updates, beside.ratio, place(std::log2(longest_step / h), table_steps));
   one.updates = std::max<double>(parts, a_second * sheet.end * beside.scale);
