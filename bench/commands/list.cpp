@@ -1,5 +1,7 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <ranges>
 #include <utility>
 
 #include "bench/commands/choices.hpp"
@@ -21,13 +23,17 @@ void list(const std::string& kind) {
     fmt::print("{}\n", choice.name);
 }
 
+std::string all_kinds() {
+  const auto names = kinds_of_names() | std::views::transform(&KindOfNames::name);
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
 }  // namespace
 
 void add_list(CLI::App& app) {
-  CLI::App& command = *app.add_subcommand("list", "names of scenes, methods, studies, forces, fabrics or peers, one a line");
+  CLI::App& command = *app.add_subcommand("list", "names of " + all_kinds());
   const auto kind = std::make_shared<std::string>();
-  command.add_option("KIND", *kind, "scenes, methods, studies, forces, fabrics or peers [all, with descriptions]")
-      ->type_name("");
+  command.add_option("KIND", *kind, all_kinds() + " [all, with descriptions]")->type_name("");
   command.callback([=] { list(*kind); });
 }
 

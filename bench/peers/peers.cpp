@@ -79,18 +79,11 @@ Problem problem_of(const Peer& peer, const model::Scene& scene, double step) {
   return problem;
 }
 
-std::string last_line(std::string text) {
-  while (text.ends_with('\n')) text.pop_back();
-  return text.substr(text.rfind('\n') + 1);
-}
-
 void run_program(const Peer& peer, const fs::path& folder, double limit) {
   std::vector<std::string> words = command(*peer.simulator);
   words.push_back(folder);
   const base::ChildSaid said = run_within<PeerError>(std::move(words), limit);
-  if (said.exit_code == 0) return;
-  if (said.exit_code > 128) throw PeerError(fmt::format("ended by signal {}", said.exit_code - 128));
-  throw PeerError(last_line(said.err));
+  if (said.exit_code != 0) throw PeerError(said.failure());
 }
 
 /// A frame as a field; a number that is not finite is null in JSON.

@@ -1,6 +1,7 @@
 #include "solver/base/process.hpp"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <poll.h>
 #include <spawn.h>
 #include <sys/mman.h>
@@ -8,6 +9,7 @@
 #include <sys/wait.h>
 
 #include <csignal>
+#include <fstream>
 #include <utility>
 
 #include "solver/base/descriptor.hpp"
@@ -87,6 +89,13 @@ class Group {
 
 }  // namespace
 
+std::string ChildSaid::failure() const {
+  if (exit_code == 0) return "";
+  if (exit_code > 128) return fmt::format("ended by signal {}", exit_code - 128);
+  const std::size_t end = err.find_last_not_of('\n') + 1, begin = end > 0 ? err.rfind('\n', end - 1) + 1 : 0;
+  return err.substr(begin, end - begin);
+}
+
 ChildSaid run_child(std::vector<std::string> words, double seconds) {
   const Descriptor out(memfd_create("out", MFD_CLOEXEC)), err(memfd_create("err", MFD_CLOEXEC));
   if (out.fd < 0 || err.fd < 0) fail_as(errno, words[0]);
@@ -94,6 +103,13 @@ ChildSaid run_child(std::vector<std::string> words, double seconds) {
   Group group(words, setup);
   const int code = group.wait(seconds, words[0]);
   return {code, text_of(out, words[0]), text_of(err, words[0])};
+}
+
+double peak_memory() {
+  std::ifstream status("/proc/self/status");  // getrusage() counts the program that started this one as well
+  for (std::string word; status >> word;)
+    if (double kilobytes = 0; word == "VmHWM:" && status >> kilobytes) return kilobytes / 1024;
+  return 0;
 }
 
 }  // namespace drape::base

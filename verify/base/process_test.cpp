@@ -28,6 +28,22 @@ TEST(Child, SaysWhatItSaidAndHowItEnded) {
   EXPECT_EQ(base::run_child({"sh", "-c", "kill -TERM $$"}, 60).exit_code, 128 + 15);
 }
 
+TEST(Child, SaysInOneLineWhyItFailed) {
+  const auto failure_of = [](const char* script) { return base::run_child({"sh", "-c", script}, 60).failure(); };
+  EXPECT_EQ(failure_of("echo fine >&2"), "");
+  EXPECT_EQ(failure_of("echo first >&2; printf 'last\n\n' >&2; exit 1"), "last");
+  EXPECT_EQ(failure_of("printf 'only' >&2; exit 1"), "only");
+  EXPECT_EQ(failure_of("exit 1"), "");
+  EXPECT_EQ(failure_of("echo ignored >&2; kill -TERM $$"), "ended by signal 15");
+}
+
+TEST(PeakMemory, HasWhatWasTakenInMegabytes) {
+  constexpr std::size_t taken = 300;
+  EXPECT_EQ(std::vector<char>(taken << 20, 1).back(), 1);
+  EXPECT_GE(base::peak_memory(), taken);
+  EXPECT_LT(base::peak_memory(), 100'000) << "other tests take less";
+}
+
 TEST(Child, ThatDoesNotEndIsKilledWithWhatItStarted) {
   EXPECT_EQ(failure({"sh", "-c", "sleep 600 & wait"}, 0.1), std::errc::timed_out);
 }

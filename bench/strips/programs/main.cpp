@@ -21,6 +21,7 @@
 #include "bench/strips/programs/pfmg.hpp"
 #include "bench/strips/programs/processes.hpp"
 #include "model/scene_file/scene_file.hpp"
+#include "solver/base/process.hpp"
 #include "solver/integrator.hpp"
 
 namespace drape::bench::strips {
@@ -64,14 +65,6 @@ solver::State run_method(const Strip& strip, const Problem& problem, const std::
   return integrator.state();
 }
 
-/// The most memory that this process has taken [MB].
-double peak_memory() {
-  std::ifstream status("/proc/self/status");
-  for (std::string word; status >> word;)
-    if (double kilobytes = 0; word == "VmHWM:" && status >> kilobytes) return kilobytes / 1024;
-  return 0;
-}
-
 Rank rank_of(const double* numbers) {
   const auto whole = [&](int k) { return static_cast<std::int64_t>(numbers[k]); };
   return {static_cast<int>(whole(0)), {whole(1), whole(2), whole(3)}, {whole(4), whole(5), whole(6)}, numbers[7]};
@@ -87,7 +80,7 @@ Solved solved(const Strip& strip, const StepClock& clock) {
   const std::array<double, 8> numbers{static_cast<double>(strip.share().lines), static_cast<double>(first.messages),
                                       static_cast<double>(first.bytes),         static_cast<double>(first.reductions),
                                       static_cast<double>(later.messages),      static_cast<double>(later.bytes),
-                                      static_cast<double>(later.reductions),    peak_memory()};
+                                      static_cast<double>(later.reductions),    base::peak_memory()};
   const std::vector<double> ranks = Processes::gathered(numbers), seconds = Processes::gathered(clock.seconds());
   for (std::size_t k = 0; k < ranks.size(); k += numbers.size()) all.ranks.push_back(rank_of(&ranks[k]));
   all.seconds.assign(clock.seconds().size(), 0);

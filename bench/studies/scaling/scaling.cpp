@@ -1,7 +1,6 @@
 #include "bench/studies/scaling/scaling.hpp"
 
 #include <fmt/format.h>
-#include <sys/resource.h>
 
 #include <cmath>
 #include <numeric>
@@ -10,6 +9,7 @@
 
 #include "model/scene_file/scene_file.hpp"
 #include "results/columns.hpp"
+#include "solver/base/process.hpp"
 #include "solver/base/statistics.hpp"
 #include "solver/base/threads.hpp"
 
@@ -58,12 +58,6 @@ namespace {
 
 const std::vector<std::string> methods{"bdf2", "sbdf2"};
 
-double peak_memory_mb() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) / 1024;
-}
-
 std::string_view linear_solver_of(const solver::Counters& work) {
   std::string_view used;
   for (const solver::LinearSolver& kind : solver::linear_solvers())
@@ -98,7 +92,7 @@ StepCost time_steps(int n, const std::string& method) {
           .particles = cloth.ode.particles(),
           .linear_solver = std::string(linear_solver_of(work)),
           .escalations = work.count("escalations"),
-          .memory = peak_memory_mb()};
+          .memory = base::peak_memory()};
 }
 
 /// Steps of a method on a size; or, without one, how their time grows with the size.

@@ -227,7 +227,7 @@ TEST(ProgramHelp, OfTheOthersSaysWhatTheyTake) {
   expect_all_in(program.output({"study", "--help"}),
                 {"study [OPTIONS] NAME", "--quick", "--repeat R", "--out FILE.h5", "--format table|csv|json", "hung-sheets"});
   expect_all_in(program.output({"list", "--help"}),
-                {"list [OPTIONS] [KIND]", "scenes, methods, studies, forces, fabrics or peers"});
+                {"list [OPTIONS] [KIND]", "scenes, methods, studies, forces, fabrics, peers"});
 }
 
 /// All that reads like help, wherever it is printed.
