@@ -45,8 +45,8 @@ SizedCloth sheet(double damping, int n, int smallest, bool quick) {
   std::vector<model::Override> overrides{{"material.damping", fmt::format("{}", damping)}, {"grid.n", fmt::format("{}", n)}};
   if (quick) overrides.push_back({"end.time", "0.1"});
   SizedCloth all{name_of_sheet(damping, n), name_of_sheet(damping, smallest), model::load_scene("hung-corners", overrides)};
-  const double sub_steps = damping < 1 ? 3 : 1;  // explicit methods, slower by n³, are the quickest there
-  all.effort.limits.seconds = std::max(1.0, sub_steps * n * n / 6400.0);
+  const double longer = damping < 1 ? 3 : 1;  // for explicit methods, the quickest there, whose time goes with n³
+  all.effort.limits.seconds = std::max(1.0, longer * n * n / 6400.0);
   all.stepped = n > (quick ? 8 : 100);
   if (n > smallest) all.smaller = name_of_sheet(damping, n / 2);
   if (n > 200) all.few = 1;
